@@ -52,7 +52,7 @@ def solid_to(scene: Scene, accuracy: float, quantity: str) -> Discretised:
 
 def _meshed(scene: Scene, mesh: tuple[int, int]) -> Scene:
     """Return the scene with every strip meshed alike, stocky ones with fewer elements along."""
-    from comparisons.models.translate.to_solid import rectangle
+    from comparisons.models.solid import rectangle
 
     beams = []
     for beam in scene.beams:

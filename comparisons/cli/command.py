@@ -15,7 +15,7 @@ from comparisons.cli.outcome import BAD_INPUT, DONE, EPILOG, INTERRUPTED, STOPPE
 from comparisons.extras import install
 from comparisons.files import OutputError, printable
 from comparisons.models.options import ModelError
-from comparisons.models.outside.ccx import CalculixError
+from comparisons.models.outside.child import CalculixError
 from comparisons.scene import InputError
 
 COMMANDS = (scene_files, solve, compare, certify, run, view)
@@ -74,7 +74,7 @@ def _run(arguments: list[str] | None) -> int:
     except (ModelError, OutputError) as error:
         status = _told(error, BAD_INPUT)
     except CalculixError as error:
-        status = _told(error, BAD_INPUT if error.printed is None else STOPPED)
+        status = _told(error, STOPPED if error.started else BAD_INPUT)
     except BrokenPipeError:
         # whoever read the output has had enough
         _drop_output()

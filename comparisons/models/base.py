@@ -39,6 +39,11 @@ class Style:
     unbroken: bool = False
 
 
+def counted(elements: int | None) -> str:
+    """Return a number of elements for a label, as ``, 20 elements``; empty if the scene gives the number."""
+    return "" if elements is None else f", {elements} element{'s' if elements > 1 else ''}"
+
+
 class Model(ABC):
     """A way to solve scenes.
 
@@ -137,9 +142,10 @@ class Model(ABC):
         """Return the name shared by all runs that differ from this one in resolution only."""
         return self.label
 
-    def resolution(self, options: Options) -> float:  # noqa: ARG002 - others have settings
+    def resolution(self, options: Options) -> float:
         """Return the number of elements along a beam; nan without a mesh, or where the scene gives the number."""
-        return nan
+        count = options.elements if options.mesh is None else options.mesh[0]
+        return nan if count is None else float(count)
 
     def compared(self) -> tuple[Options, ...]:
         """Return the settings that a comparison runs."""

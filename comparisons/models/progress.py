@@ -9,17 +9,7 @@ REDRAW = 0.1
 
 
 class Reached(NamedTuple):
-    """An accepted step of a solution.
-
-    Attributes
-    ----------
-    load_parameter : float
-        Load parameter of the step.
-    iterations : int
-        Newton iterations since the step before.
-    contacts : tuple of str
-        Closed contacts, as ``pin->cantilever on element 8 of 20``.
-    """
+    """An accepted step: its load parameter, the iterations since the step before, and closed contacts, as ``pin->beam on element 8 of 20``."""
 
     load_parameter: float
     iterations: int

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 Certify = Literal["last", "all", "none"]
 """Load parameters to certify: the last one and the neighbours of events, all, or none."""
-FILES = ("tsm", "solid", "rod")
+FILES = ("tsm", "solid", "rod", "elastica")
 """The modules of this package with a tuple ``MODELS``; a new model adds its module here."""
 MODELS: dict[str, Model] = {
     model.name: model for file in FILES for model in import_module(f"comparisons.models.{file}").MODELS

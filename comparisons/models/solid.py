@@ -2,24 +2,32 @@
 
 from __future__ import annotations
 
-from math import nan
-from typing import TYPE_CHECKING
+from math import ceil
+from typing import TYPE_CHECKING, Any
 
 from comparisons.models.base import Model, Style
-from comparisons.models.options import Options
-from comparisons.scene.keys import STRIPS
+from comparisons.models.options import ModelError, Options
+from comparisons.models.progress import Reached, Watch
+from comparisons.scene.conditions import COMPONENTS
+from comparisons.scene.keys import STRIPS, unstated
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from comparisons.models.progress import Watch
     from comparisons.models.theory import Bending
-    from comparisons.response import Response
-    from comparisons.scene import Scene
+    from comparisons.response import Array, ContactEvent, Response
+    from comparisons.scene import BeamSpec, Scene, SupportSpec
+    from fem_reference import EndLoad, Joint, LineLoad, PointLoad, SolidProblem, Spring, Strip, Support
 
 REFINED = ((25, 1), (50, 2), (100, 4), (200, 8))
 """Meshes refined alike in both directions, to which an order of convergence can be fitted."""
 COARSE = ((8, 1), (12, 1), (16, 1), (25, 2))
+LEAST_RATIO = -0.999
+"""Least Poisson's ratio. There the shear modulus is 500 times Young's modulus; a solid that is stiffer in shear locks."""
+CONTACT = ("node", "side", "surface", "penalty", "penetration", "keep", "friction")
+"""What the solid takes of a contact as it is."""
+SLENDER = 0.125
+"""Largest height over length of the rectangle that replaces a section given by area and second moment."""
 
 
 class Solid(Model):
@@ -35,8 +43,6 @@ class Solid(Model):
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why the solid cannot state `scene`; None if it can."""
-        from comparisons.models.translate import to_solid
-
         try:
             to_solid(scene)
         except ValueError as error:
@@ -45,9 +51,7 @@ class Solid(Model):
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked."""
-        from comparisons.models.discrete import solve_solid
-
-        return solve_solid(scene, options, watch)
+        return _solved(scene, options, watch)
 
     def styles(self) -> dict[str, Style]:
         """Return one style for every order of the elements."""
@@ -73,10 +77,6 @@ class Solid(Model):
         del options
         return f"{self.label} {_order(scene)}"
 
-    def resolution(self, options: Options) -> float:
-        """Return the number of elements along a beam; nan where the scene gives the number."""
-        return nan if options.mesh is None else float(options.mesh[0])
-
     def resolutions(self, *, quick: bool) -> Iterator[Options]:
         """Yield meshes, coarse to fine."""
         yield from (Options(mesh=mesh) for mesh in (*COARSE, *REFINED[: 2 if quick else 3]))
@@ -90,6 +90,309 @@ class Solid(Model):
 
 def _order(scene: Scene) -> str:
     return "+".join(sorted({beam.solid_element for beam in scene.beams}))
+
+
+def _solved(scene: Scene, options: Options, watch: Watch) -> Response:
+    """Return the response of solid elements in contact."""
+    import numpy as np
+
+    import fem_reference
+    from comparisons.models.sections import j_integrals, section_forces
+    from comparisons.models.shared import history, of_result
+    from comparisons.response import Deformation, FrictionHistory, Grid
+    from comparisons.response.deferred import Deferred
+
+    problem = to_solid(scene, mesh=options.mesh)
+    settings = fem_reference.Settings(branch=options.branch or "stop")
+
+    def report(step: Any) -> None:
+        touching = (f"{touch.pair.name} at {float(touch.projection.zeta):.4g}" for touch in step.state.closed)
+        watch(Reached(step.load_parameter, step.iterations, tuple(touching)))
+
+    try:
+        result = fem_reference.solve(problem, np.array(scene.times), settings, watch=report)
+    except fem_reference.SolveError as error:
+        result = error.result
+    beam = np.repeat(np.arange(len(scene.beams)), [part.stop - part.start for part in result.model.parts])
+
+    def axis_line(beam: str, k: int) -> tuple[Array, Array]:
+        return fem_reference.axis_stations(result, beam), fem_reference.axis_line(result, beam, k)
+
+    def grid(k: int) -> Grid:
+        displacement = result.displacement[k]
+        xx, yy, xy = fem_reference.nodal_stress(result, k).T
+        data = {"displacement": displacement, "deformed": result.mesh_points + displacement, "beam": beam}
+        data |= {"stress_xx": xx, "stress_yy": yy, "stress_xy": xy}
+        data["von_mises"] = np.sqrt(xx**2 - xx * yy + yy**2 + 3.0 * xy**2)
+        data["axial_stress"] = fem_reference.fibre_stress(result, k)
+        return Grid(points=result.mesh_points, cells=result.mesh_cells, point_data=data)
+
+    def friction(item: Any) -> FrictionHistory:
+        forces = {"tangential": item.tangential_force, "normal": item.normal_force}
+        return FrictionHistory(slip=item.direction, dissipated=item.dissipated, **forces)
+
+    def half_turns(beam: str) -> Array:
+        """Largest angle between neighbouring chords of the axis; a quadratic element has two chords."""
+        lines = [axis_line(beam, k)[1] for k in range(len(result.load_parameter))]
+        chords = [np.diff(line, axis=0) @ (1, 1j) for line in lines]
+        return np.array([np.abs(np.angle(chord[1:] / chord[:-1])).max() for chord in chords])
+
+    contacts = {
+        spec.name: history(
+            item,
+            compliance=1.0 / problem.penalty(spec) if spec.penetration is None else 0.0,
+            slip_off=item.slip_off,
+            vector=item.vector,
+            friction=friction(item) if spec.friction else None,
+        )
+        for spec, item in ((spec, result.contacts[spec.name]) for spec in problem.contacts)
+    }
+    turn = 2 * np.max([half_turns(beam.name) for beam in scene.beams], axis=0)
+    return of_result(
+        SOLID,
+        scene,
+        result,
+        axis_line,
+        lambda beam, k: axis_line(beam, k)[1],
+        grid=grid,
+        contacts=contacts,
+        material_force=Deferred(lambda: j_integrals(scene, result)),
+        round_off=result.round_off,
+        events=_events(result) if any(contact.friction for contact in problem.contacts) else None,
+        deformation=Deformation(
+            load_parameter=result.load_parameter, turn=turn, strain=np.zeros_like(turn), bearable=1.0
+        ),
+        sections=lambda beam, k: section_forces(scene, result, beam, k),
+    )
+
+
+def _events(result: Any) -> tuple[ContactEvent, ...]:
+    """Return the events of a scene with friction, whose load parameters are located; no element owns a contact."""
+    from comparisons.response import ContactEvent
+
+    found = [
+        ContactEvent(
+            pair=pair,
+            element=-1,
+            released=0.0,
+            stage=max(1, ceil(event.load_parameter)),
+            **{name: getattr(event, name) for name in ("kind", "load_parameter", "arc_position", "force")},
+        )
+        for pair, contact in result.contacts.items()
+        for event in contact.events
+    ]
+    return tuple(sorted(found, key=lambda event: event.load_parameter))
+
+
+def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> SolidProblem:
+    """Return the `fem_reference.SolidProblem` of `scene`: plane stress, thickness equal to the width, unilateral contact.
+
+    Parameters
+    ----------
+    scene : Scene
+        Any scene whose supports, with the pins that touch at the start, hold every structure.
+    mesh : (int, int), optional
+        Elements along and across of every beam, in place of the scene's.
+
+    Raises
+    ------
+    ValueError
+        If the solid cannot state the scene, in one line.
+    """
+    import fem_reference as fem
+
+    unknown = unstated(scene, "the solid", STRIPS)
+    if unknown is not None:
+        raise ModelError(unknown)
+    joints = _Joints(scene)
+    clamps = {spec.node for spec in scene.all_supports if _is_clamp(scene, spec, joints)}
+    return fem.SolidProblem(
+        strips=tuple(_strip(beam, clamps, mesh) for beam in scene.beams),
+        supports=tuple(
+            _support(scene, spec, joints) for spec in scene.all_supports if spec.node not in clamps
+        ),
+        joints=tuple(joints.stated()),
+        springs=tuple(_springs(scene, joints)),
+        loads=tuple(_end_loads(scene, joints)),
+        inner_loads=tuple(_inner_loads(scene)),
+        pins=tuple(
+            fem.Pin(name=pin.name, path=path, radius=pin.radius or 0.0, onward=tuple(p[1:] for p in onward))
+            for pin in scene.pins
+            for path, *onward in [pin.stage_points]
+        ),
+        contacts=tuple(
+            fem.Contact(strip=item.beam, **{name: getattr(item, name) for name in CONTACT})
+            for item in scene.contacts
+        ),
+    )
+
+
+class _Joints:
+    """The ends that meet, joint by joint, and the hinges among them with the stiffness of their springs."""
+
+    def __init__(self, scene: Scene) -> None:
+        from comparisons.models.shared import joints
+
+        self.meeting = joints(scene)
+        self.hinges = {hinge.node: hinge.stiffness for hinge in scene.hinges}
+
+    def stated(self) -> Iterator[Joint]:
+        """Yield the joints. The first end is one without a hinge, if there is one."""
+        from fem_reference import Joint
+
+        for meeting in self.meeting:
+            first, *others = sorted(meeting, key=lambda end: end in self.hinges)
+            hinged = tuple(end for end in others if end in self.hinges)
+            stiffness = tuple(self.hinges[end] for end in hinged)
+            yield Joint(ends=(first, *others), hinged=hinged, stiffness=stiffness)
+
+    def at(self, node: str) -> list[str]:
+        """Return the ends that meet at one of them."""
+        return next((ends for ends in self.meeting if node in ends), [node])
+
+    def plain(self, node: str) -> str | None:
+        """Return an end without a hinge at the joint of an end."""
+        return next((end for end in self.at(node) if end not in self.hinges), None)
+
+    def turn(self, node: str, kind: str) -> bool:
+        """Whether a condition on the rotation of an end turns with its joint; not where all ends of the joint turn freely in hinges."""
+        if node not in self.hinges:
+            return True
+        plain = self.plain(node)
+        if plain or any(self.hinges[end] for end in self.at(node)):
+            way = (
+                f'state it at "{plain}"' if plain else "use a pinned support and a [[spring]] with a rotation"
+            )
+            raise ModelError(
+                f'the solid model states the rotation of a joint at an end without a hinge, the {kind} "{node}" has one; {way}, or --model tsm'
+            )
+        return False
+
+
+def _is_clamp(scene: Scene, spec: SupportSpec, joints: _Joints) -> bool:
+    """Whether a support clamps the edge itself: it holds a single end at rest that bears no load and no spring.
+
+    Any other support holds the mean displacement and rotation of the end's section.
+    """
+    if len(spec.held) < len(COMPONENTS):
+        return False
+    acting = [load.node for _, load in scene.numbered_loads()] + [spring.node for spring in scene.springs]
+    joined = spec.node in joints.hinges or len(joints.at(spec.node)) > 1
+    if not (joined or scene.prescribed_motions[spec.node].moves or spec.node in acting):
+        return True
+    if scene.beam(spec.beam).solid_clamp == "full":
+        raise ModelError(
+            f'the solid model has a full clamp at rest without joint, load and spring, "{spec.node}" is another; use solid_clamp = "rod"'
+        )
+    return False
+
+
+def _support(scene: Scene, spec: SupportSpec, joints: _Joints) -> Support:
+    """Return a support. Where all ends of its joint turn freely in hinges, it holds no rotation."""
+    from fem_reference import Support
+
+    motion, onward = spec.motion, scene.prescribed_motions[spec.node].increments[1:]
+    if "rotation" in spec.held and not joints.turn(spec.node, "support"):
+        motion = (*motion[:2], None)
+    return Support(strip=spec.beam, end=spec.end, motion=motion, onward=onward)
+
+
+def _springs(scene: Scene, joints: _Joints) -> Iterator[Spring]:
+    from fem_reference import Spring
+
+    for spec in scene.springs:
+        turning = spec.rotation if spec.rotation and joints.turn(spec.node, "spring") else 0.0
+        if any((*spec.stiffness, turning)):
+            yield Spring(strip=spec.beam, end=spec.end, stiffness=(*spec.stiffness, turning))
+
+
+def _end_loads(scene: Scene, joints: _Joints) -> Iterator[EndLoad]:
+    """Yield the forces and moments on the ends; a moment acts on an end without a hinge."""
+    from fem_reference import EndLoad
+
+    for stage, load in scene.numbered_loads():
+        if load.end is None:
+            continue
+        plain = joints.plain(load.node) if load.moment else load.node
+        if plain is None:
+            raise ModelError(
+                f'the solid model states a moment on a joint with an end without a hinge, "{load.node}" has none'
+            )
+        beam, end = (plain if load.node in joints.hinges else load.node).split(".")
+        yield EndLoad(strip=beam, end=end, force=load.force, moment=load.moment, stage=stage)
+
+
+def _inner_loads(scene: Scene) -> Iterator[PointLoad | LineLoad]:
+    """Yield the forces and moments inside the beams and the forces per length, then the weights."""
+    from comparisons.models.shared import weights
+    from fem_reference import LineLoad, PointLoad
+
+    for stage, load in scene.numbered_loads():
+        if load.force_per_length is not None:
+            yield LineLoad(strip=load.beam, force=(load.force_per_length,), part=load.span, stage=stage)
+        elif load.at is not None:
+            yield PointLoad(strip=load.beam, at=load.at, force=load.force, moment=load.moment, stage=stage)
+    for beam, stage, weight in weights(scene):
+        yield LineLoad(strip=beam, force=weight, stage=stage)
+
+
+def rectangle(beam: BeamSpec) -> tuple[float, float]:
+    """Return width and height of a beam's section at the start, or of the rectangle with its area and second moment.
+
+    ``h = sqrt(12 I / A)``, ``b = A / h``.
+
+    Raises
+    ------
+    ModelError
+        If the rectangle is not slender in the plane.
+    """
+    if beam.width is not None and beam.height is not None:
+        return _ends(beam.width)[0], _ends(beam.height)[0]
+    height = beam.rectangle_height
+    if height > SLENDER * beam.length:
+        raise ModelError(
+            f'the solid model needs the width and height of beam "{beam.name}": the rectangle of its area and second '
+            f"moment is {height:.3g} high, more than an eighth of the length"
+        )
+    return beam.cross_section[0] / height, height
+
+
+def _ends(dimension: float | tuple[float, float]) -> tuple[float, float]:
+    """Return a dimension of the section at both ends."""
+    return dimension if isinstance(dimension, tuple) else (dimension, dimension)
+
+
+def _strip(beam: BeamSpec, clamps: set[str], mesh: tuple[int, int] | None) -> Strip:
+    from fem_reference import Strip
+
+    width, height = rectangle(beam)
+    nu = beam.poissons_ratio
+    if nu is None:
+        nu = beam.youngs_modulus / (2.0 * (beam.shear_modulus or beam.youngs_modulus)) - 1.0
+    if not LEAST_RATIO < nu < 0.5:
+        raise ModelError(
+            f"the solid model needs a Poisson's ratio between {LEAST_RATIO:g} and 0.5, E/(2 G) - 1 = {nu:.6g}"
+        )
+    if (mesh or beam.mesh)[0] < 2:
+        raise ModelError("the solid model needs at least 2 elements along the beam")
+    return Strip(
+        name=beam.name,
+        start=beam.start,
+        end=beam.end,
+        turn=beam.turn,
+        height=height,
+        width=width,
+        end_height=beam.height[1] if isinstance(beam.height, tuple) else None,
+        end_width=beam.width[1] if isinstance(beam.width, tuple) else None,
+        youngs_modulus=beam.youngs_modulus,
+        poissons_ratio=nu,
+        clamped=tuple(end for end in ("start", "end") if f"{beam.name}.{end}" in clamps),
+        clamp=beam.solid_clamp,
+        element=beam.solid_element,
+        mesh_file=beam.solid_mesh_file if mesh is None else None,
+        mesh=mesh or beam.mesh,
+        material=beam.material,
+    )
 
 
 SOLID = Solid()

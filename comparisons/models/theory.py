@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from comparisons.models.options import Options
-from comparisons.models.translate.to_solid import rectangle
+from comparisons.models.solid import rectangle
 from comparisons.response import Response
 from comparisons.scene import BeamSpec, Scene
 
@@ -52,10 +52,8 @@ class Bending:
 
     Attributes
     ----------
-    force : float
-        ``F L^2/EI``.
-    curvature : float
-        ``kappa L``.
+    force, curvature : float
+        ``F L^2/EI`` and ``kappa L``.
     turn : float
         Angle by which the contact force turns, equal to the bending angle of the part between clamp and contact [rad].
     nearest : float
@@ -130,9 +128,7 @@ def beam_errors(kind: "ElementType", scene: Scene, options: Options, bent: Bendi
     if not kind.contact_unknowns:
         return {
             f"{order} order of the element": MESH * term,
-            "force normal to the chord, not to the mean tangent of the kink F/GA": slip
-            if kind.sheared
-            else 0.0,
+            "force normal to the chord, not to the mean tangent of the kink F/GA": slip * kind.sheared,
             "stretch left out of the lever arms": stretch,
             "tolerance of Newton's method": FLOOR,
             "round-off of positions, felt by EI/l^3": last_bit / shortest**3 / max(bent.force, 1.0),
@@ -155,17 +151,15 @@ def solid_errors(scene: Scene, options: Options, bent: Bending) -> dict[str, flo
     width, height = rectangle(beam)
     slender = height / beam.length
     strain = slender * bent.curvature / 2
-    contraction = abs(beam.poissons_ratio or 0.0) * strain * slender / 4
+    contraction = CHANGE * (abs(beam.poissons_ratio or 0.0) * strain * slender / 4)
+    kink = bent.force * (length / 2) ** 2 / 12
     penalty = DEFAULT_PENALTY * beam.youngs_modulus * width
     return {
         "a bent strip, softer by 4/5 of the square of its strain": strain**2,
         "shear and dent of a strip of this height": 2 * slender**2,
-        "clamp at the middle of a section that contracts, nu kappa h^2/8 beside the fibre that keeps its length": CHANGE
-        * contraction,
+        "clamp at the middle of a section that contracts, nu kappa h^2/8 beside the fibre that keeps its length": contraction,
         "square of the slope's error in a biquadratic element": MESH * (turn**2 / 12) ** 2,
-        "kink of the curvature at the contact, F/EI, rounded by the axis's spline": bent.force
-        * (length / 2) ** 2
-        / 12,
+        "kink of the curvature at the contact, F/EI, rounded by the axis's spline": kink,
         "default penalty": MESH * bent.force * beam.EI / beam.length**3 / penalty,
         "tolerance of Newton's method": FLOOR,
     }

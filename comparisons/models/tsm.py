@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import nan
-from typing import TYPE_CHECKING
+from functools import cache
+from itertools import accumulate
+from math import hypot, nan, sqrt
+from typing import TYPE_CHECKING, Any
 
-from comparisons.models.base import Model, Style
+from comparisons.models.base import Model, Style, counted
 from comparisons.models.options import ModelError, Options
-from comparisons.scene.keys import BEAMS
+from comparisons.models.progress import Reached, Watch
+from comparisons.scene.keys import BEAMS, unstated
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
-    from comparisons.models.progress import Watch
     from comparisons.models.theory import Bending
-    from comparisons.response import Response
-    from comparisons.scene import Scene
+    from comparisons.response import Grid, Response
+    from comparisons.scene import BeamSpec, ContactSpec, Scene
+    from comparisons.scene.stages import PrescribedMotion
+    from tsm import Beam, ContactPair, LineLoad, Load, Structure, Support
     from tsm.elements import ElementType
+    from tsm.structure import End
 
 
 class Tsm(Model):
@@ -65,15 +70,11 @@ class Tsm(Model):
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why beams cannot state `scene`; None if they can."""
-        from comparisons.models.translate import beams_refusal
-
         return beams_refusal(scene)
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked."""
-        from comparisons.models.discrete import solve_tsm
-
-        return solve_tsm(scene, options, self.element(options), watch)
+        return _solved(scene, options, self.element(options), watch)
 
     def styles(self) -> dict[str, Style]:
         """Return one style for every type of element."""
@@ -86,9 +87,7 @@ class Tsm(Model):
 
     def run_label(self, options: Options) -> str:
         """Return the label of one run, as ``TSM mixed, 20 elements``."""
-        count = options.elements
-        words = "" if count is None else f", {count} element{'s' if count > 1 else ''}"
-        return f"{self.label} {self.element(options).name}{words}"
+        return f"{self.label} {self.element(options).name}{counted(options.elements)}"
 
     def setting(self, scene: Scene, options: Options) -> str:
         """Return element type, numbers of elements and tolerance, as ``mixed 20``."""
@@ -103,10 +102,6 @@ class Tsm(Model):
         """Return the type of the elements, as ``TSM mixed``."""
         del scene
         return f"{self.label} {self.element(options).name}"
-
-    def resolution(self, options: Options) -> float:
-        """Return the number of elements of a beam; nan where the scene gives the number."""
-        return nan if options.elements is None else float(options.elements)
 
     def compared(self) -> tuple[Options, ...]:
         """Return the paper's element, the recommended one, and the exact one."""
@@ -135,6 +130,256 @@ class Tsm(Model):
         from comparisons.models.theory import beam_errors
 
         return beam_errors(self.element(options), scene, options, bent)
+
+
+def _solved(scene: Scene, options: Options, kind: ElementType, watch: Watch) -> Response:
+    """Return the response of the tangent stiffness method; a tolerance is for elements that integrate."""
+    import numpy as np
+
+    import tsm
+    from comparisons.models.shared import history, of_result, rows
+    from comparisons.response import ContactEvent, Deformation, FrictionHistory, Sections
+
+    structure = to_structure(scene, elements=options.elements, element=kind.name)
+    settings, tolerance = tsm.Settings(branch=options.branch or "stop"), options.integration_tolerance
+    if tolerance is not None:
+        if kind.meshed:
+            integrated = ", ".join(name for name, other in tsm.ELEMENTS.items() if not other.meshed)
+            raise ModelError(f"integration_tolerance = {tolerance:g}: belongs to element = {integrated}")
+        settings = replace(settings, integration_tolerance=tolerance)
+    try:
+        result = tsm.solve(structure, np.array(scene.times), settings, watch=_reporter(structure, watch))
+    except tsm.SolveError as error:
+        result = error.result
+
+    def sections(beam: str, k: int) -> Sections:
+        stations = result.stations(beam, k)
+        N, V, M = stations.forces.reshape(-1, 3).T
+        return Sections(arc=stations.arc.ravel(), N=N, V=V, M=M)
+
+    slipped = {
+        event.pair: event.load_parameter for event in reversed(result.events) if event.kind.name == "SLIP_OFF"
+    }
+    contacts = {
+        pair: history(
+            item,
+            slip_off=slipped.get(pair, nan),
+            vector=rows([state.system.forces.get(number, (0.0, 0.0)) for state in result.equilibria], 2),
+            friction=None if item.friction is None else FrictionHistory(**vars(item.friction)),
+        )
+        for number, (pair, item) in enumerate(result.contacts.items())
+    }
+    events = [
+        ContactEvent(**(vars(event) | {"kind": event.kind.value, "element": int(event.element)}))
+        for event in result.events
+    ]
+    return of_result(
+        TSM,
+        scene,
+        result,
+        cache(result.axis_line),
+        lambda beam, k: result.shape(beam, k)[:, :2],
+        grid=lambda k: _grid(scene, result, k),
+        contacts=contacts,
+        events=tuple(events),
+        integration_error=result.integration_error,
+        work=result.work if result.model.rubbed else None,
+        deformation=None if result.deformation is None else Deformation(**vars(result.deformation)),
+        sections=sections,
+    )
+
+
+def _reporter(structure: Structure, watch: Watch) -> Callable[[Any], None]:
+    """Return a function that passes accepted steps on to `watch`; elements are counted from 1."""
+    counts = {beam.name: beam.elements for beam in structure.beams}
+    first = dict(zip(counts, accumulate(counts.values(), initial=0), strict=False))
+
+    def report(step: Any) -> None:
+        state = step.equilibrium.state
+        touching = tuple(
+            f"{pair.name} on element {touch.element - first[pair.beam] + 1} of {counts[pair.beam]}"
+            for pair, touch in zip(structure.contacts, state.touches, strict=True)
+            if touch is not None
+        )
+        watch(Reached(state.load_parameter, step.iterations, touching))
+
+    return report
+
+
+def _grid(scene: Scene, result: Any, k: int) -> Grid:
+    """Return the elements as lines. Elements do not share points, because section forces jump at a contact.
+
+    The field `arc` is the distance along the undeformed axis. Axial stresses are given at
+    the right and the left face, seen along the beam. `height` is 0 where the section has no height.
+    """
+    import numpy as np
+
+    from comparisons.response import Grid
+
+    parts = []
+    for number, beam in enumerate(scene.beams):
+        stations = result.stations(beam.name, k)
+        arc, deformed = stations.arc.ravel(), stations.position.reshape(-1, 2)
+        places = [(beam.place(part), beam.section(part), beam.height_at(part)) for part in arc / beam.length]
+        reference, section, height = (np.array(column) for column in zip(*places, strict=True))
+        area, inertia, _ = section.T
+        N, V, M = stations.forces.reshape(-1, 3).T
+        part = {"reference": reference, "displacement": deformed - reference, "deformed": deformed}
+        part |= {"rotation": stations.rotation.ravel(), "N": N, "V": V, "M": M}
+        part |= {"beam": np.full(len(arc), number), "arc": arc, "height": height}
+        part["axial_stress_right"] = N / area + M * height / (2.0 * inertia)
+        part["axial_stress_left"] = N / area - M * height / (2.0 * inertia)
+        parts.append(part)
+    data = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    points = data.pop("reference")
+    return Grid(points=points, cells={"line": np.arange(len(points)).reshape(-1, 2)}, point_data=data)
+
+
+def to_structure(scene: Scene, *, elements: int | None = None, element: str | None = None) -> Structure:
+    """Return the `tsm.Structure` of `scene`: sections on the axis, rigid joints, dead loads.
+
+    Parameters
+    ----------
+    scene : Scene
+        Any scene.
+    elements : int, optional
+        Elements of every beam. By default the scene's number, or one exact element.
+    element : str, optional
+        Key of `tsm.ELEMENTS`, `mixed` if not given.
+
+    Raises
+    ------
+    ModelError
+        If there is no such element, or the scene uses a key that the beams do not state.
+    """
+    import tsm
+
+    refused = beams_refusal(scene)
+    if refused is not None:
+        raise ModelError(refused)
+    kind = TSM.element(Options(element=element))
+    return tsm.Structure(
+        beams=tuple(_beam(scene, beam, elements, kind) for beam in scene.beams),
+        supports=tuple(_support(motion) for motion in scene.prescribed_motions.values()),
+        loads=tuple(_loads(scene)),
+        line_loads=tuple(_line_loads(scene)),
+        hinges=tuple(
+            tsm.Hinge(beam=item.beam, end=_end(item.end), stiffness=item.stiffness) for item in scene.hinges
+        ),
+        springs=tuple(
+            tsm.Spring(beam=item.beam, end=_end(item.end), x=x, y=y, rotation=item.rotation)
+            for item in scene.springs
+            for x, y in [item.stiffness]
+        ),
+        pins=tuple(
+            tsm.Pin(name=pin.name, path=path, onward=tuple(points[1:] for points in onward))
+            for pin in scene.pins
+            for path, *onward in [pin.stage_points]
+        ),
+        contacts=tuple(_pair(scene, contact) for contact in scene.contacts),
+    )
+
+
+def beams_refusal(scene: Scene) -> str | None:
+    """Return why no element of the tangent stiffness method states `scene`; None if one does."""
+    for contact in scene.contacts:
+        if contact.friction and _face_slope(scene, contact):
+            return (
+                f"contact {contact.pair}: the tangent stiffness method does not state friction on the face of a beam whose height tapers; "
+                'use --model solid, surface = "axis" or one height'
+            )
+    return unstated(scene, "the tangent stiffness method", BEAMS)
+
+
+def _face_slope(scene: Scene, contact: ContactSpec) -> float:
+    """Derivative of the radius of the circles whose envelope is the face, ``h'/2 / sqrt(1 + (h'/2)^2)``."""
+    beam = scene.beam(contact.beam)
+    steep = (beam.height_at(1.0) - beam.height_at(0.0)) / (2.0 * beam.length)
+    return steep / hypot(1.0, steep) if contact.surface == "face" else 0.0
+
+
+def _pair(scene: Scene, contact: ContactSpec) -> ContactPair:
+    """Contact pair. The face of a beam whose height tapers lies at half the height from the undeformed axis, see `_face_slope`."""
+    from tsm import ContactPair
+
+    steep, beam, radius = _face_slope(scene, contact), scene.beam(contact.beam), scene.radius(contact)
+    tapered = radius + beam.height_at(0.0) / 2.0 * sqrt(1.0 - steep**2)
+    offset = tapered if steep else scene.offset(contact)
+    return ContactPair(
+        node=contact.node,
+        beam=contact.beam,
+        side="left" if contact.side == "left" else "right",
+        offset=offset,
+        end_offset=offset + steep * beam.length if steep else None,
+        keep=contact.keep,
+        friction=contact.friction,
+        radius=radius,
+    )
+
+
+def _support(motion: PrescribedMotion) -> Support:
+    from tsm import Support
+
+    spec, onward = motion.support, motion.increments[1:]
+    ux, uy, rotation = spec.motion
+    return Support(beam=spec.beam, end=_end(spec.end), ux=ux, uy=uy, rotation=rotation, onward=onward)
+
+
+def _beam(scene: Scene, spec: BeamSpec, elements: int | None, kind: ElementType) -> Beam:
+    """Beam with nodes where loads inside it begin, end or act."""
+    from tsm import Beam, Section
+
+    def section(fraction: float) -> Section:
+        EA, GA, EI = spec.stiffness(fraction)
+        return Section(EA=EA, GA=GA, EI=EI)
+
+    nodes = spec.nodes if kind.meshed and not elements else ()
+    count = elements or (len(nodes) + 1 if nodes else spec.elements if kind.meshed else 1)
+    own = [load for _, load in scene.numbered_loads() if load.beam == spec.name]
+    ends = [part for load in own if load.force_per_length is not None for part in load.span]
+    places = [load.at for load in own if load.at is not None]
+    return Beam(
+        name=spec.name,
+        start=spec.start,
+        end=spec.end,
+        section=section(0.0 if spec.tapers else 0.5),
+        end_section=section(1.0) if spec.tapers else None,
+        turn=spec.turn,
+        elements=count,
+        element=kind.name,
+        nodes=nodes,
+    ).divided(*(part * spec.length for part in (*ends, *places)))
+
+
+def _end(end: str | None) -> End:
+    return "start" if end == "start" else "end"
+
+
+def _loads(scene: Scene) -> Iterator[Load]:
+    """Yield the forces and moments at points."""
+    from tsm import Load
+
+    for stage, load in scene.numbered_loads():
+        force, moment = load.force, load.moment
+        if load.at is not None:
+            arc = load.at * scene.beam(load.beam).length
+            yield Load(beam=load.beam, arc=arc, force=force, moment=moment, stage=stage)
+        elif load.end is not None:
+            yield Load(beam=load.beam, end=_end(load.end), force=force, moment=moment, stage=stage)
+
+
+def _line_loads(scene: Scene) -> Iterator[LineLoad]:
+    """Yield the forces per length, then the weights."""
+    from comparisons.models.shared import weights
+    from tsm import LineLoad
+
+    for stage, load in scene.numbered_loads():
+        if load.force_per_length is not None:
+            start, end = (part * scene.beam(load.beam).length for part in load.span)
+            force = (load.force_per_length,)
+            yield LineLoad(beam=load.beam, force=force, start=start, end=end, stage=stage)
+    for beam, stage, weight in weights(scene):
+        yield LineLoad(beam=beam, force=weight, stage=stage)
 
 
 TSM = Tsm()

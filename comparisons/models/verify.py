@@ -35,30 +35,16 @@ MOTION = 1e-10
 def verified(response: Response, scene: Scene) -> Response:
     """Return `response`; a response that breaks a check has the status ``CHECK_FAILED`` and the reason.
 
-    A response that stopped early is checked only for elements that are bent too much and for numbers below the round-off.
+    A path with unstable equilibria is not completed, and has the status ``UNSTABLE``. A response that stopped early is checked only for elements that are bent too much and for numbers below the round-off.
     """
-    if response.completed:
-        reason = next(failures(response, scene), None)
-        return _labelled(response) if reason is None else _failed(response, reason)
-    reason = next(unresolved(response, scene), None)
-    return (
-        response
-        if reason is None
-        else _failed(response, f"{reason}; then {response.status}: {response.message}")
-    )
-
-
-def _labelled(response: Response) -> Response:
-    """Return `response`, marked as not completed if its path has unstable equilibria."""
-    if response.index is None or not np.any(response.index > 0):
+    reason = next((failures if response.completed else unresolved)(response, scene), None)
+    if reason is not None:
+        stop = "" if response.completed else f"; then {response.status}: {response.message}"
+        return replace(response, status=CHECK_FAILED, message=reason + stop, completed=False)
+    if not response.completed or response.index is None or not np.any(response.index > 0):
         return response
-    unstable = response.index > 0
-    sentence = f"the equilibrium is unstable {_first(unstable, response)} and may be so beyond"
+    sentence = f"the equilibrium is unstable {_first(response.index > 0, response)} and may be so beyond"
     return replace(response, status=UNSTABLE, message=sentence, completed=False)
-
-
-def _failed(response: Response, reason: str) -> Response:
-    return replace(response, status=CHECK_FAILED, message=reason, completed=False)
 
 
 def failures(response: Response, scene: Scene) -> Iterator[str]:
@@ -126,12 +112,10 @@ def _numbers(response: Response) -> Iterator[tuple[str, Array]]:
         yield f"force of {pair}", contact.force
         yield f"arc position of {pair}", contact.arc_position[closed]
         yield f"gap of {pair}", contact.gap[closed]
-    for node, support in response.supports.items():
-        yield f"support force of {node}", support.force
-        yield f"support moment of {node}", support.moment
-    for end, spring in response.springs.items():
-        yield f"spring force of {end}", spring.force
-        yield f"spring moment of {end}", spring.moment
+    for kind, held in (("support", response.supports), ("spring", response.springs)):
+        for node, item in held.items():
+            yield f"{kind} force of {node}", item.force
+            yield f"{kind} moment of {node}", item.moment
     for beam, tip in response.tips.items():
         yield f"tip of {beam}", tip
 

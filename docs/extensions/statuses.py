@@ -4,8 +4,8 @@ from enum import Enum
 
 import fem_reference
 import tsm
-from comparisons.models import exact, rod_friction
-from comparisons.models.outside.status import ProgramStatus
+from comparisons.models.cantilever import STOPS
+from comparisons.models.outside.child import ProgramStatus
 from comparisons.referee import Verdict
 from docs.extensions.markdown import table, text
 
@@ -30,7 +30,6 @@ CASES = {
 
 def page() -> str:
     """Return the statuses by where they come from."""
-    exact_rods = {**exact.STOPS, **{state.name: reason for state, reason in rod_friction.STOPS.items()}}
     return (
         "\n\n".join(
             f"### {title}\n\n"
@@ -38,7 +37,7 @@ def page() -> str:
             for title, rows in (
                 ("Beams", _sentences(tsm.Status)),
                 ("Solid", _sentences(fem_reference.Status)),
-                ("Exact rods", exact_rods),
+                ("Exact rods", STOPS),
                 ("Checks, certificates and commands", CHECKS),
                 ("Programs of others", _sentences(ProgramStatus)),
                 ("Cases and adapters", CASES),

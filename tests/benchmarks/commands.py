@@ -21,7 +21,8 @@ from comparisons.cli import main
 from comparisons.errors import difference
 from comparisons.models import solve
 from comparisons.models.options import Options
-from comparisons.models.translate import to_solid, to_structure
+from comparisons.models.solid import to_solid
+from comparisons.models.tsm import to_structure
 from comparisons.scene import load_scene
 from tests.benchmarks.measure import Gate, children
 
@@ -97,7 +98,7 @@ import resource
 import numpy as np
 import fem_reference
 from comparisons.scene import load_scene
-from comparisons.models.translate import to_solid
+from comparisons.models.solid import to_solid
 fem_reference.solve(to_solid(load_scene("ks-cantilever"), mesh=(1000, 20)), np.array([0.02]))
 print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 """

@@ -8,7 +8,8 @@ from scipy.sparse.linalg import splu
 
 import fem_reference
 import tsm
-from comparisons.models.translate import to_solid, to_structure
+from comparisons.models.solid import to_solid
+from comparisons.models.tsm import to_structure
 from comparisons.scene import load_scene
 
 # not public: one iteration, one assembly and one factorisation, which no solution gives apart

@@ -10,8 +10,8 @@ from scipy.optimize import brentq
 from comparisons.cli import main
 from comparisons.exact import rod_under_pin
 from comparisons.models import solve
+from comparisons.models.cantilever import to_rod
 from comparisons.models.options import Options
-from comparisons.models.translate import to_rod
 from comparisons.response import Response
 from comparisons.scene import (
     BeamSpec,

@@ -9,7 +9,7 @@ import pytest
 
 from comparisons.models import MODELS, TSM, Model, certified, find, solve
 from comparisons.models.options import ModelError, Options
-from comparisons.models.translate import to_solid
+from comparisons.models.solid import to_solid
 from comparisons.response import Response
 from comparisons.scene import LoadSpec, PinSpec, Scene, SpringSpec, SupportSpec, load_scene, read_scene
 from tests.problems import PROBLEMS, RUNS

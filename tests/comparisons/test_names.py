@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[2]
 NAMES = {*MODELS, *tsm.ELEMENTS}
 REGISTRIES = (
     "tsm/elements/kinds/",
-    *(f"comparisons/models/{name}.py" for name in ("registry", "tsm", "solid", "rod")),
+    *(f"comparisons/models/{name}.py" for name in ("registry", "tsm", "solid", "rod", "elastica")),
 )
 OTHER_WORDS = {
     "comparisons/scene/beam.py": "a material law of the solid is called rod",

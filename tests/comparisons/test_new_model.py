@@ -1,6 +1,7 @@
 """A new model is one file and one name in the registry, or an entry point of another package: every command then has it."""
 
 import json
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -68,9 +69,9 @@ def registered(tmp_path_factory: pytest.TempPathFactory) -> Path:
     package = shutil.copytree(Path(comparisons.__file__).parent, folder / "comparisons")
     (package / "models" / "chain.py").write_text(CHAIN)
     registry = package / "models" / "registry.py"
-    listed = 'FILES = ("tsm", "solid", "rod")'
-    assert listed in registry.read_text()
-    registry.write_text(registry.read_text().replace(listed, 'FILES = ("tsm", "solid", "rod", "chain")'))
+    listed, count = re.subn(r"^(FILES = .*)\)$", r'\1, "chain")', registry.read_text(), flags=re.MULTILINE)
+    assert count == 1
+    registry.write_text(listed)
     (folder / "study.toml").write_text(STUDY)
     return folder
 

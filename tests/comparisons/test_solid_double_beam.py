@@ -8,7 +8,7 @@ import pytest
 import fem_reference
 from comparisons.models import solve
 from comparisons.models.options import Options
-from comparisons.models.translate import to_solid
+from comparisons.models.solid import to_solid
 from comparisons.scene import Scene, load_scene
 
 AXIS = load_scene("double-beam")

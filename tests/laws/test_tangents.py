@@ -4,7 +4,8 @@ import pytest
 
 import fem_reference
 import tsm
-from comparisons.models.translate import to_solid, to_structure
+from comparisons.models.solid import to_solid
+from comparisons.models.tsm import to_structure
 from tests.laws.scenes import ELEMENTS, scene, states
 
 LOOSE, SHARP = 1e-5, 1e-9

@@ -10,7 +10,7 @@ import pytest
 
 import tsm
 from comparisons.claims.manual.measures import under_load  # a frame of the manual
-from comparisons.models.translate import to_structure
+from comparisons.models.tsm import to_structure
 from comparisons.scene import load_scene
 from tests.tsm.structures import beam, steps
 

@@ -4,7 +4,7 @@ import numpy as np
 
 import tsm
 from comparisons.exact import rod_under_pin
-from comparisons.models.translate import to_structure
+from comparisons.models.tsm import to_structure
 from comparisons.scene import load_scene
 from tests.tsm import structures
 

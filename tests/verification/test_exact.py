@@ -11,7 +11,7 @@ import tsm
 from comparisons.claims.problems import double_beam
 from comparisons.models import solve as solve_scene
 from comparisons.models.options import Options
-from comparisons.models.translate import to_structure
+from comparisons.models.tsm import to_structure
 from comparisons.scene import load_scene
 from tests.oracles.coupled import pair_of
 from tests.tsm.structures import KS_PATH, essentials, raised, steps

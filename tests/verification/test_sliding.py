@@ -10,7 +10,7 @@ from comparisons.claims.problems import double_beam
 from comparisons.errors import errors
 from comparisons.models import solve
 from comparisons.models.options import Options
-from comparisons.models.translate import to_structure
+from comparisons.models.tsm import to_structure
 from comparisons.scene import load_scene
 from tests.oracles.coupled import pair_of
 from tests.tsm.structures import KS_PATH, kinds, raised, steps

@@ -10,7 +10,8 @@ from comparisons.claims.claim import StoppedError
 from comparisons.claims.manual.problem import Curve, Measured, Problem, Trial
 from comparisons.claims.manual.read import ANSWER, answered, deflected, pieces, undeformed
 from comparisons.models import ROD, SOLID
-from comparisons.models.translate import to_solid, to_structure
+from comparisons.models.solid import to_solid
+from comparisons.models.tsm import to_structure
 from comparisons.response import Array, Response
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene
 

@@ -18,7 +18,7 @@ from comparisons.claims.paper.approach import NEAREST, approaches
 from comparisons.claims.paper.figure_study import Study, column, legend, panels
 from comparisons.claims.paper.force_floor import force_floor
 from comparisons.claims.paper.formulations import CANTILEVER, LABELS, SIMPLE, TIMOSHENKO, line
-from comparisons.models.translate import to_structure
+from comparisons.models.tsm import to_structure
 from comparisons.output import Report, Row
 from comparisons.scene import Scene, load_scene
 from comparisons.show.plot import WIDTH, figure, save

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from comparisons.models import ROD
-from comparisons.models.outside.calculix import Answer, pressed, tip_load
-from comparisons.models.translate import to_solid
+from comparisons.models.outside.adapters.calculix import Answer, pressed, tip_load
+from comparisons.models.solid import to_solid
 from comparisons.output import Report, Row
 from comparisons.response import Array
 from comparisons.scene import load_scene

@@ -9,7 +9,7 @@ import numpy as np
 from comparisons.cases.settings import changed
 from comparisons.claims.solid.peers import PENETRATION, peers, solved
 from comparisons.models import ROD, solve
-from comparisons.models.translate import to_solid
+from comparisons.models.solid import to_solid
 from comparisons.output import Report, Row
 from comparisons.response import Array
 from comparisons.scene import Scene, load_scene

@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from comparisons.files import one_line
 from comparisons.models.options import ModelError
-from comparisons.models.outside.status import ProgramError, ProgramStatus
+from comparisons.models.outside.child import ProgramError, ProgramStatus
 from comparisons.models.verify import CHECK_FAILED
 from comparisons.referee.certificate import Verdict
 from comparisons.response import ContactHistory, Response, SupportHistory
-from comparisons.response.axis import SampledAxes, axis_grid, no_grid
+from comparisons.response.axis import SampledAxes, axis_grid
 from comparisons.response.from_json import KEYS, NotFiniteError, contradictions, once, restated
+from comparisons.response.record import unanswered
 from comparisons.scene import Scene
 from comparisons.scene.rules import FieldError
 from comparisons.scene.tables import check_keys
@@ -37,8 +38,10 @@ def refusal(output: bytes) -> str | None:
         data = _parsed(output)
     except ProgramError:
         return None
-    if data.get("status") != REFUSED:
-        return None
+    return _reason(data) if data.get("status") == REFUSED else None
+
+
+def _reason(data: dict[str, Any]) -> str:
     return one_line(data.get("message") or "no reason given")
 
 
@@ -66,11 +69,10 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
     ProgramError
         If the output is no response to the scene.
     """
-    reason = refusal(output)
-    if reason is not None:
-        raise ModelError(reason)
     data = _parsed(output)
     status = data.get("status")
+    if status == REFUSED:
+        raise ModelError(_reason(data))
     reported = status == COMPLETED
     try:
         for mistake in check_keys(data, KEYS, required=("status",)):
@@ -102,26 +104,19 @@ def silent(
 ) -> Response:
     """Return a response without any load parameter, which states why there is none."""
     none, pairs = np.empty(0), np.empty((0, 2))
-    return Response(
+    return replace(
+        unanswered(status, one_line(message)),
         model=model,
         scene=scene.name,
-        status=status,
-        message=one_line(message),
-        completed=False,
         outside=True,
         reported_success=reported_success,
-        load_parameter=none,
         contacts={
             spec.pair: ContactHistory(force=none, arc_position=none, gap=none) for spec in scene.contacts
         },
         supports={spec.node: SupportHistory(force=pairs, moment=none) for spec in scene.all_supports},
         tips={beam.name: pairs for beam in scene.beams},
-        newton_iterations=np.empty(0, dtype=np.int64),
-        cutbacks=0,
-        unknowns=0,
         wall_seconds=0.0,
         axis_line=SampledAxes(arc_length={}, position={}),
-        grid=no_grid,
     )
 
 
@@ -148,19 +143,14 @@ def _check_status(status: object) -> None:
 
 def _defaults(data: dict[str, Any], scene: Scene, seconds: float) -> dict[str, Any]:
     """Return the tables of the program with the items that follow from them or from the scene."""
-    more: dict[str, Any] = {
-        "scene": scene.name,
-        "message": "as the program reports",
-        "contacts": {},
-        "wall_seconds": seconds,
-    }
+    more: dict[str, Any] = {"scene": scene.name, "message": "as the program reports", "contacts": {}}
     axes = data.get("axes")
     if isinstance(axes, dict) and "tips" not in data:
         more["tips"] = {
             beam.name: _ends(axes.get(beam.name), -1 if scene.tip(beam.name) == "end" else 0)
             for beam in scene.beams
         }
-    return {**more, **data}
+    return {**more, "wall_seconds": seconds, **data}
 
 
 def _ends(axis: Any, end: int) -> Any:

@@ -9,12 +9,12 @@ import tempfile
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from enum import Enum
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from comparisons.files import printable
-from comparisons.models.outside.status import ProgramError, ProgramStatus
+from comparisons.files import one_line, printable
 
 LARGEST_OUTPUT = 200_000_000
 """Largest size of what a program writes [byte]."""
@@ -32,6 +32,51 @@ ADOPT = 36
 """PR_SET_CHILD_SUBREAPER: a process becomes the parent of its descendants whose own parents have ended."""
 ROUNDS = 20
 """How often the processes that a program leaves behind are looked for and ended."""
+
+
+class ProgramStatus(Enum):
+    """How the run of another program failed; the value is the meaning."""
+
+    NOT_STARTED = "the program cannot be started"
+    CRASHED = "the program ended with an exit status other than 0, or by a signal"
+    TIMED_OUT = "the program ran longer than its limit and was ended"
+    OUT_OF_MEMORY = "the program took more memory than its limit and was ended"
+    TOO_MUCH_OUTPUT = "the program wrote more than 200 MB and was ended"
+    INVALID_JSON = "the output is not JSON, or it is cut off"
+    INVALID_RESPONSE = "the output is JSON, but no response to the scene: a key, a name or a shape is wrong"
+    NOT_FINITE = "a number of the response is missing or not finite"
+
+
+class ProgramError(Exception):
+    """The run of another program gave no answer.
+
+    Attributes
+    ----------
+    status : ProgramStatus
+        What failed.
+    reported_success : bool
+        Whether the program stated success all the same.
+    """
+
+    def __init__(self, status: ProgramStatus, message: str, *, reported_success: bool = False) -> None:
+        super().__init__(one_line(message))
+        self.status, self.reported_success = status, reported_success
+
+
+class CalculixError(RuntimeError):
+    """CalculiX is not installed, took too long or stopped early; the message is one line.
+
+    Attributes
+    ----------
+    reason : str
+        The message without the program's name.
+    started : bool
+        Whether CalculiX ran.
+    """
+
+    def __init__(self, reason: str, *, started: bool = False) -> None:
+        super().__init__(f"CalculiX {reason}")
+        self.reason, self.started = reason, started
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,19 +127,9 @@ def run(command: Sequence[str], folder: Path, text: str, limits: Limits) -> tupl
         given.write_text(text, encoding="utf-8")
         began = perf_counter()
         with given.open("rb") as stdin, out.open("wb") as stdout, err.open("wb") as stderr:
-            code = _finished(
-                [program, *command[1:]],
-                {
-                    "cwd": folder,
-                    "stdin": stdin,
-                    "stdout": stdout,
-                    "stderr": stderr,
-                    "env": environment(limits.environment),
-                    "start_new_session": True,
-                },
-                (out, err),
-                limits,
-            )
+            streams = {"stdin": stdin, "stdout": stdout, "stderr": stderr, "cwd": folder}
+            streams |= {"env": environment(limits.environment), "start_new_session": True}
+            code = _finished([program, *command[1:]], streams, (out, err), limits)
         seconds = perf_counter() - began
         if code:
             words = _tail(err) or _tail(out) or "no message"

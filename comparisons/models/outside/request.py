@@ -5,8 +5,14 @@ from collections.abc import Sequence
 from typing import Any
 
 from comparisons.models.options import ModelError, Options
+from comparisons.models.shared import joints
 from comparisons.scene import BeamSpec, Scene
 from comparisons.scene.keys import PROGRAMS, unstated
+
+BEAM = "name start end length direction EA GA EI youngs_modulus width height"
+SUPPORT, LOAD = "node beam end motion", "node beam end force moment"
+CONTACT = "pair node beam side keep friction"
+"""What a program gets of each record of a scene as it is."""
 
 
 def request(scene: Scene, options: Options, load_parameters: Sequence[float]) -> str:
@@ -29,26 +35,14 @@ def request(scene: Scene, options: Options, load_parameters: Sequence[float]) ->
     unknown = unstated(scene, "the resolved scene", PROGRAMS)
     if unknown is not None:
         raise ModelError(unknown)
-    data: dict[str, Any] = {
+    data = {
         "name": scene.name,
         "units": scene.units,
         "load_parameters": list(load_parameters),
         "beams": [_beam(scene, beam, options) for beam in scene.beams],
         "joints": joints(scene),
-        "supports": [
-            {"node": item.node, "beam": item.beam, "end": item.end, "motion": item.motion}
-            for item in scene.all_supports
-        ],
-        "loads": [
-            {
-                "node": item.node,
-                "beam": item.beam,
-                "end": item.end,
-                "force": item.force,
-                "moment": item.moment,
-            }
-            for item in scene.loads
-        ],
+        "supports": [_kept(item, SUPPORT) for item in scene.all_supports],
+        "loads": [_kept(item, LOAD) for item in scene.loads],
         "pins": [
             {
                 "name": pin.name,
@@ -59,47 +53,20 @@ def request(scene: Scene, options: Options, load_parameters: Sequence[float]) ->
             }
             for pin in scene.pins
         ],
-        "contacts": [
-            {
-                "pair": item.pair,
-                "node": item.node,
-                "beam": item.beam,
-                "side": item.side,
-                "offset": scene.offset(item),
-                "keep": item.keep,
-                "friction": item.friction,
-            }
-            for item in scene.contacts
-        ],
+        "contacts": [_kept(item, CONTACT) | {"offset": scene.offset(item)} for item in scene.contacts],
     }
     return json.dumps(data, allow_nan=False, indent=1) + "\n"
 
 
-def joints(scene: Scene) -> list[list[str]]:
-    """Return the ends of beams that are rigidly joined, as ``column.end``, one list for each joint."""
-    places: dict[tuple[float, float], list[str]] = {}
-    for beam in scene.beams:
-        places.setdefault(beam.start, []).append(f"{beam.name}.start")
-        places.setdefault(beam.end, []).append(f"{beam.name}.end")
-    return [ends for ends in places.values() if len(ends) > 1]
+def _kept(record: object, names: str) -> dict[str, Any]:
+    return {name: getattr(record, name) for name in names.split()}
 
 
 def _beam(scene: Scene, beam: BeamSpec, options: Options) -> dict[str, Any]:
     area, second_moment, shear_area = beam.cross_section
-    return {
-        "name": beam.name,
-        "start": beam.start,
-        "end": beam.end,
-        "length": beam.length,
-        "direction": beam.direction,
+    return _kept(beam, BEAM) | {
         "tip": scene.tip(beam.name),
-        "EA": beam.EA,
-        "GA": beam.GA,
-        "EI": beam.EI,
-        "youngs_modulus": beam.youngs_modulus,
         "shear_modulus": beam.GA / shear_area,
-        "width": beam.width,
-        "height": beam.height,
         "area": area,
         "second_moment": second_moment,
         "shear_area": shear_area,

@@ -1,15 +1,42 @@
 """CalculiX: a clamped strip of quadratic bricks in plane stress, under a transverse load at its end or a sharp pin on its face.
 
-The contact is a penalty between the pin and the face. CalculiX goes on without contact where the pin slips through the face, and
-reports success.
+CalculiX replaces its plane elements by bricks with tied faces. Its input here states the bricks directly, so that nothing is tied.
+The bricks fill the half of a thin slab above the middle plane. Nodes on the middle plane are held in the direction of the thickness,
+and the upper face is free. The modulus is ``E b / w``, so that the half slab of thickness w carries the forces of the whole strip
+of width b.
+
+- With ``NLGEOM``, ``*ELASTIC`` is linear between Green's strain and the second Piola-Kirchhoff stress. This is the law of
+  St. Venant and Kirchhoff, to the seven digits that CalculiX prints.
+- CalculiX takes a residual force below 1e-6 for zero, whatever the units. Forces are therefore stated in 1e-5 EI/L^2.
+- A number has at most twenty characters.
+- The contact is a penalty between the pin and the face. CalculiX goes on without contact where the pin slips through the face, and
+  reports success.
 """
 
+import re
+import shutil
+import subprocess
+import tempfile
+from collections import defaultdict
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from comparisons.models.outside.adapters.exchange import Histories, StoppedError, Table, refined, serve
 from comparisons.models.outside.adapters.strip import axes, foot, one_strip, way
+from comparisons.models.outside.child import CalculixError, environment
+
+if TYPE_CHECKING:
+    from fem_reference import Strip
+
+Array = NDArray[Any]
+Point = tuple[float, float]
+Tables = dict[tuple[str, str], list[list[list[float]]]]
+"""Printed rows of three components, one table for each increment, by ``displacements`` or ``forces`` and the node set."""
 
 ACROSS = 2
 """Elements over the height."""
@@ -17,6 +44,20 @@ LOAD_STEPS, PIN_STEPS = 20, 200
 """Least numbers of steps of a load and of a pin's way."""
 PENALTY = 7e4
 """Contact stiffness, over EI/L^3."""
+THINNESS = 0.01
+"""Thickness w of the half slab over the strip's height."""
+_CORNERS = ((0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2))
+_BARS = ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7))
+_FACE = np.array([[-1.0, 4.0, -1.0], [4.0, 0.0, 4.0], [-1.0, 4.0, -1.0]]) / 12
+"""Consistent nodal forces of a unit force that is spread evenly over a face with eight nodes."""
+_CONTROLS = ("*CONTROLS, PARAMETERS=FIELD", "1.E-6,1.E-8")
+_PRINT = (
+    "*NODE PRINT, NSET=TIP", "U", "*NODE PRINT, NSET=AXIS", "U", "*NODE PRINT, NSET=CLAMP", "U,RF", "*END STEP", "",
+)  # fmt: skip
+_HEADER = re.compile(r" (displacements|forces) \(.*\) for set (\S+) and time\s+(\S+)")
+_SHORT = re.compile(r"(?<=\d)(?=[+-]\d{3}$)")
+"""Place of the E that Fortran leaves out before an exponent of three digits."""
+_TAIL = 300
 
 
 def refusal(scene: Table) -> str | None:
@@ -39,9 +80,6 @@ def refusal(scene: Table) -> str | None:
 
 def states(scene: Table, histories: Histories) -> Iterator[float]:
     """Solve and yield every load parameter."""
-    from comparisons.models.outside.calculix import answer
-    from comparisons.models.outside.ccx import CalculixError
-    from comparisons.models.outside.deck import pin_deck, slab, tip_load_deck
     from fem_reference import Strip
 
     beam, times = scene["beams"][0], scene["load_parameters"]
@@ -51,16 +89,16 @@ def states(scene: Table, histories: Histories) -> Iterator[float]:
         poissons_ratio=beam["youngs_modulus"] / (2.0 * beam["shear_modulus"]) - 1.0,
         mesh=(beam["elements"], ACROSS),
     )  # fmt: skip
-    mesh, penalty, frame = slab(strip), PENALTY * beam["EI"] / beam["length"] ** 3, axes(beam)
+    slab, penalty, frame = Slab(strip), PENALTY * beam["EI"] / beam["length"] ** 3, axes(beam)
     increments = refined(scene, LOAD_STEPS if scene["loads"] else PIN_STEPS)
     steps = sum(map(len, increments))
     if scene["loads"]:
-        deck = tip_load_deck(mesh, float((frame @ scene["loads"][0]["force"])[1]), steps)
+        deck = slab.tip_load(float((frame @ scene["loads"][0]["force"])[1]), steps)
     else:
         _, (start, end) = way(beam, scene["pins"][0])
-        deck = pin_deck(mesh, tuple(start), tuple(end - start), steps, penalty)
+        deck = slab.pin(tuple(start), tuple(end - start), steps, penalty)
     try:
-        found = answer(mesh, deck, seconds=1e5)
+        found = slab.answer(deck, seconds=1e5)
     except CalculixError as error:
         raise StoppedError(error.reason) from error
     for number, t in enumerate(times):
@@ -68,16 +106,290 @@ def states(scene: Table, histories: Histories) -> Iterator[float]:
         if k >= len(found.load_parameter):
             raise StoppedError(found.stopped or f"no increment at load parameter {t:.6g}")
         line, force = beam["start"] + found.axis[k] @ frame, found.force[k] @ frame
-        histories.axis(beam["name"], mesh.axis[:, 0].tolist(), line)
+        histories.axis(beam["name"], slab.axis[:, 0].tolist(), line)
         histories.support(scene["supports"][0]["node"], force, found.moment[k])
         for item in scene["contacts"]:
             size, at = float(np.hypot(*force)), foot(line, scene["pins"][0]["positions"][number])
             if size == 0.0:
                 histories.open(item["pair"])
             else:
-                arc = float(at.shape @ mesh.axis[at.first : at.first + 3, 0])
+                arc = float(at.shape @ slab.axis[at.first : at.first + 3, 0])
                 histories.contact(item["pair"], -force, arc, -size / penalty)
         yield t
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Answer:
+    """Histories over the load increments of CalculiX, in the strip's frame.
+
+    Parameters
+    ----------
+    load_parameter
+        Part of the load, or of the pin's way, ``(s,)``.
+    tip
+        Mean displacement of the free end, ``(s, 2)`` [m].
+    force, moment
+        What the clamp exerts on the strip, ``(s, 2)`` [N] and about the clamped point ``(s,)`` [N m].
+    axis
+        Positions of the nodes on the axis, ``(s, a, 2)`` [m].
+    stopped
+        Reason why CalculiX stopped before the end; empty if it did not.
+    """
+
+    load_parameter: Array
+    tip: Array
+    force: Array
+    moment: Array
+    axis: Array
+    stopped: str = ""
+
+
+def tip_load(strip: "Strip", force: float) -> Answer:
+    """Return the answer to a transverse dead load [N] at the free end.
+
+    Raises
+    ------
+    CalculixError
+        If CalculiX is not installed or does not reach the whole load.
+    """
+    slab = Slab(strip)
+    answer = slab.answer(slab.tip_load(force))
+    if answer.stopped:
+        raise CalculixError(answer.stopped, started=True)
+    return answer
+
+
+def pressed(strip: "Strip", start: Point, motion: Point, steps: int, penalty: float) -> Answer:
+    """Return the answer to a sharp pin that moves along the right face, up to the last increment that converged; see `Slab.pin`.
+
+    In CalculiX the pin may slip through the face, and the run then goes on without contact. The answer ends before that.
+
+    Raises
+    ------
+    CalculixError
+        If CalculiX is not installed, or does not complete one increment.
+    """
+    slab = Slab(strip)
+    found = slab.answer(slab.pin(start, motion, steps, penalty))
+    through = np.flatnonzero(np.hypot(*found.force.T) < slab.unit)
+    if not through.size:
+        return found
+    kept = {name: values[: through[0]] for name, values in vars(found).items() if name != "stopped"}
+    return replace(found, **kept, stopped="lost the pin through the face")
+
+
+class Slab:
+    """A strip as a mesh of bricks, in the strip's frame.
+
+    Parameters
+    ----------
+    strip
+        The strip that the bricks fill.
+
+    Attributes
+    ----------
+    unit
+        Unit of force of the deck [N].
+    thickness
+        Thickness w [m].
+    numbers
+        Numbers of the nodes on the grid of corners and midpoints, ``(2 nx + 1, 2 ny + 1, 3)``; 0 at a grid point without a node.
+    points
+        Positions of the grid points, ``(2 nx + 1, 2 ny + 1, 3, 3)`` [m].
+    axis, clamp
+        Positions in the plane of the nodes on the axis and at the clamp, in the order of their numbers, ``(a, 2)`` and ``(c, 2)`` [m].
+
+    Raises
+    ------
+    ValueError
+        Unless the strip has St. Venant and Kirchhoff's law in plane stress, a clamp at its start and an even mesh.
+    """
+
+    def __init__(self, strip: "Strip") -> None:
+        stated = (strip.clamped, strip.material, strip.plane, strip.grading, strip.mesh_file)
+        if stated != (("start",), "st-venant-kirchhoff", "stress", 1.0, None):
+            raise ValueError(f"Strip({strip.name!r}): CalculiX's deck has no strip {stated}")
+        nx, ny = strip.mesh
+        i, j, k = np.indices((2 * nx + 1, 2 * ny + 1, 3))
+        there = i % 2 + j % 2 + k % 2 <= 1
+        x, y = strip.length * i / (2 * nx), strip.height * (j / (2 * ny) - 0.5)
+        self.strip, self.thickness = strip, THINNESS * strip.height
+        self.unit = 1e-5 * strip.bending_stiffness / strip.length**2
+        self.numbers = np.where(there, np.cumsum(there).reshape(there.shape), 0)
+        self.points = np.stack([x, y, THINNESS * strip.height * k / 2], axis=-1)
+        self.axis, self.clamp = (
+            self.points[part][self.numbers[part] > 0][:, :2] for part in (np.s_[:, ny, 0], np.s_[0])
+        )
+
+    def tip_load(self, force: float, steps: int | None = None) -> str:
+        """Deck of a transverse dead load [N], spread evenly over the free end, in equal steps or in steps that CalculiX chooses."""
+        ny, end = self.strip.mesh[1], self.numbers[-1]
+        loads = np.zeros(end.shape)
+        for row in range(ny):
+            loads[2 * row : 2 * row + 3] += force / self.unit / ny * _FACE
+        way = ["*STATIC", ".2,1."] if steps is None else ["*STATIC, DIRECT", f"{1 / steps:.12e},1."]
+        step = ["*STEP, NLGEOM, INC=10000", *_CONTROLS, *way, "*CLOAD"]
+        forces = [f"{n},2,{load:.12e}" for n, load in zip(end[end > 0], loads[end > 0], strict=True)]
+        return "\n".join([*self._model(), *step, *forces, *_PRINT])
+
+    def pin(self, start: Point, motion: Point, steps: int, penalty: float) -> str:
+        """Deck of a sharp pin that moves along the right face in equal steps, from `start` by `motion` [m].
+
+        The pin is a needle across the half slab. Its two nodes are the slaves of a contact with the face. `penalty` [N/m] is the contact
+        stiffness. CalculiX multiplies the stated slope of the pressure by half the area of a face for each of the two nodes.
+        """
+        (nx, ny), (x, y), top = self.strip.mesh, start, int(self.numbers.max())
+        slope = penalty / self.unit / (self.thickness * self.strip.length / nx)
+        places = (f"{x:.12e},{y:.12e},{part * self.thickness:.12e}" for part in (0.25, 0.75))
+        return "\n".join(
+            [
+                *self._model(),
+                "*NODE, NSET=PIN",
+                *(f"{top + n},{place}" for n, place in enumerate(places, start=1)),
+                "*SURFACE, NAME=NEEDLE, TYPE=NODE",
+                "PIN",
+                "*SURFACE, NAME=FACE",
+                *(f"{1 + column * ny},S3" for column in range(nx)),
+                "*SURFACE INTERACTION, NAME=HARD",
+                "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
+                f"{slope:.12e}",
+                "*CONTACT PAIR, INTERACTION=HARD, TYPE=NODE TO SURFACE",
+                "NEEDLE,FACE",
+                f"*STEP, NLGEOM, INC={2 * steps}",
+                *_CONTROLS,
+                "*STATIC, DIRECT",
+                f"{1 / steps:.12e},1.",
+                "*BOUNDARY",
+                *(f"PIN,{axis},{axis},{way:.12e}" for axis, way in enumerate((*motion, 0.0), start=1)),
+                *_PRINT,
+            ]
+        )
+
+    def answer(self, deck: str, seconds: float = 300.0) -> Answer:
+        """Return the answer to a deck, up to the last increment that converged and was printed completely.
+
+        Raises
+        ------
+        CalculixError
+            If CalculiX is not installed, or does not complete one increment.
+        """
+        times, tables, stopped = run(deck, seconds)
+        ny, held = self.strip.mesh[1], len(self.clamp)
+        wanted = {
+            ("displacements", "TIP"): 2 * ny + 1,
+            ("displacements", "AXIS"): len(self.axis),
+            ("displacements", "CLAMP"): held,
+            ("forces", "CLAMP"): held,
+        }
+        whole = [
+            [rows for rows in tables.get(name, []) if len(rows) == size] for name, size in wanted.items()
+        ]
+        count = min(map(len, whole))
+        if count == 0:
+            raise CalculixError(stopped or "printed no result", started=True)
+        tip, bent, moved, forces = (np.array(table[:count])[:, :, :2] for table in whole)
+        forces = forces * self.unit
+        x, y = (self.clamp + moved).transpose(2, 0, 1)
+        mean = np.zeros(2 * ny + 1)  # Simpson's weights of the edges of quadratic elements
+        for row in range(ny):
+            mean[2 * row : 2 * row + 3] += np.array([1.0, 4.0, 1.0]) / (6 * ny)
+        return Answer(
+            load_parameter=np.array(times[:count]),
+            tip=mean @ tip,
+            force=forces.sum(axis=1),
+            moment=(x * forces[..., 1] - y * forces[..., 0]).sum(axis=1),
+            axis=self.axis + bent,
+            stopped=stopped,
+        )
+
+    def _model(self) -> list[str]:
+        """Nodes, bricks, material and supports; the clamp named ``rod`` holds transverse motion on the edge's middle line only."""
+        strip, n, (nx, ny) = self.strip, self.numbers, self.strip.mesh
+        modulus = strip.youngs_modulus * strip.width / self.thickness / self.unit
+        corners = np.array(_CORNERS)
+        offsets = np.concatenate([corners, [(corners[a] + corners[b]) // 2 for a, b in _BARS]])
+        columns, rows = np.divmod(np.arange(nx * ny), ny)
+        x, y, z = np.moveaxis(np.stack([2 * columns, 2 * rows, 0 * rows], axis=-1)[:, None] + offsets, -1, 0)
+        sets = {
+            "CLAMP": n[0],
+            "HELD": n[0] if strip.clamp == "full" else n[0, ny],
+            "MIDDLE": n[:, :, 0],
+            "TIP": n[-1, :, 0],
+            "AXIS": n[:, ny, 0],
+        }
+        lines = ["*NODE"]
+        lines += [
+            f"{number},{a:.12e},{b:.12e},{c:.12e}"
+            for number, (a, b, c) in zip(n[n > 0], self.points[n > 0], strict=True)
+        ]
+        lines.append("*ELEMENT, TYPE=C3D20R, ELSET=STRIP")
+        for number, brick in enumerate(n[x, y, z].tolist(), start=1):
+            lines += [f"{number},{','.join(map(str, brick[:10]))},", ",".join(map(str, brick[10:]))]
+        for name, numbers in sets.items():
+            lines += [f"*NSET, NSET={name}", *(f"{number}," for number in numbers[numbers > 0])]
+        return [
+            *lines,
+            "*MATERIAL, NAME=ELASTIC",
+            "*ELASTIC",
+            f"{modulus:.12e},{strip.poissons_ratio:.12e}",
+            "*SOLID SECTION, ELSET=STRIP, MATERIAL=ELASTIC",
+            "*BOUNDARY",
+            "CLAMP,1,1",
+            "HELD,2,2",
+            "MIDDLE,3,3",
+        ]
+
+
+def run(deck: str, seconds: float = 300.0) -> tuple[list[float], Tables, str]:
+    """Run ``ccx`` on a deck, on one thread, for at most `seconds`; return what `parse` reads, and why it did not finish, empty if it did.
+
+    Raises
+    ------
+    CalculixError
+        If ``ccx`` is not installed.
+    """
+    program, reason = shutil.which("ccx"), ""
+    if program is None:
+        raise CalculixError("is needed: there is no program ccx on the path (Debian: calculix-ccx)")
+    with tempfile.TemporaryDirectory(prefix="calculix-") as folder:
+        (Path(folder) / "job.inp").write_text(deck, encoding="ascii")
+        try:
+            done = subprocess.run(  # noqa: S603 the program found on the path, our own deck
+                [program, "-i", "job"],
+                cwd=folder,
+                env={**environment(), "OMP_NUM_THREADS": "1"},
+                capture_output=True,
+                text=True,
+                errors="replace",
+                timeout=seconds,
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            reason = f"did not finish within {seconds:g} s"
+        except OSError as error:
+            reason = f"did not start: {error.strerror}"
+        else:
+            if done.returncode or "Job finished" not in done.stdout:
+                words = " ".join((done.stdout + done.stderr).split())
+                where = words.find("*ERROR")
+                reason = f"stopped: {words[where : where + _TAIL] if where >= 0 else words[-_TAIL:]}"
+        found = Path(folder) / "job.dat"
+        return *parse(found.read_text(encoding="ascii", errors="replace") if found.exists() else ""), reason
+
+
+def parse(text: str) -> tuple[list[float], Tables]:
+    """Read a ``.dat`` file: the end of every increment that converged, and its tables; an incomplete last line is skipped."""
+    tables: Tables = defaultdict(list)
+    times: dict[float, None] = {}
+    rows: list[list[float]] = []
+    for line in text[: text.rfind("\n") + 1].splitlines():
+        if header := _HEADER.match(line):
+            rows = []
+            tables[header[1], header[2]].append(rows)
+            times[float(header[3])] = None
+        elif line.strip():
+            rows.append([float(_SHORT.sub("E", value)) for value in line.split()[1:]])
+    return list(times), dict(tables)
 
 
 if __name__ == "__main__":

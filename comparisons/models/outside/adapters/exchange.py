@@ -60,12 +60,8 @@ class Histories:
     def contact(self, pair: str, vector: Sequence[float], arc: float | None, gap: float | None) -> None:
         """Add a contact: its force on the beam, arc position and gap; both None where the pair is open."""
         x, y = float(vector[0]), float(vector[1])
-        for key, value in (
-            ("force", (x * x + y * y) ** 0.5),
-            ("vector", [x, y]),
-            ("arc_position", arc),
-            ("gap", gap),
-        ):
+        added = {"force": (x * x + y * y) ** 0.5, "vector": [x, y], "arc_position": arc, "gap": gap}
+        for key, value in added.items():
             self.contacts[pair][key].append(value)
 
     def tables(self) -> Table:

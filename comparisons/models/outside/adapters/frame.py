@@ -10,19 +10,7 @@ from comparisons.models.outside.adapters.exchange import Histories, Table, point
 
 @dataclass(frozen=True, kw_only=True)
 class Element:
-    """A straight element.
-
-    Attributes
-    ----------
-    beam : dict
-        The beam of the resolved scene.
-    nodes : (int, int)
-        Indices of its nodes.
-    arc : float
-        Arc position of its first node.
-    length : float
-        Undeformed length.
-    """
+    """A straight element: its beam in the resolved scene, its nodes, arc position of the first one, and undeformed length."""
 
     beam: Table
     nodes: tuple[int, int]
@@ -34,14 +22,7 @@ class Element:
 class Frame:
     """Nodes and elements of all beams; joined beams share a node.
 
-    Attributes
-    ----------
-    points : list of (float, float)
-        Undeformed positions of the nodes.
-    numbers : dict of list of int
-        Indices of the nodes along each beam.
-    elements : list of Element
-        All elements, beam by beam.
+    `points` are the undeformed positions of the nodes, `numbers` the indices of the nodes along each beam.
     """
 
     scene: Table

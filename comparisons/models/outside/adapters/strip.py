@@ -32,18 +32,8 @@ def way(beam: Table, pin: Table) -> tuple[list[float], Any]:
 class Foot(NamedTuple):
     """The foot of a point on a line of quadratic elements.
 
-    Attributes
-    ----------
-    first : int
-        Index of the first of three nodes.
-    xi : float
-        Place on the element, from -1 to 1; beyond the ends of the line outside this range.
-    shape : ndarray, shape (3,)
-        Shape functions of the three nodes.
-    normal : ndarray, shape (2,)
-        Unit normal to the left of the line.
-    away : ndarray, shape (2,)
-        Vector from the foot to the point.
+    `first` is the index of the first of three nodes, `xi` the place on the element, from -1 to 1 and beyond the ends of the line outside,
+    `shape` (3,) the shape functions, `normal` (2,) the unit normal to the left, and `away` (2,) the vector from the foot to the point.
     """
 
     first: int

@@ -16,7 +16,7 @@ from comparisons.claims.paper.verdict import Verdict, holds
 from comparisons.claims.problems.double_beam import EVENTS as EXACT
 from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER
 from comparisons.compare import PAPER, SOLID
-from comparisons.models.translate import to_structure
+from comparisons.models.tsm import to_structure
 from comparisons.quantities import KEPT
 from tests.comparisons.claims.paper.test_reproduce import PAPER as STATED
 

@@ -9,7 +9,7 @@ import pytest
 import fem_reference
 from comparisons.cli import main
 from comparisons.models import solve
-from comparisons.models.translate import to_solid
+from comparisons.models.solid import to_solid
 from comparisons.scene import load_scene
 
 SCENES = ("ks-cantilever", "ks-face")

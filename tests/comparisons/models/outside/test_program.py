@@ -20,7 +20,7 @@ from comparisons.models import find, solve
 from comparisons.models.options import ModelError, Options
 
 # the registry of the statuses, for the contract that each is forced here
-from comparisons.models.outside.status import ProgramStatus
+from comparisons.models.outside.child import ProgramStatus
 from comparisons.scene import load_scene
 from tests.comparisons.models.outside.conftest import KS, PAIR
 

@@ -2,87 +2,68 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import takewhile
 from time import perf_counter
 
 import numpy as np
 
-from comparisons.models.options import ModelError
-from comparisons.models.progress import Watch, unwatched
+from comparisons.models.progress import Watch
 from comparisons.models.rod import ROD
+from comparisons.models.shared import POINTS, Axis, rows
 from comparisons.models.tsm import TSM
 from comparisons.referee import Equilibrium, Verdict, certify
-from comparisons.response import (
-    Array,
-    ContactHistory,
-    FrictionHistory,
-    Response,
-    Sections,
-    SupportHistory,
-)
+from comparisons.response import ContactHistory, FrictionHistory, Response, Sections, SupportHistory
 from comparisons.response.axis import axis_grid
 from comparisons.scene import Scene
 
-POINTS = 401
-"""Points of a deflected axis in pictures. The solution does not depend on this number."""
 States = Sequence[Equilibrium]
 
 
-def solve_network(scene: Scene, model: str, watch: Watch = unwatched) -> Response:
+def solve_rods(scene: Scene, watch: Watch) -> Response:
     """Return the exact equilibria of a scene's rods along the path that exact TSM elements follow.
 
     The referee starts from the TSM answer at every load parameter, solves its own equations, and judges stability, admissibility
     and the path in between. Load parameters, the gaps of open contacts and slip-offs are those of TSM; all other values are the
-    referee's. The response ends before the first load parameter at which the verdict is not `Verdict.CERTIFIED`.
-
-    Parameters
-    ----------
-    scene : Scene
-        Any scene.
-    model : str
-        Name of the model in the response.
-    watch : callable
-        Receives every accepted step of TSM.
-
-    Raises
-    ------
-    ModelError
-        If the scene uses a key that the referee does not state.
+    referee's. The response ends before the first load parameter at which the verdict is not `Verdict.CERTIFIED`. `watch` receives
+    every accepted step of TSM.
     """
-    unknown = ROD.unstated(scene)
-    if unknown is not None:
-        raise ModelError(unknown)
     began = perf_counter()
     followed = TSM.solve(scene, TSM.reference, watch)
     found = certify(followed, scene, at=range(len(followed.load_parameter)))
-    states: list[Equilibrium] = []
-    for item in found.judged:
-        if item.verdict is not Verdict.CERTIFIED or item.exact is None:
-            break
-        states.append(item.exact)
+    judged = takewhile(
+        lambda item: item.verdict is Verdict.CERTIFIED and item.exact is not None, found.judged
+    )
+    states = [item.exact for item in judged if item.exact is not None]
     friction = _frictions(scene, followed, states)
+    sound = found.verdict in (Verdict.CERTIFIED, Verdict.NOT_JUDGED) or not found.judged
+    # work of pins, supports and loads is strain energy and dissipation, unknown where a node slipped off
+    work = np.array([state.strain_energy for state in states])
+    work = work + sum(item.dissipated for item in friction.values())
+    held = {
+        node.node: rows([state.reactions[node.node] for state in states], 3) for node in scene.all_supports
+    }
+    ends = {beam.name: f"{beam.name}.{scene.tip(beam.name)}" for beam in scene.beams}
 
-    def axis_line(beam: str, k: int) -> tuple[Array, Array]:
+    def axis_line(beam: str, k: int) -> Axis:
         arc = np.linspace(0.0, scene.beam(beam).length, POINTS)
         return arc, states[k].shape(beam, arc).position
 
-    sound = found.verdict in (Verdict.CERTIFIED, Verdict.NOT_JUDGED) or not found.judged
     return replace(
         followed,
-        model=model,
+        model=ROD.name,
         status=followed.status if sound else found.verdict.name,
         message=followed.message if sound else found.reason,
         completed=followed.completed and sound,
         load_parameter=followed.load_parameter[: len(states)],
         contacts={
-            pair: replace(_contact(pair, history, states), friction=friction.get(pair))
+            pair: _contact(pair, history, states, friction.get(pair))
             for pair, history in followed.contacts.items()
         },
-        work=_work(friction, states),
-        supports=_supports(scene, states),
-        tips={
-            beam.name: _rows([state.ends[f"{beam.name}.{scene.tip(beam.name)}"] for state in states], 2)
-            for beam in scene.beams
+        work=work if friction and np.all(np.isfinite(work)) else None,
+        supports={
+            node: SupportHistory(force=table[:, :2], moment=table[:, 2]) for node, table in held.items()
         },
+        tips={beam: rows([state.ends[end] for state in states], 2) for beam, end in ends.items()},
         newton_iterations=np.array([state.iterations for state in states], dtype=np.int64),
         cutbacks=0,
         unknowns=max((len(state.solution.z) for state in states), default=0),
@@ -97,19 +78,19 @@ def solve_network(scene: Scene, model: str, watch: Watch = unwatched) -> Respons
     )
 
 
-def _rows(rows: Sequence[Array], width: int) -> Array:
-    return np.array(rows, dtype=np.float64).reshape(-1, width)
-
-
-def _contact(pair: str, followed: ContactHistory, states: States) -> ContactHistory:
+def _contact(
+    pair: str, followed: ContactHistory, states: States, friction: FrictionHistory | None
+) -> ContactHistory:
+    """Return the contact of the referee's equilibria; the gaps of open ones are those of TSM."""
     closed = [state.contacts.get(pair) for state in states]
-    forces = _rows([np.zeros(2) if here is None else here.force for here in closed], 2)
+    forces = rows([(0.0, 0.0) if here is None else here.force for here in closed], 2)
     return replace(
         followed,
         force=np.hypot(*forces.T),
         arc_position=np.array([np.nan if here is None else here.arc_position for here in closed]),
         gap=np.array([gap if here is None else 0.0 for gap, here in zip(followed.gap, closed, strict=False)]),
         vector=forces,
+        friction=friction,
     )
 
 
@@ -124,8 +105,7 @@ def _frictions(scene: Scene, followed: Response, states: States) -> dict[str, Fr
     spent = [dissipated(history, k, state) for k, state in enumerate(states)]
     found = {}
     for pair in pairs:
-        closed = [state.contacts.get(pair) for state in states]
-        stated = followed.contacts[pair].friction
+        closed, stated = [state.contacts.get(pair) for state in states], followed.contacts[pair].friction
         assert stated is not None, "beams state their friction"
         found[pair] = FrictionHistory(
             tangential=np.array([0.0 if here is None else here.drag for here in closed]),
@@ -134,21 +114,6 @@ def _frictions(scene: Scene, followed: Response, states: States) -> dict[str, Fr
             dissipated=np.cumsum([part[pair] for part in spent]),
         )
     return found
-
-
-def _work(friction: dict[str, FrictionHistory], states: States) -> Array | None:
-    """Work of pins, supports and loads, the sum of strain energy and dissipation; None where a node slipped off, or without friction."""
-    work = np.array([state.strain_energy for state in states])
-    work = work + sum(item.dissipated for item in friction.values())
-    return work if friction and np.all(np.isfinite(work)) else None
-
-
-def _supports(scene: Scene, states: States) -> dict[str, SupportHistory]:
-    """Reactions by supported end."""
-    tables = {
-        item.node: _rows([state.reactions[item.node] for state in states], 3) for item in scene.all_supports
-    }
-    return {node: SupportHistory(force=table[:, :2], moment=table[:, 2]) for node, table in tables.items()}
 
 
 def _sections(scene: Scene, beam: str, state: Equilibrium) -> Sections:

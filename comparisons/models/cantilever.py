@@ -1,0 +1,365 @@
+"""One rod, clamped at one end, under one pin: the scene in the rod's frame, and its exact states as a response."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import pairwise
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparisons.exact import FrictionPath, FrictionState, Surface, rod_with_friction
+from comparisons.exact.outcome import Outcome
+from comparisons.exact.reissner import Flexibility
+from comparisons.exact.rod import rod_under_pin
+from comparisons.exact.section import Section, integrate
+from comparisons.models.options import ModelError
+from comparisons.models.rod import ROD
+from comparisons.models.shared import POINTS
+from comparisons.response import (
+    Array,
+    ContactEvent,
+    ContactHistory,
+    FrictionHistory,
+    Response,
+    SupportHistory,
+)
+from comparisons.response.axis import axis_grid
+from comparisons.scene import BeamSpec, ContactSpec, Scene, SupportSpec
+from comparisons.scene.ends import BeamEnd
+from comparisons.scene.keys import ONE_ROD, unstated
+
+STOPS = {
+    "LOST": "no stable equilibrium is connected with the straight beam",
+    "LOST_CONTACT": "a contact that must persist was released",
+    "SLIPPED_OFF": "a contact that must persist slipped off the beam",
+    "END_CONTACT": "contact with the end of a beam is not modelled",
+    FrictionState.JAMMED.name: "the contact can neither stick nor slip",
+}
+"""Reasons why an exact solution stops."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RodScene:
+    """One cantilever under one pin in a local frame: the clamp at the origin, the beam along +x, the pin pushes towards +y.
+
+    Attributes
+    ----------
+    beam, contact : BeamSpec, ContactSpec
+        The cantilever, and the contact pair.
+    clamp : {"start", "end"}
+        The beam's clamped end.
+    offset : float
+        Distance of the contact surface from the axis.
+    path : ndarray, shape (p, 2)
+        Positions of the pin in the local frame: at the start, at the scene's load parameters and at
+        the corners of the path.
+    hits : ndarray of int, shape (s,)
+        Indices of the points of `path` that belong to the load parameters.
+    origin, axes : ndarray, shape (2,) and (2, 2)
+        Position of the clamp, and the local x and y axes as columns.
+    """
+
+    beam: BeamSpec
+    clamp: str
+    contact: ContactSpec
+    offset: float
+    path: Array
+    hits: NDArray[np.int64]
+    origin: Array
+    axes: Array
+
+    @property
+    def from_end(self) -> bool:
+        """Whether the clamp is at the beam's end, so that the local x runs from end to start."""
+        return self.clamp == "end"
+
+    @property
+    def points(self) -> Array:
+        """The pin at the scene's load parameters (s, 2)."""
+        return self.path[self.hits]
+
+    def position(self, local: Array) -> Array:
+        """Return points (..., 2) of the local frame in the scene's."""
+        return self.vector(local) + self.origin
+
+    def vector(self, local: Array) -> Array:
+        """Return vectors (..., 2) of the local frame in the scene's."""
+        return np.asarray(local) @ self.axes.T
+
+    def moment(self, local: Array) -> Array:
+        """Return moments of the local frame, which may be a mirror image, in the scene's, anticlockwise positive."""
+        return float(np.round(np.linalg.det(self.axes))) * np.asarray(local)
+
+    def arc(self, local: Array) -> Array:
+        """Return distances from the clamp as distances from the beam's start."""
+        return self.beam.length - np.asarray(local) if self.from_end else np.asarray(local)
+
+
+def to_rod(scene: Scene) -> RodScene:
+    """Return `scene` as the exact models state it.
+
+    Raises
+    ------
+    ModelError
+        Unless the scene is one beam, clamped at one end, under one pin.
+    """
+    unknown = unstated(scene, "the exact rod", ONE_ROD)
+    if unknown is not None:
+        raise ModelError(unknown)
+    clamp = _clamp(scene)
+    beam, pin, contact = scene.beams[0], scene.pins[0], scene.contacts[0]
+    along = np.array(beam.direction) * (1.0 if clamp.end == "start" else -1.0)
+    left = np.array([-along[1], along[0]])
+    mirrored = contact.side == ("left" if clamp.end == "start" else "right")
+    origin, axes = np.array(scene.place(clamp.node)), np.stack([along, -left if mirrored else left], axis=1)
+    stations = np.union1d([0.0, *scene.times], pin.corners)
+    return RodScene(
+        beam=beam,
+        clamp=clamp.end,
+        contact=contact,
+        offset=scene.offset(contact),
+        path=(np.array([pin.position(float(t)) for t in stations]) - origin) @ axes,
+        hits=np.searchsorted(stations, scene.times),
+        origin=origin,
+        axes=axes,
+    )
+
+
+def _clamp(scene: Scene) -> SupportSpec:
+    """Return the clamp of the single beam that a single pin touches."""
+    have, beam = "the exact models have", scene.beams[0]
+    if max(len(scene.beams), len(scene.pins), len(scene.contacts)) > 1:
+        raise ModelError(f"{have} one beam, one pin and one contact")
+    if scene.loads:
+        raise ModelError(f'{have} no dead loads, the scene loads "{scene.loads[0].node}"')
+    clamp, *others = scene.supports_of(beam.name)
+    if len(clamp.held) < 3:
+        raise ModelError(f'{have} one end clamped, none of beam "{beam.name}" is')
+    if scene.prescribed_motions[clamp.node].moves:
+        raise ModelError(f'{have} the clamp at rest, "{clamp.node}" moves')
+    if others:
+        raise ModelError(f'{have} one support, beam "{beam.name}" has two')
+    return clamp
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LocalStates:
+    """States of a cantilever in its local frame, one for each load parameter; the pin exerts the force.
+
+    `visited` has one outcome for each point of the path, and `hits` the indices of the points that belong to load parameters.
+    `shape(k)` returns points (n, 2) of the axis.
+    """
+
+    visited: Sequence[Outcome]
+    hits: NDArray[np.int64]
+    force: Array
+    arc_position: Array
+    clamp_moment: Array
+    tip: Array
+    iterations: NDArray[np.int64]
+    shape: Callable[[int], Array]
+    slip_off: float
+
+
+def _states(path: Any, hits: NDArray[np.int64], **more: Any) -> LocalStates:
+    """Return the states at the load parameters of a path, with what else is stated of them."""
+    at = {name: getattr(path, name)[hits] for name in ("force", "arc_position", "clamp_moment", "tip")}
+    return LocalStates(hits=hits, **at, **more)
+
+
+def solve_rod(scene: Scene, local: RodScene) -> Response:
+    """Solve `scene` as a Reissner rod; `local` is the scene in the rod's frame."""
+    beam, hits = local.beam, local.hits
+    stiffness = {"EA": beam.EA, "GA": beam.GA, "EI": beam.EI}
+    began = perf_counter()
+    path = rod_under_pin(local.path, offset=local.offset, length=beam.length, **stiffness)
+    seconds = perf_counter() - began
+    states = _states(
+        path,
+        hits,
+        visited=path.outcome,
+        iterations=np.diff(np.cumsum(path.iterations)[hits], prepend=0),
+        shape=lambda k: path.shape(int(hits[k]), POINTS)[:, :2],
+        slip_off=path.slip_off,
+    )
+    return local_response(ROD.name, scene, local, states, unknowns=path.unknowns.shape[1], seconds=seconds)
+
+
+def solve_rod_with_friction(scene: Scene, local: RodScene) -> Response:
+    """Solve `scene` as a Reissner rod under a pin with friction; `local` is the scene in the rod's frame."""
+    beam, hits, contact, radius = local.beam, local.hits, local.contact, scene.radius(local.contact)
+    began = perf_counter()
+    path = rod_with_friction(
+        local.path,
+        friction=contact.friction,
+        EA=beam.EA,
+        GA=beam.GA,
+        EI=beam.EI,
+        length=beam.length,
+        surface=Surface(offset=local.offset - radius, radius=radius),
+        side=1,
+    )
+    seconds = perf_counter() - began
+    outcomes = {FrictionState.OPEN: Outcome.OPEN, FrictionState.SLIPPED: Outcome.SLIPPED}
+    states = _states(
+        path,
+        hits,
+        visited=[Outcome.CONTACT if one.touches else outcomes.get(one, Outcome.LOST) for one in path.state],
+        iterations=np.zeros(len(hits), dtype=np.int64),
+        shape=lambda k: _friction_shape(path, local, int(hits[k])),
+        slip_off=next(
+            (event.load_parameter for event in path.events if event.after is FrictionState.SLIPPED), np.nan
+        ),
+    )
+    response = local_response(ROD.name, scene, local, states, unknowns=4, seconds=seconds)
+    reached, sense = hits[: len(response.load_parameter)], -1 if local.from_end else 1
+    friction = FrictionHistory(
+        tangential=sense * path.tangential[reached],
+        normal=path.normal[reached],
+        slip=np.array([sense * path.state[k].sense for k in reached], dtype=np.int64),
+        dissipated=path.dissipated[reached],
+    )
+    response = replace(
+        response,
+        contacts={pair: replace(item, friction=friction) for pair, item in response.contacts.items()},
+        work=path.work[reached],
+        events=_friction_events(path, local),
+        index=np.full(len(reached), -1, dtype=np.int64),
+    )
+    ended = next((state.name for state in path.state if state.name in STOPS), None)
+    if response.completed or ended is None:
+        return response
+    return replace(response, status=ended, message=f"{STOPS[ended]}; {response.message}")
+
+
+def _friction_events(path: FrictionPath, local: RodScene) -> tuple[ContactEvent, ...]:
+    """Return the located changes of state."""
+    found = []
+    for event in path.events:
+        if event.after.ends or event.load_parameter == 0.0:
+            continue
+        kind = "stick" if event.after is FrictionState.STICK else "slip"
+        if not event.after.touches:
+            kind = "slip-off" if event.after is FrictionState.SLIPPED else "release"
+        elif not event.before.touches:
+            kind = "touch"
+        found.append(
+            ContactEvent(
+                kind=kind,
+                load_parameter=event.load_parameter,
+                pair=local.contact.pair,
+                element=0,
+                arc_position=float(local.arc(np.array(event.arc_position))),
+                force=event.magnitude,
+                released=0.0,
+            )
+        )
+    return tuple(found)
+
+
+def _friction_shape(path: FrictionPath, local: RodScene, k: int) -> Array:
+    """Return points (n, 2) of the axis from clamp to tip: the loaded part, then the straight tail."""
+    beam = local.beam
+    length, unit = beam.length, beam.EI / beam.length**2
+    arc = np.linspace(0.0, length, POINTS)
+    touching = path.state[k].touches
+    loaded = min(float(path.arc_position[k]), length) if touching else 0.0
+    fx, fy = path.force[k] / unit
+    zero = np.zeros(POINTS)
+    start = Section(zero, zero, zero, zero - path.clamp_moment[k] / unit / length)
+    flexibility = Flexibility(stretch=unit / beam.EA, shear=unit / beam.GA)
+    at = integrate(start, (zero + fx, zero + fy), np.minimum(arc, loaded) / length, flexibility)
+    tail = np.maximum(arc - loaded, 0.0)
+    rotation = path.tip_rotation[k] if touching else 0.0
+    x, y = at.x * length + tail * np.cos(rotation), at.y * length + tail * np.sin(rotation)
+    return np.stack([x, y], axis=1)
+
+
+def local_response(
+    model: str, scene: Scene, local: RodScene, states: LocalStates, *, unknowns: int, seconds: float
+) -> Response:
+    """Return the response in the scene's frame, up to the last load parameter at which an equilibrium was found."""
+    name, length = local.beam.name, local.beam.length
+    times = np.array(scene.times)
+    stop, reached = _end(states, times, keep=local.contact.keep)
+    met = _end_contact(scene, local, states)
+    if times[:reached].max(initial=0.0) >= met or (stop == "LOST" and met <= times[reached]):
+        stop, reached = "END_CONTACT", int(np.searchsorted(times, met))
+    when = f" at load parameter {times[reached]:.6g}" if stop else ""
+    if stop == "END_CONTACT":
+        end = "start" if local.from_end else "end"
+        when = f": {local.contact.node} meets the {end} of {name} at load parameter {met:.9g}"
+
+    @cache
+    def axis_line(_: str, k: int) -> tuple[Array, Array]:
+        line = local.position(states.shape(k))
+        return np.linspace(0.0, length, POINTS), line[::-1] if local.from_end else line
+
+    force, outcome = local.vector(states.force[:reached]), np.array(states.visited, dtype=object)
+    outcome = outcome[states.hits[:reached]]
+    closed, slipped = outcome == Outcome.CONTACT, outcome == Outcome.SLIPPED
+    below = -local.points[:reached, 1] - local.offset
+    contact = ContactHistory(
+        force=np.hypot(*states.force[:reached].T),
+        arc_position=np.where(closed, local.arc(states.arc_position[:reached]), np.nan),
+        gap=np.where(closed, 0.0, np.where(slipped, np.nan, below)),
+        slip_off=states.slip_off if reached and states.slip_off <= times[reached - 1] else np.nan,
+        vector=force,
+    )
+    support = SupportHistory(force=-force, moment=local.moment(states.clamp_moment[:reached]))
+    return Response(
+        model=model,
+        scene=scene.name,
+        status=stop or "COMPLETED",
+        message=f"{STOPS[stop]}{when}" if stop else "all load parameters were reached",
+        completed=stop is None,
+        load_parameter=times[:reached],
+        contacts={local.contact.pair: contact},
+        supports={f"{name}.{local.clamp}": support},
+        tips={name: local.position(states.tip[:reached])},
+        newton_iterations=states.iterations[:reached],
+        cutbacks=0,
+        unknowns=unknowns,
+        wall_seconds=seconds,
+        axis_line=axis_line,
+        grid=lambda k: axis_grid(scene, axis_line, k),
+    )
+
+
+def _end(states: LocalStates, times: Array, *, keep: bool) -> tuple[str | None, int]:
+    """Return the reason why the solution stops, None if it does not, and the number of load parameters reached before."""
+    closed = False
+    slipped = np.searchsorted(times, states.slip_off) if keep else len(times)
+    for k, state in enumerate(states.visited):
+        before = int(np.searchsorted(states.hits, k))
+        if before > slipped:
+            break
+        if state is Outcome.LOST:
+            return "LOST", before
+        if keep and closed and state is Outcome.OPEN:
+            return "LOST_CONTACT", before
+        closed = closed or state is Outcome.CONTACT
+    return ("SLIPPED_OFF", int(slipped)) if slipped < len(times) else (None, len(times))
+
+
+def _end_contact(scene: Scene, local: RodScene, states: LocalStates) -> float:
+    """Load parameter at which the pin meets the tip while the rod is straight, or rolls onto its corner; inf if it does not."""
+    if not local.offset:
+        return math.inf
+    radius, path = scene.radius(local.contact), local.path - [local.beam.length, 0.0]
+    tip = BeamEnd("", (0.0, 0.0), (-1.0, 0.0), local.offset - radius, radius)
+    reached = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+    corner = states.slip_off if radius and not np.isnan(states.slip_off) else math.inf
+    for k, (start, end) in enumerate(pairwise(path)):
+        if states.visited[k] is Outcome.CONTACT or reached[k] >= corner * reached[-1]:
+            continue
+        part = tip.meeting((start[0], start[1]), (end[0], end[1]))
+        x, y = start + part * (end - start)
+        up = (-local.offset - start[1]) / (y - start[1]) if start[1] <= -local.offset < y else 1.0
+        if start[0] + up * (x - start[0]) > -1e-12 * local.beam.length:
+            return min(corner, float((1.0 - part) * reached[k] + part * reached[k + 1]) / float(reached[-1]))
+    return corner

@@ -1,0 +1,64 @@
+"""The sections of the solid: section forces, and material forces by the J-integral between clamp and contact."""
+
+from math import nan
+from typing import Any
+
+import numpy as np
+
+from comparisons.response import Array, Sections
+from comparisons.response.material import clamped
+from comparisons.scene import BeamSpec, Scene
+
+MARGIN = 1.5
+"""Distance from clamp and contact, over the height, within which stresses are local; sections there are left out."""
+SHARE = 0.25
+"""Largest part of the distance between clamp and contact that is left out at either end."""
+
+
+def section_forces(scene: Scene, result: Any, beam: str, k: int) -> Sections:
+    """Return the section forces; a clamped end that nothing else is joined to or acts on has its reaction as section force."""
+    import fem_reference
+
+    found = fem_reference.section_forces(result, beam, k)
+    taken = [load.load.node for load in scene.load_histories] + [spring.node for spring in scene.springs]
+    table, own = np.stack([found.stations, found.N, found.V, found.M]), scene.beam(beam)
+    for support in scene.supports_of(beam):
+        motion = scene.prescribed_motions[support.node].at(float(result.load_parameter[k]))
+        place, turn, first = scene.place(support.node), motion[2], support.end == "start"
+        joined = sum(place in (other.start, other.end) for other in scene.beams) > 1
+        if turn is None or joined or support.node in taken:
+            continue
+        held, (tx, ty) = result.supports[support.node], own.tangent(0.0 if first else 1.0)
+        c, s = tx * np.cos(turn) - ty * np.sin(turn), ty * np.cos(turn) + tx * np.sin(turn)
+        x, y, moment = (1 - 2 * first) * np.array([*held.force[k], held.moment[k]])
+        column = [0.0 if first else own.length, c * x + s * y, c * y - s * x, moment]
+        table = np.insert(table, 0 if first else table.shape[1], column, axis=1)
+    return Sections(arc=table[0], N=table[1], V=table[2], M=table[3])
+
+
+def j_integrals(scene: Scene, result: Any) -> dict[str, Array]:
+    """Return the J-integrals at the clamps of `comparisons.response.material.clamped`, shape (s,) by beam [force].
+
+    The J-integral is the same for all sections between the clamp and the nearest contact. Its error changes its sign between
+    neighbouring Gauss stations and is largest beside clamp and contact. The value is therefore the mean over the Gauss stations in
+    between, without those nearer to clamp or contact than 1.5 heights or a quarter of the distance. It is nan where no station is left.
+    The J-integral of a naturally curved beam is not constant, and is left out.
+    """
+    import fem_reference
+
+    def mean(beam: BeamSpec, end: str, k: int) -> float:
+        def from_clamp(arcs: Array) -> Array:
+            return arcs if end == "start" else beam.length - arcs
+
+        pairs = [contact.pair for contact in scene.contacts if contact.beam == beam.name]
+        arcs = np.array([result.contacts[pair].arc_position[k] for pair in pairs])
+        free = float(np.fmin.reduce(from_clamp(arcs), initial=beam.length))
+        margin = min(MARGIN * beam.rectangle_height, SHARE * free)
+        sections = fem_reference.section_forces(result, beam.name, k)
+        distance = from_clamp(sections.stations)
+        inside = (distance > margin) & (distance < free - margin)
+        return float(sections.material_force[inside].mean()) if inside.any() else nan
+
+    ends = {name: clamp.end for name, clamp in clamped(scene).items() if not scene.beam(name).turn}
+    steps = range(len(result.load_parameter))
+    return {name: np.array([mean(scene.beam(name), end, k) for k in steps]) for name, end in ends.items()}
