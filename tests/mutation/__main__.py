@@ -19,13 +19,22 @@ COPIED = (
     *PACKAGES,
     "tests",
     "docs",
+    ".ci",
+    ".figures",
+    ".github",
     "pyproject.toml",
     "README.md",
     "CHANGELOG.md",
     "CONTRIBUTING.md",
     "Makefile",
 )
-DRAWS = ("comparisons/show", "comparisons/cli", "comparisons/claims/paper", "comparisons/cost/plots.py")
+DRAWS = (
+    "comparisons/show",
+    "comparisons/cli",
+    "comparisons/claims/paper",
+    "comparisons/cost/plots.py",
+    "comparisons/league/page.py",
+)
 """Where faults are not put: pages, pictures and texts of help."""
 NEAR = {
     "tsm": "tests/tsm tests/verification tests/laws tests/oracles",
