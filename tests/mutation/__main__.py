@@ -33,7 +33,6 @@ DRAWS = (
     "comparisons/cli",
     "comparisons/claims/paper",
     "comparisons/cost/plots.py",
-    "comparisons/league/page.py",
 )
 """Where faults are not put: pages, pictures and texts of help."""
 NEAR = {
