@@ -15,19 +15,6 @@ from random import Random
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("tsm", "fem_reference", "comparisons")
-COPIED = (
-    *PACKAGES,
-    "tests",
-    "docs",
-    ".ci",
-    ".figures",
-    ".github",
-    "pyproject.toml",
-    "README.md",
-    "CHANGELOG.md",
-    "CONTRIBUTING.md",
-    "Makefile",
-)
 DRAWS = (
     "comparisons/show",
     "comparisons/cli",
@@ -149,9 +136,11 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         folder.chmod(0o755)  # one test reads as nobody
-        for part in COPIED:
-            copy = shutil.copytree if (ROOT / part).is_dir() else shutil.copy
-            copy(ROOT / part, folder / part)
+        # whole, since tests of pages follow their links
+        tracked = subprocess.check_output(["git", "ls-files", "-z"], cwd=ROOT, text=True)
+        for part in tracked.split("\0")[:-1]:
+            (folder / part).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / part, folder / part)
         for number, (module, k) in enumerate(drawn(given.seed, given.count)):
             if given.only is not None and number not in given.only:
                 continue
