@@ -17,21 +17,13 @@ from fem_reference.mesh import Discretisation, Points
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Pattern:
-    """Sparsity pattern of a symmetric stiffness matrix with the map from element stiffnesses to LAPACK's lower band storage.
+    """Sparsity of a symmetric stiffness matrix, and the map from element stiffnesses to LAPACK's lower band."""
 
-    Parameters
-    ----------
-    scatter
-        Sparse matrix from all element entries, see `element_entries`, to the entries on and below the diagonal.
-    positions
-        Positions of these entries in the raveled band ``(m, width + 1)``, column after column.
-    size, width
-        Number of unknowns m, and number of diagonals below the main one.
-    """
-
+    # sparse matrix from all element entries, see `element_entries`, to the entries on and below the
+    # diagonal
     scatter: csr_matrix
-    positions: Ints
-    size: int
+    positions: Ints  # positions of these entries in the raveled band ``(m, width + 1)``, column after column
+    size: int  # size, width: number of unknowns m, and number of diagonals below the main one
     width: int
 
     def band(self, elements: Array) -> Array:

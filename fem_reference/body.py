@@ -25,34 +25,18 @@ ANCHORED = "start"
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Body:
-    """Constant data of a strip during a solution.
+    """Constant data of a strip during a solution."""
 
-    Parameters
-    ----------
-    strip
-        Input data of the strip.
-    mesh
-        Discretisation of the strip.
-    law
-        Material law.
-    expansion
-        Matrix ``(2 n, m)`` from the unknowns to the displacements, see `clamp`.
-    stiffness
-        Sparsity pattern of the stiffness over the unknowns.
-    anchor
-        Band of springs on the start's section, ``(width + 1, m)``, which make a strip without a clamp regular. They are
-        part of the factorised matrix only: `fem_reference.tangent` subtracts them again. None for a clamped strip.
-    round_off
-        Round-off of a nodal force [N], see `force_round_off`.
-    """
-
-    strip: Strip
-    mesh: Discretisation
-    law: Law
-    expansion: csr_matrix
-    stiffness: Pattern
+    strip: Strip  # input data of the strip
+    mesh: Discretisation  # discretisation of the strip
+    law: Law  # material law
+    expansion: csr_matrix  # matrix ``(2 n, m)`` from the unknowns to the displacements, see `clamp`
+    stiffness: Pattern  # sparsity pattern of the stiffness over the unknowns
+    # band of springs on the start's section, ``(width + 1, m)``, which make a strip without a clamp
+    # regular. They are part of the factorised matrix only: `fem_reference.tangent` subtracts them again.
+    # None for a clamped strip
     anchor: Floats | None
-    round_off: float
+    round_off: float  # round-off of a nodal force [N], see `force_round_off`
 
     @property
     def force_scale(self) -> float:

@@ -15,31 +15,20 @@ from fem_reference.state import State, section_actions
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Border:
-    """Curvatures and constraints over the k columns U: three or four of each closed contact, then four of each end section.
+    """Curvatures and constraints over the columns U: 3 or 4 of each closed contact, then 4 of each end section."""
 
-    Parameters
-    ----------
-    blocks
-        Diagonal blocks of A, one for each closed contact and end section.
-    N
-        Directions of the constraints' forces ``U N``, ``(k, c)``: gaps of closed contacts, friction, then ties.
-    M
-        Gradients of the constraints ``U M``, ``(k, c)``. They differ from N for friction only.
-    C
-        Flexibilities of the constraints ``(c,)`` [m/N]; for a contact that slips, the factor 1 of its tangential force;
-        for a tie, its own.
-    coupling
-        Factors ``(c, c)`` of the forces of other constraints: ``-sigma mu`` of a normal force where the contact slips.
-    removed
-        Whether augmented Lagrangian steps remove the flexibility, ``(c,)``.
-    """
-
-    blocks: tuple[Floats, ...]
+    blocks: tuple[Floats, ...]  # diagonal blocks of A, one for each closed contact and end section
+    # directions of the constraints' forces ``U N``, ``(k, c)``: gaps of closed contacts, friction, then
+    # ties
     N: Floats
-    M: Floats
+    M: Floats  # gradients of the constraints ``U M``, ``(k, c)``. They differ from N for friction only
+    # flexibilities of the constraints ``(c,)`` [m/N]; for a contact that slips, the factor 1 of its
+    # tangential force; for a tie, its own
     C: Floats
+    # factors ``(c, c)`` of the forces of other constraints: ``-sigma mu`` of a normal force where the
+    # contact slips
     coupling: Floats
-    removed: Array
+    removed: Array  # whether augmented Lagrangian steps remove the flexibility, ``(c,)``
 
     @cached_property
     def A(self) -> Floats:

@@ -36,20 +36,12 @@ from fem_reference.problem import Contact, Pin
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Carrier:
-    """Points whose positions are weighted means of the nodes of a strip.
+    """Points whose positions are weighted means of the nodes of a strip."""
 
-    Parameters
-    ----------
-    reference
-        Undeformed positions relative to the model's origin, in the global frame's directions, ``(m, 2)`` [m].
-    rows
-        Weights ``(m, n)`` of all nodes of the model.
-    frame
-        Rotation ``(2, 2)`` from the strip's frame, the frame of the displacements, to the global frame.
-    """
-
+    # undeformed positions relative to the model's origin, in the global frame's directions, ``(m, 2)`` [m]
     reference: Floats
-    rows: csr_matrix
+    rows: csr_matrix  # weights ``(m, n)`` of all nodes of the model
+    # rotation ``(2, 2)`` from the strip's frame, the frame of the displacements, to the global frame
     frame: Floats
 
     @cached_property
@@ -70,33 +62,19 @@ class Carrier:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Pair:
-    """A contact between a node and the curve of a strip in the discrete model.
+    """A contact between a node and the curve of a strip in the discrete model."""
 
-    Parameters
-    ----------
-    contact
-        Input data of the contact.
-    curve, carrier
-        Curve of the touched strip and its points.
-    node
-        The pin, or the point at the end of another strip.
-    penalty
-        Contact stiffness eps [N/m].
-    strips
-        Indices of the touched strip and, if the node is an end, of the strip with this end.
-    ends
-        Corners of the free ends of the touched strip, ordered upwards, if the node or the strip is not a point or a line there.
-    origin
-        Origin of all positions ``(2,)`` [m], at the first strip, so that a distant scene loses no digits.
-    """
-
-    contact: Contact
-    curve: ContactCurve
+    contact: Contact  # input data of the contact
+    curve: ContactCurve  # curve, carrier: curve of the touched strip and its points
     carrier: Carrier
-    node: Pin | Carrier
-    penalty: float
+    node: Pin | Carrier  # the pin, or the point at the end of another strip
+    penalty: float  # contact stiffness eps [N/m]
+    # indices of the touched strip and, if the node is an end, of the strip with this end
     strips: tuple[int, ...]
+    # corners of the free ends of the touched strip, ordered upwards, if the node or the strip is not a
+    # point or a line there
     ends: dict[str, Carrier]
+    # origin of all positions ``(2,)`` [m], at the first strip, so that a distant scene loses no digits
     origin: Floats
 
     @property

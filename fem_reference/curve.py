@@ -37,23 +37,14 @@ _HERMITE = np.array(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactCurve:
-    """A twice continuously differentiable curve through points that move with the nodes.
+    """A twice continuously differentiable curve through points that move with the nodes."""
 
-    Parameters
-    ----------
-    stations
-        Undeformed axial coordinates of the points, increasing, ``(m,)`` [m].
-    slopes
-        Slopes of the cardinal splines at the stations in band storage ``(m, 2 b + 1)``, see `band_slopes` [1/m].
-    rows
-        Weights ``(m, n)`` of the nodes in the points.
-    offsets, kernel
-        Offsets ``(q,)`` [m] and weights ``(q,)`` of the points in the moving average.
-    """
-
-    stations: Floats
+    stations: Floats  # undeformed axial coordinates of the points, increasing, ``(m,)`` [m]
+    # slopes of the cardinal splines at the stations in band storage ``(m, 2 b + 1)``, see `band_slopes`
+    # [1/m]
     slopes: Floats
-    rows: csr_matrix
+    rows: csr_matrix  # weights ``(m, n)`` of the nodes in the points
+    # offsets, kernel: offsets ``(q,)`` [m] and weights ``(q,)`` of the points in the moving average
     offsets: Floats
     kernel: Floats
 
@@ -171,37 +162,17 @@ def averaging(spread: float, spacing: float) -> tuple[Floats, Floats]:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Projection:
-    """Projection of a point on the curve.
+    """Projection of a point on the curve."""
 
-    Parameters
-    ----------
-    zeta
-        Undeformed axial coordinate of the closest point [m].
-    inside
-        Whether the closest point lies on the strip and not on the continuation beyond an end.
-    stationary
-        Whether the iteration reached ``(r - x_c) . r' = 0`` at ``zeta``.
-    distance
-        Signed distance ``n . (x_c - r)``, positive on the left [m].
-    end_distance
-        Distance of the point from the end of the curve nearer to ``zeta`` [m].
-    basis
-        Spline values and derivatives at ``zeta``, ``(3, m)``.
-    tangent, normal
-        Unit tangent and left normal of the curve, ``(2,)``.
-    stretch, bend, stretch_slope
-        ``rho = |r'|`` [-], ``n . r''`` and ``t . r''`` [1/m].
-    """
-
-    zeta: Any
-    inside: bool
-    stationary: bool
-    distance: Any
-    end_distance: Any
-    basis: Array
-    tangent: Array
+    zeta: Any  # undeformed axial coordinate of the closest point [m]
+    inside: bool  # whether the closest point lies on the strip and not on the continuation beyond an end
+    stationary: bool  # whether the iteration reached ``(r - x_c) . r' = 0`` at ``zeta``
+    distance: Any  # signed distance ``n . (x_c - r)``, positive on the left [m]
+    end_distance: Any  # distance of the point from the end of the curve nearer to ``zeta`` [m]
+    basis: Array  # spline values and derivatives at ``zeta``, ``(3, m)``
+    tangent: Array  # tangent, normal: unit tangent and left normal of the curve, ``(2,)``
     normal: Array
-    stretch: Any
+    stretch: Any  # stretch, bend, stretch_slope: ``rho = |r'|`` [-], ``n . r''`` and ``t . r''`` [1/m]
     bend: Any
     stretch_slope: Any
 
@@ -233,18 +204,10 @@ def project(curve: ContactCurve, X: Array, point: Array) -> Projection:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CurveFrom:
-    """The curve relative to a point, which loses no digits near the point.
+    """The curve relative to a point, which loses no digits near the point."""
 
-    Parameters
-    ----------
-    curve
-        The contact curve.
-    points
-        Its points less the point ``(m, 2)`` [m].
-    """
-
-    curve: ContactCurve
-    points: Array
+    curve: ContactCurve  # the contact curve
+    points: Array  # its points less the point ``(m, 2)`` [m]
 
     @cached_property
     def _slopes(self) -> Array:

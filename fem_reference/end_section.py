@@ -34,32 +34,18 @@ ROTATION = 2
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EndSection:
-    """An end section of the discrete model, or a section inside a strip that bears a moment.
+    """An end section of the discrete model, or a section inside a strip that bears a moment."""
 
-    Parameters
-    ----------
-    node
-        Name of the end, ``"strip.end"``, or of the section inside, ``"strip at 0.5"``.
-    position
-        Undeformed mean position ``(2,)`` in the global frame, relative to the model's origin [m].
-    rows
-        Weights ``(2, n)`` of all nodes of the model in the mean displacement and in the first moment.
-    first_moment
-        First moment m at rest ``(2,)``, in the global frame [m].
-    frame
-        Rotation ``(2, 2)`` from the strip's frame to the global frame.
-    height
-        Height of the section [m].
-    anchor_stiffness
-        Stiffness of the anchor's springs at this end, see `fem_reference.body.Body`; zero without an anchor [N/m].
-    """
-
-    node: str
+    node: str  # name of the end, ``"strip.end"``, or of the section inside, ``"strip at 0.5"``
+    # undeformed mean position ``(2,)`` in the global frame, relative to the model's origin [m]
     position: Floats
+    # weights ``(2, n)`` of all nodes of the model in the mean displacement and in the first moment
     rows: csr_matrix
-    first_moment: Floats
-    frame: Floats
-    height: float
+    first_moment: Floats  # first moment m at rest ``(2,)``, in the global frame [m]
+    frame: Floats  # rotation ``(2, 2)`` from the strip's frame to the global frame
+    height: float  # height of the section [m]
+    # stiffness of the anchor's springs at this end, see `fem_reference.body.Body`; zero without an anchor
+    # [N/m]
     anchor_stiffness: float
 
     @property
@@ -80,18 +66,10 @@ class EndSection:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Pose:
-    """Motion of an end section.
+    """Motion of an end section."""
 
-    Parameters
-    ----------
-    displacement
-        Mean displacement ``(2,)`` in the global frame [m].
-    first_moment, rest
-        First moment m ``(2,)``, deformed and at rest [m].
-    """
-
-    displacement: Array
-    first_moment: Array
+    displacement: Array  # mean displacement ``(2,)`` in the global frame [m]
+    first_moment: Array  # first_moment, rest: first moment m ``(2,)``, deformed and at rest [m]
     rest: Floats
 
     @property
@@ -126,24 +104,14 @@ class Pose:
 
 @dataclass(frozen=True, kw_only=True)
 class Tie:
-    """One component of an end's motion, prescribed or equal to the same component of another end, rigidly or by a spring.
+    """A component of an end's motion: prescribed, or tied to that of another end, rigidly or by a spring."""
 
-    Parameters
-    ----------
-    section, component
-        Number of the end section, and of the component: x, y or rotation.
-    other
-        Number of the other end section; None if the component is prescribed.
-    rates
-        Change of the prescribed motion in every stage [m or rad].
-    flexibility
-        Difference of the motions over the force against it, the inverse of a spring's stiffness; zero for a rigid tie.
-    """
-
-    section: int
+    section: int  # section, component: number of the end section, and of the component: x, y or rotation
     component: int
-    other: int | None = None
-    rates: tuple[float, ...] = (0.0,)
+    other: int | None = None  # number of the other end section; None if the component is prescribed
+    rates: tuple[float, ...] = (0.0,)  # change of the prescribed motion in every stage [m or rad]
+    # difference of the motions over the force against it, the inverse of a spring's stiffness; zero for a
+    # rigid tie
     flexibility: float = 0.0
 
     @property

@@ -15,26 +15,16 @@ TOUCH, RELEASE, SLIP, STICK, SLIP_OFF = "touch", "release", "slip", "stick", "sl
 
 @dataclass(frozen=True, kw_only=True)
 class ContactEvent:
-    """A change of a contact.
+    """A change of a contact."""
 
-    Parameters
-    ----------
-    kind
-        ``"touch"``, ``"release"``, ``"slip"``, ``"stick"`` or ``"slip-off"``.
-    pair, load_parameter
-        Index of the contact, and the load parameter: with friction in the scene that of the event, else of the first accepted state behind it.
-    arc_position, force
-        Coordinate [m] and magnitude of the force [N] before the event.
-    direction
-        Direction of the slip behind it, 1 or -1; 0 without slip.
-    """
-
-    kind: str
+    kind: str  # ``"touch"``, ``"release"``, ``"slip"``, ``"stick"`` or ``"slip-off"``
+    # pair, load_parameter: index of the contact, and the load parameter: with friction in the scene that of
+    # the event, else of the first accepted state behind it
     pair: int
     load_parameter: float
-    arc_position: float
+    arc_position: float  # arc_position, force: coordinate [m] and magnitude of the force [N] before the event
     force: float
-    direction: int
+    direction: int  # direction of the slip behind it, 1 or -1; 0 without slip
 
 
 def contact_event(kind: str, touch: Touch, pair: int, t: float, direction: int) -> ContactEvent:

@@ -25,24 +25,14 @@ _COLUMNS = 8
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Factor:
-    """A factorised symmetric matrix K. A solution is found in two halves.
+    """A factorised symmetric matrix K. A solution is found in two halves."""
 
-    Parameters
-    ----------
-    half
-        First half ``h(b)`` of the solution for ``b`` ``(m,)`` or ``(m, c)``: ``L^-1 b``, or b itself after row exchanges.
-    rest
-        Second half: ``K^-1 b`` from ``h(b)``.
-    product
-        ``a^T K^-1 b`` from ``h(a)`` and ``h(b)``.
-    negatives
-        Function that returns the number of negative eigenvalues.
-    """
-
+    # first half ``h(b)`` of the solution for ``b`` ``(m,)`` or ``(m, c)``: ``L^-1 b``, or b itself after
+    # row exchanges
     half: Callable[[Floats], Floats]
-    rest: Callable[[Floats], Floats]
-    product: Callable[[Floats, Floats], Floats]
-    negatives: Callable[[], int]
+    rest: Callable[[Floats], Floats]  # second half: ``K^-1 b`` from ``h(b)``
+    product: Callable[[Floats, Floats], Floats]  # ``a^T K^-1 b`` from ``h(a)`` and ``h(b)``
+    negatives: Callable[[], int]  # function that returns the number of negative eigenvalues
 
     def solve(self, right: Floats) -> Floats:
         """Solution of ``K x = b`` for ``b`` ``(m,)`` or ``(m, c)``."""

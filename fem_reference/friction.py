@@ -41,29 +41,18 @@ COLUMNS = 4
 
 @dataclass(frozen=True, kw_only=True)
 class Friction:
-    """Friction at a contact: the present equation and force, and what the last accepted state left.
+    """Friction at a contact: the present equation and force, and what the last accepted state left."""
 
-    Parameters
-    ----------
-    direction
-        0 where the contact sticks; 1 or -1 where the node slips along the strip's tangent or against it.
-    force
-        Tangential force T on the strip along t; zero if open [N].
-    zeta, tangent, stretch
-        Coordinate [m], unit tangent and stretch rho of the contact curve at the last accepted state.
-    last_force
-        Tangential force there [N].
-    slip, dissipated
-        Sum of the slips [m], and the dissipated energy [J] up to there.
-    """
-
+    # 0 where the contact sticks; 1 or -1 where the node slips along the strip's tangent or against it
     direction: int = 0
-    force: float = 0.0
+    force: float = 0.0  # tangential force T on the strip along t; zero if open [N]
+    # zeta, tangent, stretch: coordinate [m], unit tangent and stretch rho of the contact curve at the last
+    # accepted state
     zeta: float
     tangent: Point
     stretch: float
-    last_force: float = 0.0
-    slip: float = 0.0
+    last_force: float = 0.0  # tangential force there [N]
+    slip: float = 0.0  # slip, dissipated: sum of the slips [m], and the dissipated energy [J] up to there
     dissipated: float = 0.0
 
     def opened(self) -> "Friction":

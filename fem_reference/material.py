@@ -20,20 +20,11 @@ PLANES = ("stress", "strain")
 
 @dataclass(frozen=True, kw_only=True)
 class Law:
-    """A hyperelastic law in the plane.
+    """A hyperelastic law in the plane."""
 
-    Parameters
-    ----------
-    energy
-        Strain energy per reference volume ``W(F)``, shape ``(...)`` [Pa].
-    stress
-        First Piola-Kirchhoff stress ``P = dW/dF``, shape ``(2, 2, ...)`` [Pa].
-    tangent
-        ``dP/dF``, shape ``(2, 2, 2, 2, ...)``, with ``A[i, j, k, l] = dP[i, j] / dF[k, l]`` [Pa].
-    """
-
-    energy: LawFunction
-    stress: LawFunction
+    energy: LawFunction  # strain energy per reference volume ``W(F)``, shape ``(...)`` [Pa]
+    stress: LawFunction  # first Piola-Kirchhoff stress ``P = dW/dF``, shape ``(2, 2, ...)`` [Pa]
+    # ``dP/dF``, shape ``(2, 2, 2, 2, ...)``, with ``A[i, j, k, l] = dP[i, j] / dF[k, l]`` [Pa]
     tangent: LawFunction
 
 

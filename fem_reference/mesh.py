@@ -27,21 +27,12 @@ _BATCH = 1024
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Points:
-    """The same q points of the reference square in every element.
+    """The same q points of the reference square in every element."""
 
-    Parameters
-    ----------
-    slopes
-        Derivatives of the k shape functions along the two coordinates xi of the square, ``(2, q, k)``.
-    inverse
-        Inverse Jacobians ``d xi_K / d X_j`` ``(2, 2, e, q)`` [1/m].
-    aligned
-        Whether all Jacobians are diagonal: the elements are rectangles along the axes.
-    """
-
+    # derivatives of the k shape functions along the two coordinates xi of the square, ``(2, q, k)``
     slopes: Floats
-    inverse: Floats
-    aligned: bool
+    inverse: Floats  # inverse Jacobians ``d xi_K / d X_j`` ``(2, 2, e, q)`` [1/m]
+    aligned: bool  # whether all Jacobians are diagonal: the elements are rectangles along the axes
 
     def transformed(self, field: Any, j: int) -> Array:
         """Component ``sum_K d xi_K / d X_j f_K`` ``(e, q)`` of two fields f along the coordinates xi."""
@@ -62,44 +53,24 @@ class Points:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Discretisation:
-    """Elements of a strip in the strip's frame, with x along the axis from 0 to L and y to the left.
+    """Elements of a strip in the strip's frame, with x along the axis from 0 to L and y to the left."""
 
-    Parameters
-    ----------
-    nodes
-        Reference positions ``(n, 2)`` [m].
-    places
-        Axial coordinate and distance to the left of the axis of the nodes ``(n, 2)``; the positions of a straight strip [m].
-    cells
-        Nodes of each element ``(e, k)``: four positions anticlockwise from the lower left one; biquadratic elements also
-        have four midside nodes and a centre node.
-    gauss, at_nodes
-        Quadrature points, and the element's own nodes.
-    weights
-        Quadrature weights ``(e, q)``, width included [m^3].
-    gather
-        Sparse matrix ``(n, e k)`` that adds the nodal values of all elements.
-    edges
-        Nodes of the four edges by name (`EDGES`). An end is ordered upwards, a face from start to end.
-    stations
-        Undeformed axial coordinates of the sections, increasing, ``(m,)`` [m].
-    sections
-        Weights ``(m, n)`` of the nodes in the section means; rows sum to one.
-    basis
-        scikit-fem's scalar basis over the places, for `fem_reference.sampling`.
-    """
-
-    nodes: Floats
+    nodes: Floats  # reference positions ``(n, 2)`` [m]
+    # axial coordinate and distance to the left of the axis of the nodes ``(n, 2)``; the positions of a
+    # straight strip [m]
     places: Floats
+    # nodes of each element ``(e, k)``: four positions anticlockwise from the lower left one; biquadratic
+    # elements also have four midside nodes and a centre node
     cells: Ints
-    gauss: Points
+    gauss: Points  # gauss, at_nodes: quadrature points, and the element's own nodes
     at_nodes: Points
-    weights: Floats
-    gather: csr_matrix
+    weights: Floats  # quadrature weights ``(e, q)``, width included [m^3]
+    gather: csr_matrix  # sparse matrix ``(n, e k)`` that adds the nodal values of all elements
+    # nodes of the four edges by name (`EDGES`). An end is ordered upwards, a face from start to end
     edges: dict[str, Ints]
-    stations: Floats
-    sections: csr_matrix
-    basis: Any
+    stations: Floats  # undeformed axial coordinates of the sections, increasing, ``(m,)`` [m]
+    sections: csr_matrix  # weights ``(m, n)`` of the nodes in the section means; rows sum to one
+    basis: Any  # scikit-fem's scalar basis over the places, for `fem_reference.sampling`
 
     @cached_property
     def products(self) -> tuple[Floats, Floats]:

@@ -25,40 +25,22 @@ the tip is right to 2e-6 of the length, at .14 Newton's method takes no steps of
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Model:
-    """Constant data of a solution.
+    """Constant data of a solution."""
 
-    Parameters
-    ----------
-    problem
-        Input data.
-    bodies
-        Discretised strips.
-    parts
-        Range of each body in the model's nodal arrays.
-    pairs
-        Contacts.
-    expansion
-        Matrix ``(2 n, m)`` from the unknowns to the displacements.
-    loads
-        Nodal forces ``(s, n, 2)`` of the dead forces that are added in every stage, each in the frame of its strip [N].
-    sections, columns
-        End sections that are supported, joined, anchored or loaded by a moment, sections inside with a moment, and their columns ``(2 n, 4 e)``.
-    ties
-        Ties of these sections: components of supports, then of springs, then of joints.
-    moments
-        Dead moments on the sections that are added in every stage, ``(s, e)`` [N m].
-    """
-
-    problem: SolidProblem
-    bodies: tuple[Body, ...]
-    parts: tuple[slice, ...]
-    pairs: tuple[Pair, ...]
-    expansion: csr_matrix
+    problem: SolidProblem  # input data
+    bodies: tuple[Body, ...]  # discretised strips
+    parts: tuple[slice, ...]  # range of each body in the model's nodal arrays
+    pairs: tuple[Pair, ...]  # contacts
+    expansion: csr_matrix  # matrix ``(2 n, m)`` from the unknowns to the displacements
+    # nodal forces ``(s, n, 2)`` of the dead forces that are added in every stage, each in the frame of its
+    # strip [N]
     loads: Floats
+    # sections, columns: end sections that are supported, joined, anchored or loaded by a moment, sections
+    # inside with a moment, and their columns ``(2 n, 4 e)``
     sections: tuple[EndSection, ...]
     columns: Floats
-    ties: tuple[Tie, ...]
-    moments: Floats
+    ties: tuple[Tie, ...]  # ties of these sections: components of supports, then of springs, then of joints
+    moments: Floats  # dead moments on the sections that are added in every stage, ``(s, e)`` [N m]
 
     @cached_property
     def restriction(self) -> csr_matrix:

@@ -16,22 +16,12 @@ from fem_reference.tangent import Correction, linearise
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Attempt:
-    """Result of one search for equilibrium.
+    """Result of one search for equilibrium."""
 
-    Parameters
-    ----------
-    status, state
-        Outcome and last state.
-    iterations
-        Number of linear solutions.
-    pair
-        Index of the contact that the status refers to, or None.
-    """
-
-    status: Status
+    status: Status  # status, state: outcome and last state
     state: State
-    iterations: int
-    pair: int | None = None
+    iterations: int  # number of linear solutions
+    pair: int | None = None  # index of the contact that the status refers to, or None
 
 
 def iterate(model: Model, state: State, settings: Settings) -> Attempt:

@@ -14,21 +14,11 @@ SECTION_LAYERS = 8
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Sample:
-    """Shape functions of the elements that contain p given points.
+    """Shape functions of the elements that contain p given points."""
 
-    Parameters
-    ----------
-    cells
-        Nodes of the element that contains each point ``(p, k)``.
-    values
-        Shape functions ``(p, k)``.
-    gradients
-        Shape-function gradients ``(p, 2, k)`` [1/m].
-    """
-
-    cells: Ints
-    values: Floats
-    gradients: Floats
+    cells: Ints  # nodes of the element that contains each point ``(p, k)``
+    values: Floats  # shape functions ``(p, k)``
+    gradients: Floats  # shape-function gradients ``(p, 2, k)`` [1/m]
 
     def rows(self, nodes: int) -> csr_matrix:
         """Interpolation matrix ``(p, nodes)`` from nodal values to values at the points."""

@@ -30,22 +30,14 @@ _TOUCHING = 1e-9
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SlipEvent:
-    """A contact's change to stick, or to slip in a ``direction``; for a touch and a release the direction is None.
+    """A contact's change to stick, or to slip in a ``direction``; None for a touch and a release."""
 
-    Parameters
-    ----------
-    pair, direction
-        Index of the contact, and the direction 1 or -1 in which its node slips afterwards; 0 where it sticks.
-    at
-        Accepted state at the event.
-    first
-        Whether no other contact opens or closes, sticks or slips before.
-    """
-
+    # pair, direction: index of the contact, and the direction 1 or -1 in which its node slips afterwards; 0
+    # where it sticks
     pair: int
     direction: int | None
-    at: Accepted
-    first: bool = True
+    at: Accepted  # accepted state at the event
+    first: bool = True  # whether no other contact opens or closes, sticks or slips before
 
 
 def first_slip_event(

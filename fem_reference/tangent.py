@@ -45,27 +45,16 @@ class Correction:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Tangent:
-    """Factorised stiffness of the bodies at a state, with the columns of closed contacts and end sections.
+    """Factorised stiffness of the bodies at a state, with the columns of closed contacts and end sections."""
 
-    Parameters
-    ----------
-    model, state
-        The model and the state of linearisation.
-    factors
-        Factorised stiffness of every body.
-    U, V
-        Columns ``(m, k)`` of the closed contacts and end sections over the unknowns, and the first half of their solution
-        ``K^-1 U``, see `fem_reference.factor.Factor`.
-    border
-        Curvatures and constraints over the columns.
-    """
-
-    model: Model
+    model: Model  # model, state: the model and the state of linearisation
     state: State
-    factors: tuple[Factor, ...]
+    factors: tuple[Factor, ...]  # factorised stiffness of every body
+    # U, V: columns ``(m, k)`` of the closed contacts and end sections over the unknowns, and the first half
+    # of their solution ``K^-1 U``, see `fem_reference.factor.Factor`
     U: Floats
     V: Floats
-    border: Border
+    border: Border  # curvatures and constraints over the columns
 
     @cached_property
     def W(self) -> Floats:

@@ -10,28 +10,15 @@ from fem_reference.friction import Friction, force_curvature, slip_increment, sl
 
 @dataclass(frozen=True, kw_only=True)
 class Condition:
-    """Variables of a contact that do not follow from the displacements.
+    """Variables of a contact that do not follow from the displacements."""
 
-    Parameters
-    ----------
-    closed
-        Whether the contact is active.
-    armed
-        Whether the contact may close. It may not after its node left the strip over an end, until the node has returned
-        to its side.
-    force
-        Contact force lam, positive in compression; zero if open [N].
-    multiplier
-        Multiplier lam_0 of the augmented Lagrangian; zero for the penalty method [N].
-    friction
-        Friction of the contact, open or closed; None without friction.
-    """
-
-    closed: bool = False
+    closed: bool = False  # whether the contact is active
+    # whether the contact may close. It may not after its node left the strip over an end, until the node
+    # has returned to its side
     armed: bool = True
-    force: float = 0.0
-    multiplier: float = 0.0
-    friction: Friction | None = None
+    force: float = 0.0  # contact force lam, positive in compression; zero if open [N]
+    multiplier: float = 0.0  # multiplier lam_0 of the augmented Lagrangian; zero for the penalty method [N]
+    friction: Friction | None = None  # friction of the contact, open or closed; None without friction
 
     def opened(self, *, armed: bool) -> "Condition":
         """Return the condition of the contact after opening."""

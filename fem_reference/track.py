@@ -20,21 +20,11 @@ TRACK_LENGTH = 3
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Accepted:
-    """An accepted state with its tangent and index.
+    """An accepted state with its tangent and index."""
 
-    Parameters
-    ----------
-    state
-        The state.
-    tangent
-        Linearisation at the state.
-    index
-        Number of negative eigenvalues of the energy's Hessian; -1 if undefined, see `Tangent.index`.
-    """
-
-    state: State
-    tangent: Tangent
-    index: int
+    state: State  # the state
+    tangent: Tangent  # linearisation at the state
+    index: int  # number of negative eigenvalues of the energy's Hessian; -1 if undefined, see `Tangent.index`
     _rates: dict[tuple[float, float], Correction] = field(default_factory=dict, repr=False)
 
     def rate(self, before: float, after: float) -> Correction:

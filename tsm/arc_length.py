@@ -98,21 +98,11 @@ def trace(
 
 
 class _Direction(NamedTuple):
-    """Unit vector along the path at an equilibrium.
+    """Unit vector along the path at an equilibrium."""
 
-    Attributes
-    ----------
-    x : ndarray, shape (equations + contact unknowns,)
-        Its part over the unknowns of the system.
-    load : float
-        Its part along the load parameter.
-    tangent : PathTangent
-        Tangent of the path there.
-    """
-
-    x: Array
-    load: float
-    tangent: PathTangent
+    x: Array  # its part over the unknowns of the system; shape (equations + contact unknowns,)
+    load: float  # its part along the load parameter
+    tangent: PathTangent  # tangent of the path there
 
 
 class _Path:

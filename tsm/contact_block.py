@@ -17,28 +17,19 @@ if TYPE_CHECKING:
 
 
 class Bordered(NamedTuple):
-    """Tangent, a band with a border.
+    """Tangent, a band with a border."""
 
-    Attributes
-    ----------
-    band : ndarray, shape (banded, ldab)
-        LAPACK band storage, one row per column of the matrix.
-    right, below : ndarray, shapes (equations + 1, border), (border, equations + 1)
-        Border columns and rows.
-    corner : ndarray, shape (border, border)
-        Matrix of the border's rows and columns. An open contact has 1 on its diagonal and zeros elsewhere.
-    condensed_residual : ndarray, shape (equations + contact unknowns,), or 0
-        Contribution of the residual inside exact elements after the inner unknowns are eliminated.
-    groups : tuple
-        Tangents of the element groups.
-    """
-
-    band: Array
+    band: Array  # LAPACK band storage, one row per column of the matrix; shape (banded, ldab)
+    # right, below: border columns and rows; shapes (equations + 1, border), (border, equations + 1)
     right: Array
     below: Array
+    # matrix of the border's rows and columns. An open contact has 1 on its diagonal and zeros elsewhere;
+    # shape (border, border)
     corner: Array
+    # contribution of the residual inside exact elements after the inner unknowns are eliminated; shape
+    # (equations + contact unknowns,), or 0
     condensed_residual: Array | float
-    groups: tuple[Any, ...]
+    groups: tuple[Any, ...]  # tangents of the element groups
 
 
 class Units:

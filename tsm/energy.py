@@ -73,18 +73,10 @@ def power(newton: Newton, equilibrium: Equilibrium, drive: Drive) -> Array | Non
 
 
 class Spent(NamedTuple):
-    """Work and dissipation of a step.
+    """Work and dissipation of a step."""
 
-    Attributes
-    ----------
-    total : ndarray, shape (1 + pairs,)
-        As for `power`, over the step.
-    between : tuple of Equilibrium
-        Equilibria inside the step, in order of the load parameter.
-    """
-
-    total: Array
-    between: tuple[Equilibrium, ...]
+    total: Array  # as for `power`, over the step; shape (1 + pairs,)
+    between: tuple[Equilibrium, ...]  # equilibria inside the step, in order of the load parameter
 
 
 def spent(

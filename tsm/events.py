@@ -105,17 +105,10 @@ class Event:
 
 @dataclass(frozen=True, kw_only=True)
 class Passage:
-    """Two configurations between which a closed contact changed its owner.
+    """Two configurations between which a closed contact changed its owner."""
 
-    Attributes
-    ----------
-    pair : int
-        Number of the pair.
-    t, element, arc, force : tuple
-        Load parameters, owners, arc positions and contact forces, before and after.
-    """
-
-    pair: int
+    pair: int  # number of the pair
+    # t, element, arc, force: load parameters, owners, arc positions and contact forces, before and after
     t: tuple[float, float]
     element: tuple[int, int]
     arc: tuple[float, float]

@@ -36,24 +36,12 @@ _TRIALS = 200
 
 @dataclass(kw_only=True)
 class Fall:
-    """One fall.
+    """One fall."""
 
-    Attributes
-    ----------
-    newton : Newton
-        Solver of the structure.
-    measure : callable
-        Margins of an equilibrium.
-    close : callable
-        State with an open pair closed.
-    iterations : int
-        Newton iterations spent.
-    """
-
-    newton: Newton
-    measure: Callable[[Equilibrium], list[Margin]]
-    close: Callable[[State, Margin], State]
-    iterations: int = 0
+    newton: Newton  # solver of the structure
+    measure: Callable[[Equilibrium], list[Margin]]  # margins of an equilibrium
+    close: Callable[[State, Margin], State]  # state with an open pair closed
+    iterations: int = 0  # Newton iterations spent
 
     def beside(self, critical: Equilibrium, ahead: float) -> tuple[Equilibrium, float] | Status:
         """Return the equilibrium of least potential beside a critical point, and the potential that the fall there releases.

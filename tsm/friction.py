@@ -34,21 +34,11 @@ _MOST = 4096
 
 
 class Rates(NamedTuple):
-    """Derivatives in the load parameter.
+    """Derivatives in the load parameter."""
 
-    Attributes
-    ----------
-    system : Linearisation
-        The configuration.
-    unknowns : ndarray, shape (equations + contact unknowns,)
-        Derivatives of the unknowns.
-    stage : int
-        Number of the stage, from 0.
-    """
-
-    system: Linearisation
-    unknowns: Array
-    stage: int
+    system: Linearisation  # the configuration
+    unknowns: Array  # derivatives of the unknowns; shape (equations + contact unknowns,)
+    stage: int  # number of the stage, from 0
 
 
 def traction(model: Model, state: State, system: Linearisation, k: int) -> Traction:

@@ -24,27 +24,13 @@ _DENSE = 1500
 
 
 class Symmetric(NamedTuple):
-    """Symmetric tangent, a band with a border.
+    """Symmetric tangent, a band with a border."""
 
-    Attributes
-    ----------
-    band : ndarray, shape (k + 1, n)
-        LAPACK's lower band storage.
-    right : ndarray, shape (n, b)
-        Border columns, for dimensionless unknowns.
-    corner : ndarray, shape (b, b)
-        Matrix of the border's rows and columns, for dimensionless unknowns.
-    units : ndarray, shape (n,)
-        Units of the band's unknowns, over the root of an energy.
-    multipliers : int
-        Unknowns that are forces or moments.
-    """
-
-    band: Array
-    right: Array
-    corner: Array
-    units: Array
-    multipliers: int
+    band: Array  # LAPACK's lower band storage; shape (k + 1, n)
+    right: Array  # border columns, for dimensionless unknowns; shape (n, b)
+    corner: Array  # matrix of the border's rows and columns, for dimensionless unknowns; shape (b, b)
+    units: Array  # units of the band's unknowns, over the root of an energy; shape (n,)
+    multipliers: int  # unknowns that are forces or moments
 
 
 def negatives(symmetric: Symmetric) -> int | None:

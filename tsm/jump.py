@@ -18,21 +18,11 @@ from tsm.track import FAR
 
 @dataclass(frozen=True, kw_only=True)
 class Jump:
-    """A jump.
+    """A jump."""
 
-    Attributes
-    ----------
-    fall : Fall
-        The motion of the structure where no equilibrium is nearby.
-    control : StepControl
-        Length of the next step.
-    log : StepLog
-        Events and iterations.
-    """
-
-    fall: Fall
-    control: StepControl
-    log: StepLog
+    fall: Fall  # the motion of the structure where no equilibrium is nearby
+    control: StepControl  # length of the next step
+    log: StepLog  # events and iterations
 
     def rest(self, event: Equilibrium, state: State) -> Equilibrium | Status:
         """Equilibrium after the slip-off; contacts whose force would become tensile are released.

@@ -59,29 +59,15 @@ class Equilibrium:
 
 
 class _Iteration(NamedTuple):
-    """An iteration, or a part of it.
+    """An iteration, or a part of it."""
 
-    Attributes
-    ----------
-    state, system : State, Linearisation
-        Configuration before the iteration.
-    step, load : ndarray, float
-        Change of the unknowns and of the load parameter.
-    residual : float
-        Scaled norm before the iteration.
-    part : float
-        Part of the step that is taken.
-    past : float
-        Part of an element's length by which a contact may lie past its end.
-    """
-
-    state: State
+    state: State  # state, system: configuration before the iteration
     system: Linearisation
-    step: Array
+    step: Array  # step, load: change of the unknowns and of the load parameter
     load: float
-    residual: float
-    part: float = 1.0
-    past: float = 0.0
+    residual: float  # scaled norm before the iteration
+    part: float = 1.0  # part of the step that is taken
+    past: float = 0.0  # part of an element's length by which a contact may lie past its end
 
     def to_halve(self, residual: float) -> bool:
         """Whether the residual has risen so much that half of the step is tried instead."""

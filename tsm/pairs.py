@@ -18,30 +18,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class BeamModel:
-    """A beam's place in the model.
+    """A beam's place in the model."""
 
-    Attributes
-    ----------
-    beam : Beam
-        What the user stated.
-    first : int
-        Global number of its first element; its elements follow one another.
-    nodes : ndarray of int, shape (elements + 1,)
-        Global node numbers from start to end.
-    lengths : list of float
-        Undeformed lengths of its elements.
-    arcs : list of float
-        Arc positions of its nodes.
-    kind : ElementType
-        Type of its elements.
-    """
-
-    beam: Beam
-    first: int
-    nodes: Array
-    lengths: list[float]
-    arcs: list[float]
-    kind: ElementType
+    beam: Beam  # what the user stated
+    first: int  # global number of its first element; its elements follow one another
+    nodes: Array  # global node numbers from start to end; shape (elements + 1,)
+    lengths: list[float]  # undeformed lengths of its elements
+    arcs: list[float]  # arc positions of its nodes
+    kind: ElementType  # type of its elements
 
     @property
     def last(self) -> int:
@@ -51,35 +35,17 @@ class BeamModel:
 
 @dataclass(frozen=True, kw_only=True)
 class PairModel:
-    """A contact pair's place in the model.
+    """A contact pair's place in the model."""
 
-    Attributes
-    ----------
-    pair : ContactPair
-        What the user stated.
-    target : BeamModel
-        The touched beam.
-    element_type : ElementType
-        Its element type.
-    group : ElementGroup
-        Group of its elements.
-    side : float
-        +1 where the node comes from the right, -1 from the left.
-    pin : Pin or None
-        The control node that touches, or None where a beam's end does.
-    node : int
-        Global number of the beam's end that touches, -1 for a pin.
-    slot : int
-        Position of its unknowns (force x and y, arc position, of exact elements the angle) in the border, -1 without.
-    """
-
-    pair: ContactPair
-    target: BeamModel
-    element_type: ElementType
-    group: ElementGroup
-    side: float
-    pin: Pin | None
-    node: int
+    pair: ContactPair  # what the user stated
+    target: BeamModel  # the touched beam
+    element_type: ElementType  # its element type
+    group: ElementGroup  # group of its elements
+    side: float  # +1 where the node comes from the right, -1 from the left
+    pin: Pin | None  # the control node that touches, or None where a beam's end does
+    node: int  # global number of the beam's end that touches, -1 for a pin
+    # position of its unknowns (force x and y, arc position, of exact elements the angle) in the border, -1
+    # without
     slot: int
 
     @property

@@ -29,15 +29,9 @@ TURN = 0.5
 
 @dataclass(frozen=True)
 class Polyline:
-    """A polyline at constant speed, from parameter 0 to 1; a single point is at rest.
+    """A polyline at constant speed, from parameter 0 to 1; a single point is at rest."""
 
-    Parameters
-    ----------
-    points : tuple of tuple of float
-        Its corners [length].
-    """
-
-    points: tuple[Point, ...]
+    points: tuple[Point, ...]  # its corners [length]
 
     @cached_property
     def _reached(self) -> list[float]:

@@ -20,23 +20,12 @@ PROJECTIONS, PROJECTED = 20, 1e-14
 
 
 class Projection(NamedTuple):
-    """Closest point of a beam's deflected axis to a node.
+    """Closest point of a beam's deflected axis to a node."""
 
-    Attributes
-    ----------
-    element : int
-        Global number of the owner.
-    xi : float
-        Position on it.
-    gap : float
-        Distance from the contact surface to the node, positive on the stated side.
-    overshoot : float
-        How far the closest point lies beyond the beam's ends, along the axis [length]; 0 within.
-    """
-
-    element: int
-    xi: float
-    gap: float
+    element: int  # global number of the owner
+    xi: float  # position on it
+    gap: float  # distance from the contact surface to the node, positive on the stated side
+    # how far the closest point lies beyond the beam's ends, along the axis [length]; 0 within
     overshoot: float
 
 

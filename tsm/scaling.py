@@ -22,21 +22,13 @@ TURN, _WAY = 0.7, 0.3
 
 
 class Scales(NamedTuple):
-    """Scales of a structure, or of many in the last axis.
+    """Scales of a structure, or of many in the last axis."""
 
-    Attributes
-    ----------
-    residual : ndarray, shape (unknowns, ...)
-        Factors that make residuals comparable, over the equations, then the contacts' unknowns.
-    step : ndarray, shape (unknowns, ...)
-        Reciprocals of the largest Newton step.
-    noise : float or ndarray
-        Scaled round-off of the residual.
-    """
-
+    # factors that make residuals comparable, over the equations, then the contacts' unknowns; shape
+    # (unknowns, ...)
     residual: Array
-    step: Array
-    noise: Array
+    step: Array  # reciprocals of the largest Newton step; shape (unknowns, ...)
+    noise: Array  # scaled round-off of the residual
 
 
 def scales_of(model: Model, coordinates: Array, properties: Properties, sizes: Sizes) -> Scales:

@@ -10,19 +10,14 @@ from tsm.elements.properties import Array
 
 
 class Sizes(NamedTuple):
-    """Sizes of a structure, or of many in the last axis.
+    """Sizes of a structure, or of many in the last axis."""
 
-    Attributes
-    ----------
-    length, extent : ndarray, shape (...)
-        Length of the longest beam, and of the largest structure of joined beams.
-    force_scale, least_force : ndarray, shape (...)
-        Largest ``EI/L^2`` of a beam. `force_scale` has the length of the beam for L, `least_force` the extent of its structure: the
-        forces of a long frame of short beams may be that small.
-    """
-
+    # length, extent: length of the longest beam, and of the largest structure of joined beams; shape (...)
     length: Array
     extent: Array
+    # force_scale, least_force: largest ``EI/L^2`` of a beam. `force_scale` has the length of the beam for
+    # L, `least_force` the extent of its structure: the forces of a long frame of short beams may be that
+    # small; shape (...)
     force_scale: Array
     least_force: Array
 

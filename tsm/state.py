@@ -12,40 +12,23 @@ Cuts = tuple[tuple[int, tuple[int, ...]], ...]
 
 
 class Place(NamedTuple):
-    """Where a contact with friction lies on its beam, as far as it decides how far the surfaces have slipped.
+    """Where a contact with friction lies on its beam, as far as that decides how far it has slipped."""
 
-    Attributes
-    ----------
-    arc : float
-        Arc position on the beam.
-    shear : float
-        Angle psi from the section's normal to the mean tangent.
-    direction : float
-        Angle phi of the mean tangent.
-    stretch : float
-        Length A of the face for a unit of arc: that of the mean tangent, and the mean curvature times the face's distance.
-    """
-
-    arc: float
-    shear: float
-    direction: float
+    arc: float  # arc position on the beam
+    shear: float  # angle psi from the section's normal to the mean tangent
+    direction: float  # angle phi of the mean tangent
+    # length A of the face for a unit of arc: that of the mean tangent, and the mean curvature times the
+    # face's distance
     stretch: float
 
 
 class Traction(NamedTuple):
-    """Contact with friction at a configuration.
+    """Contact with friction at a configuration."""
 
-    Attributes
-    ----------
-    tangential, normal : float
-        Force on the beam along its mean tangent, and across it away from the node.
-    place : Place
-        Where the contact lies.
-    """
-
+    # tangential, normal: force on the beam along its mean tangent, and across it away from the node
     tangential: float
     normal: float
-    place: Place
+    place: Place  # where the contact lies
 
     @property
     def way(self) -> int:
@@ -54,18 +37,10 @@ class Traction(NamedTuple):
 
 
 class Grip(NamedTuple):
-    """State of a closed contact with friction.
+    """State of a closed contact with friction."""
 
-    Attributes
-    ----------
-    slip : int
-        Sign of the slip rate, 0 in stick.
-    held : Place or None
-        Place at which the row of stick is zero, see `tsm.rolling`; None in slip.
-    """
-
-    slip: int
-    held: Place | None
+    slip: int  # sign of the slip rate, 0 in stick
+    held: Place | None  # place at which the row of stick is zero, see `tsm.rolling`; None in slip
 
 
 UNDECIDED = Grip(slip=0, held=None)
@@ -99,17 +74,10 @@ class Touch:
 
 @dataclass(frozen=True, kw_only=True)
 class Profile:
-    """Angles inside the exact elements.
+    """Angles inside the exact elements."""
 
-    Attributes
-    ----------
-    cuts : tuple
-        Contacts that cut the elements.
-    angle : ndarray, shape (s, p)
-        Angles of the sections from the x axis at the p Gauss nodes of the s segments.
-    """
-
-    cuts: Cuts
+    cuts: Cuts  # contacts that cut the elements
+    # angles of the sections from the x axis at the p Gauss nodes of the s segments; shape (s, p)
     angle: Array
 
 

@@ -35,31 +35,18 @@ the beams, and the whole matrix is solved instead."""
 
 @dataclass(kw_only=True, eq=False)
 class Linearisation:
-    """Residual at a configuration, and its tangent when it is asked for.
+    """Residual at a configuration, and its tangent when it is asked for."""
 
-    Attributes
-    ----------
-    nodal : ndarray, shape (dofs,)
-        Forces of beams and contacts on all degrees of freedom. On prescribed degrees of freedom they are the reactions.
-    residual : ndarray, shape (equations + contact unknowns,)
-        Unbalanced forces and end residuals of exact elements, then the residuals of the contacts: position (2), direction of the force, and
-        on exact elements the angle.
-    forces : dict
-        Force on the beam of every closed pair.
-    noise : float
-        Round-off of the residual by contact stiffness, ``4 eps k_c L``.
-    crowded : bool
-        Whether two nodes touch one element of the paper's, which knows one contact only.
-    groups : tuple of GroupForces
-        Forces of the element groups.
-    """
-
+    # forces of beams and contacts on all degrees of freedom. On prescribed degrees of freedom they are the
+    # reactions; shape (dofs,)
     nodal: Array
+    # unbalanced forces and end residuals of exact elements, then the residuals of the contacts: position
+    # (2), direction of the force, and on exact elements the angle; shape (equations + contact unknowns,)
     residual: Array
-    forces: dict[int, tuple[float, float]]
-    noise: float
-    crowded: bool
-    groups: tuple[GroupForces, ...]
+    forces: dict[int, tuple[float, float]]  # force on the beam of every closed pair
+    noise: float  # round-off of the residual by contact stiffness, ``4 eps k_c L``
+    crowded: bool  # whether two nodes touch one element of the paper's, which knows one contact only
+    groups: tuple[GroupForces, ...]  # forces of the element groups
     assemble: Callable[[], Bordered] = field(repr=False)
 
     @cached_property
@@ -69,33 +56,17 @@ class Linearisation:
 
 
 class Drag(NamedTuple):
-    """Viscous resistance to leaving a configuration.
+    """Viscous resistance to leaving a configuration."""
 
-    Attributes
-    ----------
-    per_way : ndarray, shape (dofs,)
-        Force per displacement.
-    start : ndarray, shape (dofs,)
-        Displacements without resistance.
-    """
-
-    per_way: Array
-    start: Array
+    per_way: Array  # force per displacement; shape (dofs,)
+    start: Array  # displacements without resistance; shape (dofs,)
 
 
 class Drive(NamedTuple):
-    """What changes in proportion to the load parameter.
+    """What changes in proportion to the load parameter."""
 
-    Attributes
-    ----------
-    velocities : tuple of Point
-        Velocities of the pairs' pins, zero for beam ends.
-    stage : int
-        Number, from 0, of the stage, which has the rates of loads and prescribed displacements.
-    """
-
-    velocities: tuple[Point, ...]
-    stage: int
+    velocities: tuple[Point, ...]  # velocities of the pairs' pins, zero for beam ends
+    stage: int  # number, from 0, of the stage, which has the rates of loads and prescribed displacements
 
 
 class Assembler:

@@ -55,31 +55,18 @@ SPREAD = np.array(
 
 
 class Coefficients(NamedTuple):
-    """Coefficients of the energy, see the module's text.
+    """Coefficients of the energy, see the module's text."""
 
-    Attributes
-    ----------
-    chord : ndarray, shape (2, n)
-        Undeformed chord.
-    l0 : ndarray, shape (n,)
-        Undeformed length.
-    constant, of_mm, of_hh : ndarray, shape (4, n)
-        Coefficients of the polynomial in ``m^2`` and ``h^2`` that gives lengthening, flexibility and, without the axial force,
-        the stiffnesses against m and h.
-    e, c : ndarray, shape (2, n)
-        ``2 em, 2 eh`` and ``cm, ch``.
-    r4, r2 : ndarray, shape (n,)
-        ``8 r4`` and ``4 r2``.
-    """
-
-    chord: Array
-    l0: Array
+    chord: Array  # undeformed chord; shape (2, n)
+    l0: Array  # undeformed length; shape (n,)
+    # constant, of_mm, of_hh: coefficients of the polynomial in ``m^2`` and ``h^2`` that gives lengthening,
+    # flexibility and, without the axial force, the stiffnesses against m and h; shape (4, n)
     constant: Array
     of_mm: Array
     of_hh: Array
-    e: Array
+    e: Array  # e, c: ``2 em, 2 eh`` and ``cm, ch``; shape (2, n)
     c: Array
-    r4: Array
+    r4: Array  # r4, r2: ``8 r4`` and ``4 r2``; shape (n,)
     r2: Array
 
 

@@ -12,30 +12,19 @@ from tsm.elements.properties import Array
 
 
 class Collocation(NamedTuple):
-    """Tables of one order, all constant.
+    """Tables of one order, all constant."""
 
-    Attributes
-    ----------
-    c, w : ndarray, shape (p,)
-        Gauss nodes and weights.
-    once : ndarray, shape (p, p)
-        ``once @ f``: integral of the polynomial through f, from 0 to every node.
-    ends : ndarray, shape (p, 2)
-        ``f @ ends``: integral over the interval, and its integral: ``int f`` and ``int (1 - x) f``.
-    twice : ndarray, shape (p, p)
-        ``once @ once``, less half of what makes it vanish at the far end: see `rod`.
-    legendre : ndarray, shape (p, p)
-        ``legendre @ f``: coefficients of the polynomial over the Legendre polynomials.
-    stations, barycentric : ndarray, shape (p + 1,)
-        0 and the Gauss nodes, with their barycentric weights (Berrut and Trefethen 2004).
-    """
-
-    c: Array
+    c: Array  # c, w: Gauss nodes and weights; shape (p,)
     w: Array
-    once: Array
+    once: Array  # ``once @ f``: integral of the polynomial through f, from 0 to every node; shape (p, p)
+    # ``f @ ends``: integral over the interval, and its integral: ``int f`` and ``int (1 - x) f``; shape
+    # (p, 2)
     ends: Array
-    twice: Array
+    twice: Array  # ``once @ once``, less half of what makes it vanish at the far end: see `rod`; shape (p, p)
+    # ``legendre @ f``: coefficients of the polynomial over the Legendre polynomials; shape (p, p)
     legendre: Array
+    # stations, barycentric: 0 and the Gauss nodes, with their barycentric weights
+    # (Berrut and Trefethen 2004); shape (p + 1,)
     stations: Array
     barycentric: Array
 

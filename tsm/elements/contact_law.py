@@ -13,51 +13,28 @@ UPPER = [(a, b) for a in range(7) for b in range(a, 7)]
 
 
 class Surface(NamedTuple):
-    """Where a contact meets a beam.
+    """Where a contact meets a beam."""
 
-    Attributes
-    ----------
-    side : float
-        +1 where the node comes from the right, -1 from the left.
-    offset : float
-        Distance of the contacting node from the axis.
-    """
-
-    side: float
-    offset: float
+    side: float  # +1 where the node comes from the right, -1 from the left
+    offset: float  # distance of the contacting node from the axis
 
 
 class Rub(NamedTuple):
-    """State of a contact with friction.
+    """State of a contact with friction."""
 
-    Attributes
-    ----------
-    lean : float
-        ``sigma mu side`` in slip, with the sign sigma of the slip rate; 0 in stick.
-    held : float or None
-        Arc position at which the stick began, from the element's start; None in slip.
-    unit : float
-        Stiffness ``EI/L^2/L`` that makes the row of a stick a force.
-    face : float
-        Distance of the face, on which friction acts, from the axis; ``offset - radius``.
-    radius : float
-        Radius of a round pin, which does not turn.
-    path, shear, slope : float
-        Where the contact is held: length of the face per arc position, shear angle and slope angle, see `Friction.hold`. Without face and
-        radius they do not matter.
-    tilt : tuple of 2 floats
-        Change of the mean tangent by other contacts on the element, the sum of `Friction.tilt` times their forces. Only `Friction.split`
-        and `Friction.slip` take it; `Friction.crossing` has its part in the rows.
-    """
-
-    lean: float
-    held: float | None
-    unit: float
-    face: float = 0.0
-    radius: float = 0.0
+    lean: float  # ``sigma mu side`` in slip, with the sign sigma of the slip rate; 0 in stick
+    held: float | None  # arc position at which the stick began, from the element's start; None in slip
+    unit: float  # stiffness ``EI/L^2/L`` that makes the row of a stick a force
+    face: float = 0.0  # distance of the face, on which friction acts, from the axis; ``offset - radius``
+    radius: float = 0.0  # radius of a round pin, which does not turn
+    # path, shear, slope: where the contact is held: length of the face per arc position, shear angle and
+    # slope angle, see `Friction.hold`. Without face and radius they do not matter
     path: float = 1.0
     shear: float = 0.0
     slope: float = 0.0
+    # change of the mean tangent by other contacts on the element, the sum of `Friction.tilt` times their
+    # forces. Only `Friction.split` and `Friction.slip` take it; `Friction.crossing` has its part in the
+    # rows
     tilt: tuple[Any, Any] = (0.0, 0.0)
 
 
@@ -69,20 +46,17 @@ class ContactLaw:
     ``lever = x_i - x_c`` the vector from the contacting node to the element's end i, ``xi`` in [0, 1] the position on the element,
     ``force`` the force on the beam, ``side`` +1 where the node comes from the right and -1 from the left, ``offset`` the distance of the
     contact surface from the axis.
-
-    Attributes
-    ----------
-    response : callable
-        ``(p, x, lever, xi, force, side, offset) -> (gradient, tangent)`` over element (6), node (2) and the contact's unknowns. The
-        tangent is the derivative of the gradient. A law with unknowns adds both to the beam's; a law without unknowns replaces the beam's.
-    energy : callable
-        ``(p, x, lever, xi, force, side, offset) -> float``: contribution of the contact to the strain energy in equilibrium.
-    coupling : Coupling or None
-        Further functions of a law whose force and arc position are unknowns; None if the force follows from the displacements.
     """
 
+    # ``(p, x, lever, xi, force, side, offset) -> (gradient, tangent)`` over element (6), node (2) and the
+    # contact's unknowns. The tangent is the derivative of the gradient. A law with unknowns adds both to
+    # the beam's; a law without unknowns replaces the beam's
     response: Callable[[Properties, Any, Any, Any, Any, float, float], tuple[Array, Array]]
+    # ``(p, x, lever, xi, force, side, offset) -> float``: contribution of the contact to the strain energy
+    # in equilibrium
     energy: Callable[[Properties, Any, Any, Any, Any, float, float], float]
+    # further functions of a law whose force and arc position are unknowns; None if the force follows from
+    # the displacements
     coupling: Coupling | None = None
 
     @property
@@ -93,55 +67,39 @@ class ContactLaw:
 
 @dataclass(frozen=True, kw_only=True)
 class Coupling:
-    """A contact law with unknowns, for many contacts at a time and for two contacts on one element.
+    """A contact law with unknowns, for many contacts at a time and for two contacts on one element."""
 
-    Attributes
-    ----------
-    jet : callable
-        ``(p, x, xi, force, side, offset) -> (gradient, hessian)`` of the same law for many contacts, of shapes (7, m) over ``dx, dy,
-        theta_i, theta_j, F_x, F_y, xi`` and (28, m), `UPPER`. See `mixed_contact.jet`.
-    dent : callable
-        ``(p, xi, eta) -> number``: deflection of the element at xi by a unit force at eta.
-    crossing : callable
-        ``(p, (xi, eta), force, force) -> (gradient, tangent)``: coupling of two contacts on one element, over force (2) and arc position
-        of the first contact, then of the second. The arguments are numbers, or arrays over many elements with ``xi <= eta``.
-    friction : Friction or None
-        The law with friction; None if the law has none.
-    """
-
+    # ``(p, x, xi, force, side, offset) -> (gradient, hessian)`` of the same law for many contacts, of
+    # shapes (7, m) over ``dx, dy, theta_i, theta_j, F_x, F_y, xi`` and (28, m), `UPPER`. See
+    # `mixed_contact.jet`
     jet: Callable[[Properties, Any, Any, Any, Any, Any], tuple[Array, Array]]
+    # ``(p, xi, eta) -> number``: deflection of the element at xi by a unit force at eta
     dent: Callable[[Properties, Any, Any], Any]
+    # ``(p, (xi, eta), force, force) -> (gradient, tangent)``: coupling of two contacts on one element, over
+    # force (2) and arc position of the first contact, then of the second. The arguments are numbers, or
+    # arrays over many elements with ``xi <= eta``
     crossing: Callable[[Properties, tuple[Any, Any], Any, Any], tuple[Array, Array]]
-    friction: Friction | None = None
+    friction: Friction | None = None  # the law with friction; None if the law has none
 
 
 @dataclass(frozen=True, kw_only=True)
 class Friction:
-    """Coulomb friction in a contact law whose force and arc position are unknowns.
+    """Coulomb friction in a contact law whose force and arc position are unknowns."""
 
-    Attributes
-    ----------
-    response : callable
-        ``(p, x, lever, xi, force, surface, rub) -> (residual, tangent)`` as `ContactLaw.response`, without a symmetric tangent.
-    split : callable
-        ``(p, x, xi, force, surface, rub) -> (F_t, F_n, s)``: forces along the beam and across it, and the arc position from the
-        element's start.
-    slip : callable
-        ``(p, x, xi, force, surface, rub) -> form (11,)``: slip rate as a linear form, ``F_t`` times which is the dissipated power.
-    hold : callable
-        ``(p, x, xi, force, surface, rub) -> Rub``: state of a stick that begins here.
-    energy : callable
-        As `ContactLaw.energy`, of the arguments of `response`.
-    crossing : callable
-        ``(p, (xi, eta), force, force, (rub, rub)) -> (residual, tangent)`` as `Coupling.crossing`.
-    tilt : callable
-        ``(p, xi, eta) -> number``: change of the mean tangent at xi by a unit force at eta.
-    """
-
+    # ``(p, x, lever, xi, force, surface, rub) -> (residual, tangent)`` as `ContactLaw.response`, without a
+    # symmetric tangent
     response: Callable[[Properties, Any, Any, Any, Any, Surface, Rub], tuple[Array, Array]]
+    # ``(p, x, xi, force, surface, rub) -> (F_t, F_n, s)``: forces along the beam and across it, and the arc
+    # position from the element's start
     split: Callable[[Properties, Any, Any, Any, Surface, Rub], tuple[Any, Any, Any]]
+    # ``(p, x, xi, force, surface, rub) -> form (11,)``: slip rate as a linear form, ``F_t`` times which is
+    # the dissipated power
     slip: Callable[[Properties, Any, Any, Any, Surface, Rub], Array]
+    # ``(p, x, xi, force, surface, rub) -> Rub``: state of a stick that begins here
     hold: Callable[[Properties, Any, Any, Any, Surface, Rub], Rub]
+    # as `ContactLaw.energy`, of the arguments of `response`
     energy: Callable[[Properties, Any, Any, Any, Any, Surface, Rub], float]
+    # ``(p, (xi, eta), force, force, (rub, rub)) -> (residual, tangent)`` as `Coupling.crossing`
     crossing: Callable[[Properties, tuple[Any, Any], Any, Any, tuple[Rub, Rub]], tuple[Array, Array]]
+    # ``(p, xi, eta) -> number``: change of the mean tangent at xi by a unit force at eta
     tilt: Callable[[Properties, Any, Any], Any]

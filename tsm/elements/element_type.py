@@ -14,30 +14,19 @@ from tsm.elements.properties import Properties
 
 @dataclass(frozen=True, kw_only=True)
 class ElementType(ABC):
-    """One way to write the element force equation.
+    """One way to write the element force equation."""
 
-    Attributes
-    ----------
-    name : str
-        Key of `tsm.ELEMENTS`.
-    source : str
-        Source of the equations.
-    sheared : bool
-        Whether the beam deforms in shear. Otherwise its shear number is zero, for any section.
-    variant : bool
-        Whether the element exists only for comparison with another one, as an element with misprints or without a term. The
-        matrix of extreme cases does not have it.
-    bearable_turn : float
-        Largest bend between the ends for which the element is an approximation [rad]; infinite for an element that refines itself.
-    colour, marker : str
-        How figures draw its answers: a colour in hexadecimal digits, a marker of matplotlib.
-    """
-
-    name: str
-    source: str
+    name: str  # key of `tsm.ELEMENTS`
+    source: str  # source of the equations
+    # whether the beam deforms in shear. Otherwise its shear number is zero, for any section
     sheared: bool = True
+    # whether the element exists only for comparison with another one, as an element with misprints or
+    # without a term. The matrix of extreme cases does not have it
     variant: bool = False
+    # largest bend between the ends for which the element is an approximation [rad]; infinite for an element
+    # that refines itself
     bearable_turn: float = math.inf
+    # colour, marker: how figures draw its answers: a colour in hexadecimal digits, a marker of matplotlib
     colour: str = "#666666"
     marker: str = "v"
 
@@ -64,14 +53,9 @@ class ElementType(ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class Integrated(ElementType):
-    """An element whose equations are integrated. A contact cuts it in two; force (2), arc position and section angle are unknowns.
+    """An integrated element. A contact cuts it; force (2), arc position and section angle are unknowns."""
 
-    Attributes
-    ----------
-    nodes : int or None
-        Gauss nodes of every segment; None where their number follows from the accuracy.
-    """
-
+    # Gauss nodes of every segment; None where their number follows from the accuracy
     nodes: int | None = None
 
     @property
@@ -97,30 +81,17 @@ class Integrated(ElementType):
 
 @dataclass(frozen=True, kw_only=True)
 class ClosedForm(ElementType):
-    """An element whose force follows from its nodes' displacements in closed form.
+    """An element whose force follows from its nodes' displacements in closed form."""
 
-    Attributes
-    ----------
-    coefficients : callable
-        Coefficients of the beam's energy from its constants, see `beam.Coefficients`.
-    contact : ContactLaw
-        Law of a contact inside the element.
-    order : int
-        Order of the errors of forces and shapes in the element's length.
-    bearable_turn : float
-        The first neglected term is then a fifth of the force.
-    varying : Integrated or None
-        Type of the elements of a beam that is curved or tapered, or has a load along it.
-    shear_floor : (float, int)
-        Factor and power of the shear strain F/GA in the error that no number of elements removes, measured on KS for F/GA from 1e-3 to
-        3e-2.
-    """
-
+    # coefficients of the beam's energy from its constants, see `beam.Coefficients`
     coefficients: Callable[[Properties], Coefficients]
-    contact: ContactLaw
-    order: int = 2
-    bearable_turn: float = 1.0
+    contact: ContactLaw  # law of a contact inside the element
+    order: int = 2  # order of the errors of forces and shapes in the element's length
+    bearable_turn: float = 1.0  # the first neglected term is then a fifth of the force
+    # type of the elements of a beam that is curved or tapered, or has a load along it
     varying: Integrated | None = None
+    # factor and power of the shear strain F/GA in the error that no number of elements removes, measured on
+    # KS for F/GA from 1e-3 to 3e-2
     shear_floor: tuple[float, int] = (1.0, 2)
 
     @property

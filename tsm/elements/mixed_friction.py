@@ -50,39 +50,17 @@ Pair = tuple[Dual, Dual]
 
 
 class Loaded(NamedTuple):
-    """An element under the force and couple of a contact, over ``dx, dy, theta_i, theta_j, F_x, F_y, xi``.
+    """An element under the force and couple of a contact, over ``dx, dy, theta_i, theta_j, F_x, F_y, xi``."""
 
-    Attributes
-    ----------
-    force : tuple of 2 Dual
-        Force F on the beam.
-    tangent : tuple of 2 Dual
-        Mean tangent T, per undeformed length.
-    stretch : Dual
-        |T|.
-    place : tuple of 2 Dual
-        Point r of the axis from the element's end i.
-    nodal : tuple of 4 Dual
-        Loads on chord and end rotations.
-    energy : Dual
-        Strain energy E by the contact.
-    curvature : Dual
-        theta', per undeformed length.
-    shear : Dual
-        psi, the angle from the section's normal to T.
-    slope : Dual
-        phi, the angle of T.
-    """
-
-    force: tuple[Dual, Dual]
-    tangent: tuple[Dual, Dual]
-    stretch: Dual
-    place: tuple[Dual, Dual]
-    nodal: tuple[Dual, ...]
-    energy: Dual
-    curvature: Dual
-    shear: Dual
-    slope: Dual
+    force: tuple[Dual, Dual]  # force F on the beam
+    tangent: tuple[Dual, Dual]  # mean tangent T, per undeformed length
+    stretch: Dual  # |T|
+    place: tuple[Dual, Dual]  # point r of the axis from the element's end i
+    nodal: tuple[Dual, ...]  # loads on chord and end rotations
+    energy: Dual  # strain energy E by the contact
+    curvature: Dual  # theta', per undeformed length
+    shear: Dual  # psi, the angle from the section's normal to T
+    slope: Dual  # phi, the angle of T
 
 
 def response(
@@ -255,33 +233,17 @@ def _loaded(p: Properties, x: tuple[Any, ...], xi: Any, force: tuple[Any, Any], 
 
 
 class Flexibility(NamedTuple):
-    """Response of an element with held ends to a unit force and a unit couple at a point, there; over seven variables.
+    """What a unit force and couple at a point of a held element do there, over seven variables."""
 
-    Attributes
-    ----------
-    C, C_s : Dual
-        Deflection by a force across the element, and its derivative in the arc position.
-    A, A_s : Dual
-        Displacement by a force along the element, and its derivative.
-    K : Dual
-        Deflection by a couple, rotation by a force.
-    R, R_s : Dual
-        Rotation by a couple, and its derivative.
-    rho : Dual
-        Slope of the centre line by a couple, ``R`` and the shear strain.
-    kappa : Dual
-        Curvature by a force, so that ``dK/ds = rho + kappa``.
-    """
-
-    C: Dual
+    C: Dual  # C, C_s: deflection by a force across the element, and its derivative in the arc position
     C_s: Dual
-    A: Dual
+    A: Dual  # A, A_s: displacement by a force along the element, and its derivative
     A_s: Dual
-    K: Dual
-    R: Dual
+    K: Dual  # deflection by a couple, rotation by a force
+    R: Dual  # R, R_s: rotation by a couple, and its derivative
     R_s: Dual
-    rho: Dual
-    kappa: Dual
+    rho: Dual  # slope of the centre line by a couple, ``R`` and the shear strain
+    kappa: Dual  # curvature by a force, so that ``dK/ds = rho + kappa``
 
 
 def _flexibility(p: Properties, xi: Any, arc: Dual) -> Flexibility:

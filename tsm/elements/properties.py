@@ -17,26 +17,14 @@ Array = np.ndarray[Any, np.dtype[Any]]
 
 
 class Properties(NamedTuple):
-    """Constants of elements: arrays (one entry per element) or plain numbers (one element).
+    """Constants of elements: arrays (one entry per element) or plain numbers (one element)."""
 
-    Attributes
-    ----------
-    dx0, dy0 : float or ndarray
-        Undeformed chord, from end i to end j [length].
-    l0 : float or ndarray
-        Undeformed length.
-    EA, EI : float or ndarray
-        Axial and bending stiffness.
-    Phi : float or ndarray
-        Shear number ``12 Psi / l0^2`` with ``Psi = EI/(G A_e)``.
-    """
-
-    dx0: Any
+    dx0: Any  # dx0, dy0: undeformed chord, from end i to end j [length]
     dy0: Any
-    l0: Any
-    EA: Any
+    l0: Any  # undeformed length
+    EA: Any  # EA, EI: axial and bending stiffness
     EI: Any
-    Phi: Any
+    Phi: Any  # shear number ``12 Psi / l0^2`` with ``Psi = EI/(G A_e)``
 
 
 def chord_rotation(cross: Any, dot: Any) -> Any:

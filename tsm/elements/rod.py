@@ -39,56 +39,28 @@ _DIRECT = _PARTS.reshape(13, -1)
 
 
 class Flexibility(NamedTuple):
-    """Flexibilities of segments, each of shape (s, 1).
+    """Flexibilities of segments, each of shape (s, 1)."""
 
-    Attributes
-    ----------
-    stretch, shear, bend : ndarray
-        1/EA, 1/GA, 1/EI.
-    """
-
-    stretch: Array
+    stretch: Array  # stretch, shear, bend: 1/EA, 1/GA, 1/EI
     shear: Array
     bend: Array
 
 
 class Segments(NamedTuple):
-    """Rods between two loads, s of them.
+    """Rods between two loads, s of them."""
 
-    Attributes
-    ----------
-    flexibility : Flexibility
-        Flexibilities of the segments.
-    force : ndarray, shape (2, s, 1)
-        Internal force, on the section that looks to the end.
-    length : ndarray, shape (s, 1)
-        Undeformed length.
-    angle : ndarray, shape (s, p)
-        Angles of the sections at the Gauss nodes, from the x axis.
-    """
-
-    flexibility: Flexibility
-    force: Array
-    length: Array
-    angle: Array
+    flexibility: Flexibility  # flexibilities of the segments
+    force: Array  # internal force, on the section that looks to the end; shape (2, s, 1)
+    length: Array  # undeformed length; shape (s, 1)
+    angle: Array  # angles of the sections at the Gauss nodes, from the x axis; shape (s, p)
 
 
 class Field(NamedTuple):
-    """Forces and tangent vectors of the rod at the Gauss nodes.
+    """Forces and tangent vectors of the rod at the Gauss nodes."""
 
-    Attributes
-    ----------
-    values : ndarray, shape (3, s, p)
-        f and r' (x, y).
-    sums : ndarray, shape (3, s, 2)
-        Their integrals over the unit interval: ``int v`` and ``int (1 - x) v``.
-    c, s, N, q, turn, gq : ndarray, shape (s, p)
-        Cosine and sine, ``N``, ``-Q``, ``1 + g N``, ``-g Q``.
-    """
-
-    values: Array
-    sums: Array
-    c: Array
+    values: Array  # f and r' (x, y); shape (3, s, p)
+    sums: Array  # their integrals over the unit interval: ``int v`` and ``int (1 - x) v``; shape (3, s, 2)
+    c: Array  # c, s, N, q, turn, gq: cosine and sine, ``N``, ``-Q``, ``1 + g N``, ``-g Q``; shape (s, p)
     s: Array
     N: Array
     q: Array
@@ -97,36 +69,20 @@ class Field(NamedTuple):
 
 
 class Arrival(NamedTuple):
-    """Residuals of segments.
+    """Residuals of segments."""
 
-    Attributes
-    ----------
-    end_residual : ndarray, shape (s,)
-        Integrated angle at the end less the angle of the section there.
-    inside : ndarray, shape (s, p)
-        Residual of the angles inside [rad].
-    bent : ndarray, shape (s, p)
-        ``twice @ f``.
-    """
-
-    end_residual: Array
-    inside: Array
-    bent: Array
+    end_residual: Array  # integrated angle at the end less the angle of the section there; shape (s,)
+    inside: Array  # residual of the angles inside [rad]; shape (s, p)
+    bent: Array  # ``twice @ f``; shape (s, p)
 
 
 class Condensed(NamedTuple):
-    """Segments with their inner equations eliminated.
+    """Segments with their inner equations eliminated."""
 
-    Attributes
-    ----------
-    transfer : ndarray, shape (s, 4, 7)
-        Derivatives of end residual, moment at the end, and vector from start to end, by the inputs.
-    inner : ndarray, shape (s, p, 7)
-        Derivatives of the angles inside by the inputs.
-    """
-
+    # derivatives of end residual, moment at the end, and vector from start to end, by the inputs; shape
+    # (s, 4, 7)
     transfer: Array
-    inner: Array
+    inner: Array  # derivatives of the angles inside by the inputs; shape (s, p, 7)
 
 
 def field(segments: Segments) -> Field:
@@ -226,21 +182,11 @@ def _direct(segments: Segments, values_at_nodes: Field, sums: Array, moment: Arr
 
 
 class Tangent(NamedTuple):
-    """Tangent vector r' of the axis at a section, with its derivatives.
+    """Tangent vector r' of the axis at a section, with its derivatives."""
 
-    Attributes
-    ----------
-    vector : tuple of 2 numbers
-        r' (x, y).
-    turned : tuple of 2 numbers
-        Its derivative by the angle.
-    compliance : tuple of 3 numbers
-        Its derivative by the force: xx, xy, yy.
-    """
-
-    vector: tuple[Any, Any]
-    turned: tuple[Any, Any]
-    compliance: tuple[Any, Any, Any]
+    vector: tuple[Any, Any]  # r' (x, y)
+    turned: tuple[Any, Any]  # its derivative by the angle
+    compliance: tuple[Any, Any, Any]  # its derivative by the force: xx, xy, yy
 
 
 def tangent(stretch: float, shear: float, force: tuple[Any, Any], angle: Any) -> Tangent:

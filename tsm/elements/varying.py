@@ -24,27 +24,15 @@ INPUTS = 9
 
 
 class Course(NamedTuple):
-    """What varies along segments, at the same points of each; all have the shape (s, p), or two of them in front.
+    """What varies along segments, at the same points of each; shapes (s, p), or (2, s, p)."""
 
-    Attributes
-    ----------
-    flexibility : Flexibility
-        1/EA, 1/GA, 1/EI.
-    slope : Flexibility
-        Their derivatives in the arc position.
-    resultant : ndarray, shape (2, s, p)
-        P, the resultant of the load from the start of the element, by which the internal force has fallen.
-    load : ndarray, shape (2, s, p)
-        q, the load per length.
-    resultant_rate : ndarray, shape (2, s, p)
-        Derivative of P in the load parameter.
-    """
-
-    flexibility: Flexibility
-    slope: Flexibility
+    flexibility: Flexibility  # 1/EA, 1/GA, 1/EI
+    slope: Flexibility  # their derivatives in the arc position
+    # P, the resultant of the load from the start of the element, by which the internal force has fallen;
+    # shape (2, s, p)
     resultant: Array
-    load: Array
-    resultant_rate: Array
+    load: Array  # q, the load per length; shape (2, s, p)
+    resultant_rate: Array  # derivative of P in the load parameter; shape (2, s, p)
 
     def single(self, s: int) -> Course:
         """What varies along one segment."""
@@ -56,42 +44,18 @@ class Course(NamedTuple):
 
 
 class VaryingSegments(NamedTuple):
-    """Rods between two contacts, s of them; the first four attributes are those of `rod.Segments`, at the Gauss nodes.
+    """Rods between two contacts, s of them; the first four are those of `rod.Segments`, at the Gauss nodes."""
 
-    Attributes
-    ----------
-    flexibility : Flexibility
-        Flexibilities, each of shape (s, p).
-    force : ndarray, shape (2, s, p)
-        Internal force.
-    length : ndarray, shape (s, 1)
-        Undeformed length.
-    angle : ndarray, shape (s, p)
-        Angles of the sections, from the x axis.
-    course : Course
-        What varies along the segments.
-    curvature : ndarray, shape (s, 1)
-        Natural curvature.
-    constant : ndarray, shape (2, s, 1)
-        Part n of the internal force, constant between two contacts.
-    begin : ndarray, shape (s, 1)
-        Arc position of the start within the element.
-    owner : ndarray of int, shape (s,)
-        Elements of the segments, counted over the exact ones.
-    at_end : Course
-        What varies, at the ends of the segments, of shape (s, 1).
-    """
-
-    flexibility: Flexibility
-    force: Array
-    length: Array
-    angle: Array
-    course: Course
-    curvature: Array
-    constant: Array
-    begin: Array
-    owner: Array
-    at_end: Course
+    flexibility: Flexibility  # flexibilities, each of shape (s, p)
+    force: Array  # internal force; shape (2, s, p)
+    length: Array  # undeformed length; shape (s, 1)
+    angle: Array  # angles of the sections, from the x axis; shape (s, p)
+    course: Course  # what varies along the segments
+    curvature: Array  # natural curvature; shape (s, 1)
+    constant: Array  # part n of the internal force, constant between two contacts; shape (2, s, 1)
+    begin: Array  # arc position of the start within the element; shape (s, 1)
+    owner: Array  # elements of the segments, counted over the exact ones; shape (s,)
+    at_end: Course  # what varies, at the ends of the segments, of shape (s, 1)
 
 
 class _Bent(NamedTuple):

@@ -47,27 +47,13 @@ class GroupTangent(Protocol):
 
 
 class Change(NamedTuple):
-    """Change of a configuration.
+    """Change of a configuration."""
 
-    Attributes
-    ----------
-    dofs : ndarray, shape (dofs,)
-        Change of all degrees of freedom.
-    contacts : ndarray, shape (contact unknowns,)
-        Change of the contacts' unknowns.
-    residual : float
-        Part of the residual that the change removes.
-    factor : float
-        Part of the change that is taken.
-    load : float
-        Change of the load parameter.
-    """
-
-    dofs: Array
-    contacts: Array
-    residual: float
-    factor: float
-    load: float
+    dofs: Array  # change of all degrees of freedom; shape (dofs,)
+    contacts: Array  # change of the contacts' unknowns; shape (contact unknowns,)
+    residual: float  # part of the residual that the change removes
+    factor: float  # part of the change that is taken
+    load: float  # change of the load parameter
 
 
 class ElementGroup(ABC):

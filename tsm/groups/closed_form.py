@@ -37,18 +37,10 @@ _POINTS = 10
 
 
 class ClosedFormForces(NamedTuple):
-    """Forces and tangents of elements in closed form, their contacts included.
+    """Forces and tangents of elements in closed form, their contacts included."""
 
-    Attributes
-    ----------
-    nodal : ndarray, shape (6, e)
-        Nodal forces.
-    tangent : ndarray, shape (36, e)
-        Their derivatives, row by row.
-    """
-
-    nodal: Array
-    tangent: Array
+    nodal: Array  # nodal forces; shape (6, e)
+    tangent: Array  # their derivatives, row by row; shape (36, e)
 
     @property
     def ends(self) -> Array:

@@ -22,18 +22,10 @@ Tangents = tuple[rod.Tangent, rod.Tangent]
 
 
 class Explicit(NamedTuple):
-    """Derivatives at a contact by the unknowns that pass neither through the section's angle nor through the forces.
+    """Derivatives at a contact by what passes neither through the section's angle nor through the forces."""
 
-    Attributes
-    ----------
-    vector : ndarray, shape (2, n)
-        Derivatives of the sum of the tangent vectors.
-    turn : ndarray, shape (n,)
-        Derivatives of the mean of the angle's derivative in the arc position.
-    """
-
-    vector: Array
-    turn: Array
+    vector: Array  # derivatives of the sum of the tangent vectors; shape (2, n)
+    turn: Array  # derivatives of the mean of the angle's derivative in the arc position; shape (n,)
 
 
 class Leaning(NamedTuple):

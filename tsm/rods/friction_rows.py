@@ -33,69 +33,31 @@ Pair = tuple[Any, Any]
 
 
 class Mean(NamedTuple):
-    """Mean tangent at a contact.
+    """Mean tangent at a contact."""
 
-    Attributes
-    ----------
-    t : tuple of 2 numbers
-        Unit vector.
-    stretch : number
-        Length of the mean tangent vector, for a unit of arc.
-    shear : number
-        Angle psi from the section's normal.
-    """
-
-    t: Pair
-    stretch: Any
-    shear: Any
+    t: Pair  # unit vector
+    stretch: Any  # length of the mean tangent vector, for a unit of arc
+    shear: Any  # angle psi from the section's normal
 
 
 class Forms(NamedTuple):
-    """Linear forms over the unknowns of an element, each of shape (n,).
+    """Linear forms over the unknowns of an element, each of shape (n,)."""
 
-    Attributes
-    ----------
-    row : ndarray
-        Derivative of the row of slip or stick.
-    couple : ndarray
-        Derivative of the couple on the axis.
-    slip : ndarray
-        Slip rate.
-    """
-
-    row: Array
-    couple: Array
-    slip: Array
+    row: Array  # derivative of the row of slip or stick
+    couple: Array  # derivative of the couple on the axis
+    slip: Array  # slip rate
 
 
 class Rubbing(NamedTuple):
-    """Contact with friction at a configuration.
+    """Contact with friction at a configuration."""
 
-    Attributes
-    ----------
-    pair : PairModel
-        The contact pair.
-    force : tuple of 2 numbers
-        Force on the beam.
-    bend : float
-        1/EI.
-    curvature : float
-        Natural curvature.
-    mean : Mean
-        Mean tangent.
-    place : Place
-        Where it lies.
-    tangential, normal : number
-        Force along the mean tangent, and across it away from the node.
-    """
-
-    pair: PairModel
-    force: Pair
-    bend: float
-    curvature: float
-    mean: Mean
-    place: Place
-    tangential: Any
+    pair: PairModel  # the contact pair
+    force: Pair  # force on the beam
+    bend: float  # 1/EI
+    curvature: float  # natural curvature
+    mean: Mean  # mean tangent
+    place: Place  # where it lies
+    tangential: Any  # tangential, normal: force along the mean tangent, and across it away from the node
     normal: Any
 
     @property

@@ -26,18 +26,10 @@ FIXED[[6, 7, 3, 4], [3, 4, 0, 1]] = 1
 
 
 class Layout(NamedTuple):
-    """Segments of the elements, one after another.
+    """Segments of the elements, one after another."""
 
-    Attributes
-    ----------
-    owner : ndarray of int, shape (s,)
-        Element of every segment, counted over the exact elements.
-    first, last : ndarray of int, shape (r,)
-        First and last segment of every element.
-    """
-
-    owner: Array
-    first: Array
+    owner: Array  # element of every segment, counted over the exact elements; shape (s,)
+    first: Array  # first, last: first and last segment of every element; shape (r,)
     last: Array
 
 

@@ -16,27 +16,13 @@ if TYPE_CHECKING:
 
 
 class Owned(NamedTuple):
-    """Constants of the elements, one for every segment.
+    """Constants of the elements, one for every segment."""
 
-    Attributes
-    ----------
-    place : Layout
-        The segments.
-    dofs : ndarray of int, shape (9, s)
-        Degrees of freedom of the elements.
-    angles : tuple of 2 ndarray, shape (s,)
-        Angles of the undeformed elements at both ends.
-    length : ndarray, shape (s,)
-        Their length.
-    flexibility : Flexibility
-        Flexibilities of the elements.
-    """
-
-    place: Layout
-    dofs: Array
-    angles: tuple[Array, Array]
-    length: Array
-    flexibility: Flexibility
+    place: Layout  # the segments
+    dofs: Array  # degrees of freedom of the elements; shape (9, s)
+    angles: tuple[Array, Array]  # angles of the undeformed elements at both ends; shape (s,)
+    length: Array  # their length; shape (s,)
+    flexibility: Flexibility  # flexibilities of the elements
 
 
 class Section(NamedTuple):
@@ -49,65 +35,30 @@ class Section(NamedTuple):
 
 
 class Entry(NamedTuple):
-    """Where the segments of a state begin and end.
+    """Where the segments of a state begin and end."""
 
-    Attributes
-    ----------
-    place : Layout
-        Elements of the segments.
-    segments : rod.Segments or VaryingSegments
-        Force, length and angles inside.
-    field : rod.Field
-        The rod's equations there.
-    start, end, moment : ndarray, shape (s, 1)
-        Angles at both ends, moment at the start.
-    gain : ndarray, shape (s,)
-        Moment at the end minus moment at the start.
-    vector : ndarray, shape (2, s)
-        Vector from start to end.
-    rubbing : dict of Rubbing
-        Contacts with friction, by pair.
-    load_parameter : float
-        Load parameter.
-    """
-
-    place: Layout
-    segments: Any
-    field: Field
-    start: Array
+    place: Layout  # elements of the segments
+    segments: Any  # force, length and angles inside
+    field: Field  # the rod's equations there
+    start: Array  # start, end, moment: angles at both ends, moment at the start; shape (s, 1)
     end: Array
     moment: Array
-    gain: Array
-    vector: Array
-    rubbing: dict[int, Rubbing]
-    load_parameter: float
+    gain: Array  # moment at the end minus moment at the start; shape (s,)
+    vector: Array  # vector from start to end; shape (2, s)
+    rubbing: dict[int, Rubbing]  # contacts with friction, by pair
+    load_parameter: float  # load parameter
 
 
 class RodBalance(NamedTuple):
-    """Residual of the exact elements.
+    """Residual of the exact elements."""
 
-    Attributes
-    ----------
-    entry : Entry
-        The segments.
-    arrival : rod.Arrival
-        Their residuals.
-    nodal : ndarray, shape (9, r)
-        Forces on node i, arrival at node j, forces on node j.
-    contacts : dict of list
-        By pair: the rows of position (2), direction and arrival of the angle.
-    tangents : dict of tuple
-        By pair: the axis' tangent vectors before and after the contact.
-    inside : float
-        Largest residual inside [rad].
-    """
-
-    entry: Entry
-    arrival: Arrival
-    nodal: Array
-    contacts: dict[int, list[Any]]
+    entry: Entry  # the segments
+    arrival: Arrival  # their residuals
+    nodal: Array  # forces on node i, arrival at node j, forces on node j; shape (9, r)
+    contacts: dict[int, list[Any]]  # by pair: the rows of position (2), direction and arrival of the angle
+    # by pair: the axis' tangent vectors before and after the contact
     tangents: dict[int, tuple[rod.Tangent, rod.Tangent]]
-    inside: float
+    inside: float  # largest residual inside [rad]
 
     @property
     def ends(self) -> Array:
@@ -117,51 +68,29 @@ class RodBalance(NamedTuple):
 
 
 class CutElement(NamedTuple):
-    """Tangent of an element with contacts; with loads along elements one more column, the load parameter, stands before the last.
+    """Tangent of an element with contacts; under loads along it, the load parameter is the last column but one."""
 
-    Attributes
-    ----------
-    element : int
-        Counted over the exact elements.
-    pairs : tuple of int
-        Its contact pairs in order of arc position.
-    tangent : ndarray, shape (9 + 4 k, 10 + 4 k)
-        Tangent over the unknowns of the element, then of the contacts. The last column is the contribution of the inner residual.
-    inputs : ndarray, shape (k + 1, 7, 10 + 4 k)
-        Inputs of the segments by the same unknowns.
-    slip : dict of ndarray, shape (10 + 4 k,)
-        By pair with friction: its slip rate as a linear form over the same unknowns.
-    """
-
-    element: int
-    pairs: tuple[int, ...]
+    element: int  # counted over the exact elements
+    pairs: tuple[int, ...]  # its contact pairs in order of arc position
+    # tangent over the unknowns of the element, then of the contacts. The last column is the contribution of
+    # the inner residual; shape (9 + 4 k, 10 + 4 k)
     tangent: Array
-    inputs: Array
+    inputs: Array  # inputs of the segments by the same unknowns; shape (k + 1, 7, 10 + 4 k)
+    # by pair with friction: its slip rate as a linear form over the same unknowns; shape (10 + 4 k,)
     slip: dict[int, Array]
 
 
 class RodTangent(NamedTuple):
-    """Tangent of the exact elements.
+    """Tangent of the exact elements."""
 
-    Attributes
-    ----------
-    condensed_residual : ndarray, shape (9, r)
-        Contribution of the inner residual to the residual after the inner unknowns are eliminated.
-    tangent : ndarray, shape (81, r)
-        Derivative of the residual, row by row.
-    cut : tuple of CutElement
-        Tangents of the elements with contacts. The part without contacts is in the arrays above too.
-    inner : ndarray, shape (s, p, 7)
-        Derivatives of the angles inside by the inputs of the segments.
-    transfer : ndarray, shape (s, 4, 7)
-        Derivatives of their outputs, see `rod.Condensed`.
-    """
-
+    # contribution of the inner residual to the residual after the inner unknowns are eliminated; shape
+    # (9, r)
     condensed_residual: Array
-    tangent: Array
+    tangent: Array  # derivative of the residual, row by row; shape (81, r)
+    # tangents of the elements with contacts. The part without contacts is in the arrays above too
     cut: tuple[CutElement, ...]
-    inner: Array
-    transfer: Array
+    inner: Array  # derivatives of the angles inside by the inputs of the segments; shape (s, p, 7)
+    transfer: Array  # derivatives of their outputs, see `rod.Condensed`; shape (s, 4, 7)
 
 
 class Memo(NamedTuple):

@@ -15,45 +15,21 @@ from tsm.state import State
 
 
 class Station(NamedTuple):
-    """Points of the axis.
+    """Points of the axis."""
 
-    Attributes
-    ----------
-    position : ndarray, shape (m, 2)
-        Position.
-    angle : ndarray, shape (m,)
-        Angle of the section from the x axis.
-    moment : ndarray, shape (m,)
-        Bending moment.
-    force : ndarray, shape (m, 2)
-        Internal force.
-    """
-
-    position: Array
-    angle: Array
-    moment: Array
-    force: Array
+    position: Array  # position; shape (m, 2)
+    angle: Array  # angle of the section from the x axis; shape (m,)
+    moment: Array  # bending moment; shape (m,)
+    force: Array  # internal force; shape (m, 2)
 
 
 class Stations(NamedTuple):
-    """Short lines along a beam. Two neighbours do not share a point, because section forces may jump between them.
+    """Short lines along a beam. Neighbours share no point: section forces may jump between them."""
 
-    Attributes
-    ----------
-    arc : ndarray, shape (c, 2)
-        Distance along the undeformed axis.
-    position : ndarray, shape (c, 2, 2)
-        Deformed position.
-    rotation : ndarray, shape (c, 2)
-        Rotation from the undeformed state.
-    forces : ndarray, shape (c, 2, 3)
-        Axial force, shear force and moment.
-    """
-
-    arc: Array
-    position: Array
-    rotation: Array
-    forces: Array
+    arc: Array  # distance along the undeformed axis; shape (c, 2)
+    position: Array  # deformed position; shape (c, 2, 2)
+    rotation: Array  # rotation from the undeformed state; shape (c, 2)
+    forces: Array  # axial force, shear force and moment; shape (c, 2, 3)
 
 
 class RodShape:

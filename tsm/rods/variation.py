@@ -46,56 +46,33 @@ _PULL[5, 5] = 1
 
 
 class Bordered(NamedTuple):
-    """Element with contacts, or with modes inside.
+    """Element with contacts, or with modes inside."""
 
-    Attributes
-    ----------
-    element : int
-        Counted over the exact elements.
-    matrix : ndarray, shape (9 + b, 9 + b)
-        Tangent over the element's degrees of freedom, then over the element's unknowns in the border.
-    slots : list of int
-        Positions of the latter among the contacts' unknowns, -1 for the angles and moments that are the element's own.
-    moments : int
-        How many of the latter are moments; they are the last.
-    """
-
-    element: int
+    element: int  # counted over the exact elements
+    # tangent over the element's degrees of freedom, then over the element's unknowns in the border; shape
+    # (9 + b, 9 + b)
     matrix: Array
+    # positions of the latter among the contacts' unknowns, -1 for the angles and moments that are the
+    # element's own
     slots: list[int]
-    moments: int
+    moments: int  # how many of the latter are moments; they are the last
 
 
 class Variation(NamedTuple):
-    """Symmetric tangent of the exact elements, their forces and moments eliminated.
+    """Symmetric tangent of the exact elements, their forces and moments eliminated."""
 
-    Attributes
-    ----------
-    tangent : ndarray, shape (r, 9, 9)
-        Over the degrees of freedom of the elements, with units for force and moment.
-    bordered : tuple of Bordered
-        Elements that have more unknowns; their first nine are in `tangent` too.
-    """
-
+    # over the degrees of freedom of the elements, with units for force and moment; shape (r, 9, 9)
     tangent: Array
-    bordered: tuple[Bordered, ...]
+    bordered: tuple[Bordered, ...]  # elements that have more unknowns; their first nine are in `tangent` too
 
 
 class _Pieces(NamedTuple):
-    """Segments, divided where modes could hide: p pieces of s segments.
+    """Segments, divided where modes could hide: p pieces of s segments."""
 
-    Attributes
-    ----------
-    counts : ndarray of int, shape (s,)
-        Pieces of every segment.
-    short : ndarray of bool, shape (p,)
-        Those that keep their moment.
-    hessian : ndarray, shape (p, 6, 6) or (p, 7, 7)
-        Second derivatives of G over the inputs of `rod`, or of `varying`, without what is constant; the moment is an input of short pieces only.
-    """
-
-    counts: Array
-    short: Array
+    counts: Array  # pieces of every segment; shape (s,)
+    short: Array  # those that keep their moment; shape (p,)
+    # second derivatives of G over the inputs of `rod`, or of `varying`, without what is constant; the
+    # moment is an input of short pieces only; shape (p, 6, 6) or (p, 7, 7)
     hessian: Array
 
     @property
