@@ -18,15 +18,8 @@ Motion = tuple[float | None, float | None, float | None]
 class AtEnd:
     """Base of the conditions of one end of a strip.
 
-    Parameters
-    ----------
-    strip, end
-        Name of the strip, and its end, ``"start"`` or ``"end"``.
-
-    Raises
-    ------
-    ValueError
-        If the end has another name.
+    ``strip, end``: name of the strip, and its end, ``"start"`` or ``"end"``. Raises ValueError if the end has
+    another name.
     """
 
     strip: str

@@ -105,12 +105,8 @@ class Pair:
     def gap_derivatives(self, projection: Projection) -> tuple[Array, Array]:
         """First and second derivative of the gap with respect to the nodal displacements.
 
-        Returns
-        -------
-        U : (2 n, 3)
-            Columns ``dg/du``, ``W^T t`` and ``W'^T n``.
-        H : (3, 3)
-            ``d2g/du2 = U H U^T`` [1/m]; the first row and column vanish.
+        Returns ``U``, columns ``dg/du``, ``W^T t`` and ``W'^T n``; ``H``, ``d2g/du2 = U H U^T`` [1/m]; the
+        first row and column vanish.
         """
         s, d = self.contact.sign, -projection.distance
         directions = np.stack([-s * projection.normal, projection.tangent, projection.normal])

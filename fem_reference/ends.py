@@ -24,12 +24,8 @@ _BESIDE = 1e-6
 def room(pair: Pair, u: Floats, node: Floats, *, inside: bool) -> float:
     """Least distance of the node's surface from the free ends; negative where they overlap, infinite beside the strip.
 
-    Parameters
-    ----------
-    pair, u, node
-        The pair, the nodal displacements ``(n, 2)``, and the position of the node ``(2,)`` [m].
-    inside
-        Whether a point of the contact curve is closest to the node.
+    ``pair, u, node``: the pair, the nodal displacements ``(n, 2)``, and the position of the node ``(2,)``
+    [m]. ``inside``: whether a point of the contact curve is closest to the node.
     """
     beyond, behind = list[float](), list[float]()
     for end, corners in pair.ends.items():

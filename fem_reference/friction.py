@@ -145,16 +145,9 @@ def force_curvature(pair: Pair, at: Projection) -> Array:
 def mapped(friction: Friction, slip: float, largest_force: float, allowed: tuple[float, float]) -> Friction:
     """Return mapping of a converged friction; the same one where its equation holds.
 
-    Parameters
-    ----------
-    friction
-        Friction with the converged force.
-    slip
-        Slip since the last accepted state [m].
-    largest_force
-        Radius ``mu lam`` of the cone [N].
-    allowed
-        Slip [m] against the force, and force [N] beyond the cone, that are round-off.
+    ``friction``: friction with the converged force. ``slip``: slip since the last accepted state [m].
+    ``largest_force``: radius ``mu lam`` of the cone [N]. ``allowed``: slip [m] against the force, and force
+    [N] beyond the cone, that are round-off.
     """
     if friction.direction:
         return replace(friction, direction=0) if friction.direction * slip < -allowed[0] else friction

@@ -25,11 +25,9 @@ def read_mesh(strip: Strip) -> Discretisation:
     "right" and "left" at half the height below and above the axis. An edge is a named set of lines, either a physical
     group of Gmsh or a cell set of meshio.
 
-    Raises
-    ------
-    ValueError
-        If the file is not a regular file of at most 16 MB or cannot be read; if an edge is missing or misplaced; if an element
-        is clockwise, not convex or has no area; if a node belongs to no element; if the mesh has several parts or holes.
+    Raises ValueError if the file is not a regular file of at most 16 MB or cannot be read; if an edge is
+    missing or misplaced; if an element is clockwise, not convex or has no area; if a node belongs to no
+    element; if the mesh has several parts or holes.
     """
     from skfem import MeshQuad
 

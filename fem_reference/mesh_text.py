@@ -19,10 +19,7 @@ class MeshError(ValueError):
 def check_file(path: Path) -> None:
     """Require a regular file of at most `LARGEST` bytes, and check a Gmsh file line by line.
 
-    Raises
-    ------
-    MeshError
-        If the file cannot be read, is too large, or a line breaks the format.
+    Raises MeshError if the file cannot be read, is too large, or a line breaks the format.
     """
     try:
         info = path.stat()

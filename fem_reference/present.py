@@ -65,18 +65,8 @@ def html(result: Result) -> str:
 def plot(result: Result, axes: Any = None, shown: int = SHOWN) -> Any:
     """Draw the deformed meshes at `shown` of the accepted load parameters, evenly spread, with the pins; needs matplotlib.
 
-    Parameters
-    ----------
-    result
-        What is drawn.
-    axes
-        matplotlib's axes; the current ones of pyplot if not given.
-    shown
-        Number of load parameters.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
+    ``axes``: matplotlib's axes; the current ones of pyplot if not given.
+    ``shown``: number of load parameters.
     """
     from matplotlib.collections import PolyCollection
     from matplotlib.patches import Circle

@@ -34,10 +34,7 @@ class Sample:
 def sample(mesh: Discretisation, points: Floats) -> Sample:
     """Evaluate the shape functions at the places ``points`` ``(p, 2)``: axial coordinate and distance to the left of the axis.
 
-    Raises
-    ------
-    ValueError
-        If a point is not in the strip.
+    Raises ValueError if a point is not in the strip.
     """
     found = sample_basis(mesh.basis, mesh.cells, points)
     if mesh.nodes is mesh.places:
@@ -64,14 +61,8 @@ def section_points(
 ) -> tuple[Floats, Floats, Floats]:
     """Three-point Gauss rules in equal layers of the sections at ``stations`` ``(m,)``.
 
-    Returns
-    -------
-    points : (m q, 2)
-        Gauss points, section after section [m].
-    shares : (q,)
-        Weights of the points of a section; they sum to one.
-    heights : (m,)
-        Distances of the two faces [m].
+    Returns ``points``, Gauss points, section after section [m]; ``shares``, weights of the points of a
+    section; they sum to one; ``heights``, distances of the two faces [m].
     """
     low, high = (np.interp(stations, *nodes[edges[name]].T) for name in ("right", "left"))
     points, weights = np.polynomial.legendre.leggauss(3)

@@ -19,33 +19,15 @@ from tsm.stages import Increments
 class Along:
     """Curvature, sections and loads over the elements of all beams, in the order of the structure.
 
-    Parameters
-    ----------
-    beams : sequence of Beam
-        The beams.
-    loads : sequence of LineLoad
-        Loads along them.
-    stages : int
-        Number of stages of the load.
-
-    Attributes
-    ----------
-    varies : ndarray of bool, shape (e,)
-        Elements of the beams that are curved or tapered, or have a load along them.
-    loaded : bool
-        Whether there are loads along beams.
-    length, curvature : ndarray, shape (e,)
-        Undeformed length and natural curvature.
-    start, end : ndarray, shape (e,)
-        Angle of the undeformed axis at both ends.
-    gauge, gyration : ndarray, shape (2, e)
-        Radius of gyration ``sqrt(EI/EA)``, in proportion to the height, and `gauge`, EA over this radius, in proportion to the width; at
-        both ends. Both are linear between them.
-    ratio : ndarray, shape (e,)
-        GA/EA.
-    resultants : Increments of arrays, shape (stages, 2, d, e)
-        Resultants of the loads, ``P(s) = int_0^s q ds`` from the start of an element: coefficients of the powers 1 to d of the part of
-        its length.
+    ``varies`` (e,): elements of the beams that are curved or tapered, or have a load along them.
+    ``loaded``: whether there are loads along beams.
+    ``length, curvature`` (e,): undeformed length and natural curvature.
+    ``start, end`` (e,): angle of the undeformed axis at both ends.
+    ``gauge, gyration`` (2, e): radius of gyration ``sqrt(EI/EA)``, in proportion to the height, and `gauge`,
+        EA over this radius, in proportion to the width; at both ends. Both are linear between them.
+    ``ratio`` (e,): GA/EA.
+    ``resultants`` (stages, 2, d, e): resultants of the loads, ``P(s) = int_0^s q ds`` from the start of an
+        element: coefficients of the powers 1 to d of the part of its length.
     """
 
     def __init__(self, beams: Sequence[Beam], loads: Sequence[LineLoad], stages: int = 1) -> None:
@@ -87,14 +69,9 @@ class Along:
     def course(self, elements: Array, part: Array, resultant: Array, resultant_rate: Array) -> Course:
         """What varies, at parts (s, p) of the lengths of elements (s,).
 
-        Parameters
-        ----------
-        elements : ndarray of int, shape (s,)
-            Global numbers of the elements.
-        part : ndarray, shape (s, p)
-            Parts of the lengths, from 0 at the start of an element to 1.
-        resultant, resultant_rate : ndarray, shape (2, d, s)
-            Coefficients of the resultants of all loads together along these elements, and their derivatives in the load parameter.
+        ``elements`` (s,): global numbers of the elements. ``part`` (s, p): parts of the lengths, from 0 at
+        the start of an element to 1. ``resultant, resultant_rate`` (2, d, s): coefficients of the resultants
+        of all loads together along these elements, and their derivatives in the load parameter.
         """
         length = self.length[elements, None]
         gauge, gyration = self.gauge[:, elements, None], self.gyration[:, elements, None]
@@ -119,10 +96,7 @@ class Along:
 def kind_of(beam: Beam, *, varies: bool) -> ElementType:
     """Type of a beam's elements.
 
-    Raises
-    ------
-    ValueError
-        If the beam has what its elements cannot state.
+    Raises ValueError if the beam has what its elements cannot state.
     """
     kind = ELEMENTS[beam.element]
     if not varies:
@@ -139,10 +113,7 @@ def kind_of(beam: Beam, *, varies: bool) -> ElementType:
 def gauss_nodes(beams: Sequence[tuple[Beam, ElementType]]) -> int | None:
     """Fixed number of Gauss nodes of the elements that contacts cut, None where it follows from the accuracy.
 
-    Raises
-    ------
-    ValueError
-        If it is fixed for some of them only.
+    Raises ValueError if it is fixed for some of them only.
     """
     counts = {kind.nodes: beam for beam, kind in beams if isinstance(kind, Integrated)}
     if len(counts) > 1:

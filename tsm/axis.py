@@ -15,23 +15,9 @@ def axis_line(
 ) -> tuple[Array, Array]:
     """Deflected axis of a beam.
 
-    Parameters
-    ----------
-    model : Model
-        The structure.
-    state, system : State, Linearisation
-        A configuration and its forces.
-    beam : str
-        Name of the beam.
-    points_per_element : int, optional
-        Intervals in every element: 10, and of exact elements so many that the beam has 100.
-
-    Returns
-    -------
-    arc : ndarray, shape (m,)
-        Distance along the undeformed axis.
-    xy : ndarray, shape (m, 2)
-        Deformed position.
+    ``state, system``: a configuration and its forces. ``points_per_element``: intervals in every element: 10,
+    and of exact elements so many that the beam has 100. Returns ``arc`` (m,), distance along the undeformed
+    axis; ``xy`` (m, 2), deformed position.
     """
     place = model.beams[beam]
     group = model.group_of(place)

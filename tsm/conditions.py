@@ -20,17 +20,9 @@ def held_components(
 ) -> tuple[dict[str, tuple[int, Array]], dict[int, float]]:
     """Return what the supports hold, and the prescribed values at load parameter 1 by degree of freedom.
 
-    Returns
-    -------
-    supports : dict
-        By supported end, the node and the components (3,) that the support holds and no support before it at the joint.
-    prescribed : dict
-        Displacements and rotations by degree of freedom.
-
-    Raises
-    ------
-    ValueError
-        If two supports at one joint prescribe different values.
+    Returns ``supports``, by supported end, the node and the components (3,) that the support holds and no
+    support before it at the joint; ``prescribed``, displacements and rotations by degree of freedom. Raises
+    ValueError if two supports at one joint prescribe different values.
     """
     held: dict[str, tuple[int, Array]] = {}
     prescribed: dict[int, float] = {}
@@ -75,10 +67,7 @@ def dead_loads(model: Model) -> Increments:
 def springs_of(model: Model) -> Springs | None:
     """Return the springs to the ground and in hinges, None without.
 
-    Raises
-    ------
-    ValueError
-        If all beams of a joint are hinged to it and nothing else holds its rotation.
+    Raises ValueError if all beams of a joint are hinged to it and nothing else holds its rotation.
     """
     structure = model.structure
     ground = [

@@ -35,12 +35,7 @@ class Bordered(NamedTuple):
 class Units:
     """Units of the equations and unknowns, needed because exact elements put lengths, forces and angles into one matrix.
 
-    Parameters
-    ----------
-    model : Model
-        Model whose longest beam and largest ``EI/L^2`` are the units.
-    k : int
-        Bandwidth.
+    ``model``: model whose longest beam and largest ``EI/L^2`` are the units. ``k``: bandwidth.
     """
 
     def __init__(self, model: Model, k: int) -> None:
@@ -68,20 +63,13 @@ class Units:
 class ContactBlock:
     """Unknowns and residuals of the contacts while the element groups enter them.
 
-    Attributes
-    ----------
-    right, below, corner : ndarray
-        Border of the tangent, see `Bordered`.
-    residual, condensed_residual : ndarray, shape (contact unknowns,)
-        Residuals of the contacts, and their contribution after the unknowns inside elements are eliminated.
-    forces : dict
-        Force on the beam of every closed pair.
-    pushed : list
-        First degrees of freedom of the beam ends that touch, with the reaction (2,) on each.
-    stiffest : float
-        Largest stiffness of a contact whose force follows from the displacements.
-    crowded : bool
-        Whether two nodes touch one element whose matrix knows a single contact.
+    ``right, below, corner``: border of the tangent, see `Bordered`.
+    ``residual, condensed_residual`` (contact unknowns,): residuals of the contacts, and their contribution
+        after the unknowns inside elements are eliminated.
+    ``forces``: force on the beam of every closed pair.
+    ``pushed``: first degrees of freedom of the beam ends that touch, with the reaction (2,) on each.
+    ``stiffest``: largest stiffness of a contact whose force follows from the displacements.
+    ``crowded``: whether two nodes touch one element whose matrix knows a single contact.
     """
 
     def __init__(self, model: Model) -> None:

@@ -43,10 +43,7 @@ def rearm(model: Model, state: State) -> State:
 def initial_state(model: Model) -> State:
     """Undeformed state; pairs whose node lies on the surface are closed with zero force.
 
-    Raises
-    ------
-    ValueError
-        If a node starts on the wrong side of its beam.
+    Raises ValueError if a node starts on the wrong side of its beam.
     """
     q = np.zeros(model.dof_count)
     count = len(model.pairs)

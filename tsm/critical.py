@@ -63,14 +63,7 @@ class CriticalPoint:
 def _bordered(newton: Newton, system: Linearisation, across: Array | None = None) -> tuple[float, Array]:
     """Return g and v of the module's equation, v over the equations and the contacts' unknowns.
 
-    Parameters
-    ----------
-    newton : Newton
-        Solver of the structure.
-    system : Linearisation
-        Tangent at an equilibrium.
-    across : ndarray, optional
-        The vector c; by default a fixed vector with components along all displacements.
+    ``across``: the vector c; by default a fixed vector with components along all displacements.
     """
     size = len(newton.scale)
     draw = np.random.default_rng(1)
@@ -93,19 +86,10 @@ def locate_bifurcation(
 
     The index of an equilibrium shows the side of the bifurcation, and g measures the distance to it.
 
-    Parameters
-    ----------
-    newton : Newton
-        Solver of the structure.
-    before, after : PathTangent
-        Two ends of a step between which the index changes.
-    solve : callable
-        Equilibrium of the path at a load parameter, None where none is found.
-
-    Returns
-    -------
-    Equilibrium or None
-        Equilibrium at the point, None where the path is not found between the two ends.
+    ``before, after``: two ends of a step between which the index changes. ``solve``: equilibrium of the path
+    at a load parameter, None where none is found. Returns the equilibrium at the point, None where the path
+    is
+    not found between the two ends.
     """
     _, v = _bordered(newton, before.system)
     weights = newton.per_unknown**2
@@ -154,10 +138,9 @@ def critical_point(
 def mode_shape(newton: Newton, equilibrium: Equilibrium) -> tuple[Array, dict[str, Array]] | None:
     """Buckling mode near a critical point, of the sign with which it begins to the left: see `_side`.
 
-    Returns
-    -------
-    tuple or None
-        Change of the unknowns that moves some point of an axis by 1, and the displacements (m, 2) of the axes; None without a single mode.
+    Returns the change of the unknowns that moves some point of an axis by 1, and the displacements (m, 2) of
+    the
+    axes; None without a single mode.
     """
     model, state = newton.model, equilibrium.state
     soft = mode(newton.assembler, state, equilibrium.system)

@@ -32,17 +32,9 @@ def crossing(model: Model, before: State, after: State) -> tuple[float, int] | N
     All points are assumed to move on straight lines between the configurations. The contact surface is extended beyond the beam's ends
     along its tangents.
 
-    Parameters
-    ----------
-    model : Model
-        The structure.
-    before, after : State
-        Accepted configuration, and one at a later load parameter.
-
-    Returns
-    -------
-    tuple or None
-        Load parameter and number of the pair.
+    ``before, after``: accepted configuration, and one at a later load parameter. Returns the load parameter
+    and
+    number of the pair.
     """
     crossings = []
     for k, (pair, armed) in enumerate(zip(model.pairs, before.armed, strict=True)):

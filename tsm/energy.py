@@ -43,10 +43,8 @@ class _Span(NamedTuple):
 def power(newton: Newton, equilibrium: Equilibrium, drive: Drive) -> Array | None:
     """Work and dissipation for a unit of the load parameter.
 
-    Returns
-    -------
-    ndarray, shape (1 + pairs,) or None
-        Work of pins, supports and loads, then the dissipation of every pair; None where the tangent is singular.
+    Returns the work of pins, supports and loads, then the dissipation of every pair, (1 + pairs,); None where
+    the tangent is singular.
     """
     model, state, system = newton.model, equilibrium.state, equilibrium.system
     by = rates(newton, state, system, drive)
@@ -84,22 +82,10 @@ def spent(
 ) -> Spent | None:
     """Work and dissipation between two equilibria on a smooth part of the path.
 
-    Parameters
-    ----------
-    newton : Newton
-        Solver of the structure.
-    history : list of State
-        Earlier states with the same closed contacts, oldest first, from which the states between are predicted.
-    ends : tuple of Equilibrium
-        Where the interval begins and ends.
-    drive : Drive
-        What changes in proportion to the load parameter in between.
-
-    Returns
-    -------
-    Spent or None
-        None where a tangent is singular at an end, or no equilibrium is found in between. A short part without one counts by the mean
-        of its ends.
+    ``history``: earlier states with the same closed contacts, oldest first, from which the states between are
+    predicted. ``ends``: where the interval begins and ends. ``drive``: what changes in proportion to the load
+    parameter in between. None where a tangent is singular at an end, or no equilibrium is found in between. A
+    short part without one counts by the mean of its ends.
     """
     trail = [*(state for state in history if state is not ends[0].state), *(end.state for end in ends)]
 

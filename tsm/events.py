@@ -191,12 +191,9 @@ def least_push(newton: Newton, k: int) -> float:
 def margins(newton: Newton, equilibrium: Equilibrium, slip_rates: Mapping[int, float]) -> list[Margin]:
     """Margins of the events that may come next.
 
-    Parameters
-    ----------
-    newton, equilibrium
-        The solution, by whose tolerance forces are measured, and an equilibrium.
-    slip_rates : mapping
-        Rates of the pairs that slip, positive the way they slip; a pair without a rate is taken to slip on.
+    ``newton, equilibrium``: the solution, by whose tolerance forces are measured, and an equilibrium.
+    ``slip_rates``: rates of the pairs that slip, positive the way they slip; a pair without a rate is taken
+    to slip on.
     """
     model, state = newton.model, equilibrium.state
     upcoming: list[Margin] = []
@@ -261,20 +258,10 @@ def locate(
 ) -> tuple[Equilibrium, Margin] | None:
     """Equilibrium at which a margin is zero.
 
-    Parameters
-    ----------
-    before, after : tuple
-        Load parameter and margin on both sides of the event.
-    solve : callable
-        Equilibrium at a load parameter, None where none is found.
-    measure : callable
-        Margins of an equilibrium.
-
-    Returns
-    -------
-    tuple or None
-        Equilibrium at the root of the margin, with the margin; or just past a jump of the margin to below zero, whose load parameter is
-        exact to round-off.
+    ``solve``: equilibrium at a load parameter, None where none is found. ``measure``: margins of an
+    equilibrium. Returns the equilibrium at the root of the margin, with the margin; or just past a jump of
+    the
+    margin to below zero, whose load parameter is exact to round-off.
     """
     (begin, first), (end, last) = before, after
 

@@ -48,17 +48,8 @@ class Fall:
 
         Of two with the same potential it is the one on the mode's positive side, see `mode_shape`.
 
-        Parameters
-        ----------
-        critical : Equilibrium
-            Equilibrium at the point; the structure is pushed along its mode, one way and the other.
-        ahead : float
-            Load parameter of the fall, just beyond the point.
-
-        Returns
-        -------
-        tuple or Status
-            FALLING if the structure finds no rest, REST_UNKNOWN if it falls onto contacts with friction.
+        ``critical``: equilibrium at the point; the structure is pushed along its mode, one way and the other.
+        Returns FALLING if the structure finds no rest, REST_UNKNOWN if it falls onto contacts with friction.
         """
         mode = mode_shape(self.newton, critical)
         if mode is None:
@@ -88,17 +79,10 @@ class Fall:
     def rest(self, state: State, energy: float) -> Equilibrium | None:
         """Find the equilibrium that the structure reaches against a drag which is reduced from step to step.
 
-        Parameters
-        ----------
-        state : State
-            Configuration at the start of the fall, without the lost contact and therefore out of equilibrium.
-        energy : float
-            Potential of this configuration with the lost contact.
-
-        Returns
-        -------
-        Equilibrium or None
-            Equilibrium at rest; None if the structure finds none.
+        ``state``: configuration at the start of the fall, without the lost contact and therefore out of
+        equilibrium. ``energy``: potential of this configuration with the lost contact. Returns the
+        equilibrium at
+        rest; None if the structure finds none.
         """
         pace, over = _FIRST_PACE, _before(self.newton.model, state)
         resistance = _resistance(self.newton.model)

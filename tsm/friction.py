@@ -82,21 +82,8 @@ def regripped(newton: Newton, state: State, drive: Drive, last: State) -> State 
 
     Where a slip ends, its rate is zero, and the force of the stick that follows moves along the cone: its rate out of the cone is round-off.
 
-    Parameters
-    ----------
-    newton : Newton
-        Solver of the structure.
-    state : State
-        Configuration in equilibrium.
-    drive : Drive
-        What changes.
-    last : State
-        The same configuration before its contacts changed.
-
-    Returns
-    -------
-    State or Status
-        JAMMED if no state of the contacts is admissible, TWO_SLIPS if a contact without force could slip either way.
+    ``drive``: what changes. ``last``: the same configuration before its contacts changed. Returns JAMMED if
+    no state of the contacts is admissible, TWO_SLIPS if a contact without force could slip either way.
     """
     system = newton.assembler.linearise(state)
     here = {k: traction(newton.model, state, system, k) for k, _ in grips(state)}

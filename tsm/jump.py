@@ -27,18 +27,9 @@ class Jump:
     def rest(self, event: Equilibrium, state: State) -> Equilibrium | Status:
         """Equilibrium after the slip-off; contacts whose force would become tensile are released.
 
-        Parameters
-        ----------
-        event : Equilibrium
-            Equilibrium at the slip-off.
-        state : State
-            The same configuration without the lost contact.
-
-        Returns
-        -------
-        Equilibrium or Status
-            FALLING if the structure finds no rest. LOST_CONTACT if a contact opens that must persist.
-            REST_UNKNOWN if contacts with friction are closed at the rest.
+        ``event``: equilibrium at the slip-off. ``state``: the same configuration without the lost contact.
+        Returns FALLING if the structure finds no rest. LOST_CONTACT if a contact opens that must persist.
+        REST_UNKNOWN if contacts with friction are closed at the rest.
         """
         newton, model = self.fall.newton, self.fall.newton.model
         energy = began = newton.potential(event.state)

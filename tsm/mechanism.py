@@ -24,14 +24,7 @@ def mechanism(newton: Newton, equilibrium: Equilibrium, drive: Drive) -> bool:
 
     A contact without force holds a structure only if it begins to push.
 
-    Parameters
-    ----------
-    newton : Newton
-        Solver of the structure.
-    equilibrium : Equilibrium
-        The equilibrium in which the drive begins.
-    drive : Drive
-        What changes.
+    ``equilibrium``: the equilibrium in which the drive begins. ``drive``: what changes.
     """
     model, assembler, state = newton.model, newton.assembler, equilibrium.state
     edge, opened = IDLE * model.force_scale, state

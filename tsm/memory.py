@@ -34,10 +34,7 @@ def needed(structure: Structure, load_parameters: int) -> int:
 def check_memory(structure: Structure, load_parameters: int) -> None:
     """Raise unless the solution fits into the memory of the machine.
 
-    Raises
-    ------
-    ValueError
-        One line: how much it needs.
+    Raises ValueError, which says in one line how much it needs.
     """
     there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     bytes_ = needed(structure, load_parameters)

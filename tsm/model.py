@@ -31,58 +31,34 @@ _CONTACT_KINDS = np.arange(6, 10)
 class Model:
     """Numbering and constants of a structure.
 
-    Attributes
-    ----------
-    coordinates : ndarray, shape (nodes, 2)
-        Undeformed node positions.
-    dofs : ndarray of int, shape (6, elements)
-        Degrees of freedom of the elements' nodes, three per node.
-    groups : list of ElementGroup
-        The elements by the way in which they are stated. The force and moment of an exact element are three degrees of freedom, numbered
-        after the nodes.
-    closed : ndarray of int, shape (c,)
-        Elements in closed form.
-    place : ndarray of int, shape (elements,)
-        Number of every element within its group.
-    block : ndarray of int, shape (elements,)
-        Number of every element's own three degrees of freedom among all threes, -1 without.
-    free : ndarray of int, shape (equations,)
-        Degree of freedom of every equation, banded ones first.
-    banded : int
-        Number of banded equations.
-    border : int
-        Number of border unknowns: border equations, then the contacts' own unknowns.
-    rubbed : bool
-        Whether a contact has friction.
-    stages : int
-        Number of stages of the load.
-    turns : tuple of float
-        Load parameters at which a stage ends and another follows, and at which the paths of the pins turn; with friction, every corner,
-        since each may reverse a slip.
-    gauss_nodes : int or None
-        Fixed number of Gauss nodes of the elements that contacts cut, None where it follows from the accuracy.
-    along : Along
-        What varies along the elements.
-    loads : Increments
-        Dead loads on all degrees of freedom.
-    supports : dict
-        By supported end, the node and the components (3,) that the support holds.
-    prescribed : dict
-        Values prescribed at load parameter 1, by degree of freedom.
-    fixed : ndarray of int
-        The prescribed degrees of freedom.
-    motions : Increments
-        Prescribed values of the degrees of freedom `fixed`.
-    moves : bool
-        Whether a prescribed value is not zero in some stage.
-    springs : Springs or None
-        Springs to the ground and in hinges, None without.
-    joints : dict
-        Node of the joint by node of the beam's end behind a hinge. The two share their displacements.
-    slaves, masters : ndarray of int
-        Displacements of the ends behind hinges, which are no unknowns, and of their joints.
-    sizes : Sizes
-        Length, extent, force_scale and least_force; they are attributes too, as plain numbers.
+    ``coordinates`` (nodes, 2): undeformed node positions.
+    ``dofs`` (6, elements): degrees of freedom of the elements' nodes, three per node.
+    ``groups``: the elements by the way in which they are stated. The force and moment of an exact element are
+        three degrees of freedom, numbered after the nodes.
+    ``closed`` (c,): elements in closed form.
+    ``place`` (elements,): number of every element within its group.
+    ``block`` (elements,): number of every element's own three degrees of freedom among all threes, -1
+        without.
+    ``free`` (equations,): degree of freedom of every equation, banded ones first.
+    ``banded``: number of banded equations.
+    ``border``: number of border unknowns: border equations, then the contacts' own unknowns.
+    ``rubbed``: whether a contact has friction.
+    ``stages``: number of stages of the load.
+    ``turns``: load parameters at which a stage ends and another follows, and at which the paths of the pins
+        turn; with friction, every corner, since each may reverse a slip.
+    ``gauss_nodes``: fixed number of Gauss nodes of the elements that contacts cut, None where it follows from
+        the accuracy.
+    ``along``: what varies along the elements.
+    ``loads``: dead loads on all degrees of freedom.
+    ``supports``: by supported end, the node and the components (3,) that the support holds.
+    ``prescribed``: values prescribed at load parameter 1, by degree of freedom.
+    ``fixed``: the prescribed degrees of freedom.
+    ``motions``: prescribed values of the degrees of freedom `fixed`.
+    ``moves``: whether a prescribed value is not zero in some stage.
+    ``springs``: springs to the ground and in hinges, None without.
+    ``joints``: node of the joint by node of the beam's end behind a hinge. The two share their displacements.
+    ``slaves, masters``: displacements of the ends behind hinges, which are no unknowns, and of their joints.
+    ``sizes``: length, extent, force_scale and least_force; they are attributes too, as plain numbers.
     """
 
     def __init__(self, structure: Structure) -> None:
@@ -369,14 +345,9 @@ class Model:
     def properties_of(self, coordinates: Array, l0: Array, sections: Array) -> Properties:
         """Constants of the elements.
 
-        Parameters
-        ----------
-        coordinates : ndarray, shape (nodes, 2, ...)
-            Undeformed node positions of one structure, or of many in the last axis.
-        l0 : ndarray, shape (elements, ...)
-            Lengths of the elements.
-        sections : ndarray, shape (3, beams, ...)
-            EA, GA and EI of the beams.
+        ``coordinates`` (nodes, 2, ...): undeformed node positions of one structure, or of many in the last
+        axis. ``l0`` (elements, ...): lengths of the elements. ``sections`` (3, beams, ...): EA, GA and EI of
+        the beams.
         """
         counts = [beam.beam.elements for beam in self.beams.values()]
         EA, GA, EI = np.repeat(sections, counts, axis=1)

@@ -276,22 +276,10 @@ class Newton:
     ) -> State:
         """State after a step, shortened so that no node and no contact moves too far at once.
 
-        Parameters
-        ----------
-        state : State
-            Where the step starts.
-        step : ndarray, shape (equations + contact unknowns,)
-            Change of the unknowns.
-        system : Linearisation
-            Linear system that the step solves.
-        t : float, optional
-            Load parameter after the step, if it changes.
-        residual : bool
-            Whether the step removes the residual.
-        part : float
-            Fraction of the admissible step that is taken.
-        past : float
-            Part of an element's length by which a contact may lie past its end.
+        ``state``: where the step starts. ``step`` (equations + contact unknowns,): change of the unknowns.
+        ``system``: linear system that the step solves. ``residual``: whether the step removes the residual.
+        ``part``: fraction of the admissible step that is taken. ``past``: part of an element's length by
+        which a contact may lie past its end.
         """
         model = self.model
         dq, dz = step[: model.equations], step[model.equations :]

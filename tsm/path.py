@@ -32,15 +32,7 @@ _RESOLVED = 1e-8
 
 
 class PathTangent:
-    """Tangent of the path at an equilibrium.
-
-    Parameters
-    ----------
-    newton : Newton
-        Its assembler gives the tangent.
-    equilibrium : Equilibrium
-        The point of the path.
-    """
+    """Tangent of the path at an equilibrium."""
 
     def __init__(self, newton: Newton, equilibrium: Equilibrium) -> None:
         self.newton, self.state, self.system = newton, equilibrium.state, equilibrium.system
@@ -56,10 +48,8 @@ class PathTangent:
     def rates(self, begin: float, end: float) -> Array | None:
         """Rates of the unknowns while the pins go straight from where they are at one load parameter to where they are at another.
 
-        Returns
-        -------
-        ndarray, shape (equations + contact unknowns,) or None
-            Derivatives in the load parameter; None where the tangent is singular.
+        Returns the derivatives in the load parameter, (equations + contact unknowns,); None where the tangent
+        is singular.
         """
         along = self._along(begin, end)
         return None if along is None else along[0]

@@ -97,18 +97,8 @@ def html(result: Result) -> str:
 def plot(result: Result, axes: Any = None, shown: int = SHOWN) -> Any:
     """Draw deflected axes at `shown` of the load parameters reached, evenly spread, with the pins; needs matplotlib.
 
-    Parameters
-    ----------
-    result : Result
-        What is drawn.
-    axes : matplotlib.axes.Axes, optional
-        Where; the current ones of pyplot if not given.
-    shown : int
-        How many load parameters.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
+    ``axes``: where; the current ones of pyplot if not given. ``shown``: how many
+    load parameters.
     """
     if axes is None:
         import matplotlib.pyplot as plt

@@ -43,14 +43,8 @@ def overshoot(target: BeamModel, arc: float) -> float:
 def slide(lengths: Sequence[float], k: int, xi: float, past: float = 0.0) -> tuple[int, float]:
     """Hand a position that left element k of a beam by more than a part of its length over to the neighbour.
 
-    Parameters
-    ----------
-    lengths : sequence of float
-        Undeformed lengths of the beam's elements.
-    k, xi : int, float
-        Element, counted from the beam's start, and position on it.
-    past : float
-        Part of the length by which a position may lie past a node.
+    ``lengths``: undeformed lengths of the beam's elements. ``past``: part of the length by which a position
+    may lie past a node.
     """
     if not math.isfinite(xi):
         return k, xi
@@ -64,12 +58,8 @@ def slide(lengths: Sequence[float], k: int, xi: float, past: float = 0.0) -> tup
 def project_on_chords(positions: Array, node: Array) -> tuple[Array, Array]:
     """Chord that is nearest to a node, shape (...), and positions of the node's projections on all chords, shape (chords, ...).
 
-    Parameters
-    ----------
-    positions : ndarray, shape (nodes, 2, ...)
-        Ends of the chords of one beam, or of many in the last axis.
-    node : ndarray, shape (2, ...)
-        Position of the node.
+    ``positions`` (nodes, 2, ...): ends of the chords of one beam, or of many in the last axis.
+    ``node`` (2, ...): position of the node.
     """
     d = np.diff(positions, axis=0)
     r = node - positions[:-1]

@@ -43,19 +43,9 @@ Held = dict[int, Place]
 def rolled(newton: Newton, before: State, reached: Equilibrium) -> Equilibrium:
     """Equilibrium whose contacts in stick have not slipped since a state, from one whose rows are the trapezium since then.
 
-    Parameters
-    ----------
-    newton : Newton
-        Solver of the structure.
-    before : State
-        Equilibrium in whose places the contacts are held.
-    reached : Equilibrium
-        Equilibrium at another load parameter.
-
-    Returns
-    -------
-    Equilibrium
-        Its contacts are held in their own places. One that has not converged where none is found.
+    ``before``: equilibrium in whose places the contacts are held. ``reached``: equilibrium at another load
+    parameter. Returns an equilibrium whose contacts are held in their own places; one that has not converged
+    where none is found.
     """
     model, small = newton.model, _ZERO * newton.model.length
     held = {

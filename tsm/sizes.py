@@ -33,16 +33,9 @@ def joined_extents(element_nodes: Array, starts: Array, coordinates: Array, leng
 
     The extent is the diagonal of the structure, or the length of its longest beam if that is larger.
 
-    Parameters
-    ----------
-    element_nodes : ndarray of int, shape (elements, 2)
-        Nodes of the elements.
-    starts : ndarray of int, shape (beams,)
-        First nodes of the beams.
-    coordinates : ndarray, shape (nodes, 2, ...)
-        Undeformed node positions.
-    lengths : ndarray, shape (beams, ...)
-        Lengths of the beams.
+    ``element_nodes`` (elements, 2): nodes of the elements. ``starts`` (beams,): first nodes of the beams.
+    ``coordinates`` (nodes, 2, ...): undeformed node positions. ``lengths`` (beams, ...): lengths of the
+    beams.
     """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components

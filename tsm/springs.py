@@ -74,19 +74,11 @@ class Spring:
 class Springs:
     """Forces, stiffness and energy of the springs of a structure: ``k q`` to the ground, ``k (q_b - q_a)`` between two rotations.
 
-    Parameters
-    ----------
-    ground : sequence of (int, float)
-        Degrees of freedom and stiffnesses of the springs to the ground.
-    between : sequence of (int, int, float)
-        Pairs of rotations and stiffnesses of the springs in hinges.
+    ``ground``: degrees of freedom and stiffnesses of the springs to the ground. ``between``: pairs of
+    rotations and stiffnesses of the springs in hinges.
 
-    Attributes
-    ----------
-    dofs : list of ndarray of int, shapes (1, g), (2, h)
-        Degrees of freedom of the two kinds.
-    values : ndarray, shape (g + 4 h,)
-        Stiffness matrices of the two kinds, row by row.
+    ``dofs`` (1, g), (2, h): degrees of freedom of the two kinds.
+    ``values`` (g + 4 h,): stiffness matrices of the two kinds, row by row.
     """
 
     def __init__(

@@ -60,22 +60,12 @@ def index(assembler: Assembler, state: State, system: Linearisation) -> int:
     A contact that is closed without force admits variations to one side only. The index is then defined only if it is the same with the
     contact open, where the structure is no mechanism.
 
-    Parameters
-    ----------
-    assembler : Assembler
-        Assembler of the model.
-    state : State
-        Configuration in equilibrium under the model's own loads.
-    system : Linearisation
-        Residual and tangent at that state.
-
-    Returns
-    -------
-    int
-        Number of negative eigenvalues; a lower bound for an exact element with more than a few hundred modes. The index is -1, not
-        defined, for a singular tangent, for numbers that are not finite, and for more than 1,500 unknowns whose pivots leave the
-        diagonal. It is -1 also for closed contacts of the paper's elements: their force is normal to the chord and has no energy, and
-        in slip, whose force has none either. A contact that sticks is held at its arc position; on a face the shear strain moves it.
+    Returns the number of negative eigenvalues; a lower bound for an exact element with more than a few
+    hundred
+    modes. The index is -1, not defined, for a singular tangent, for numbers that are not finite, and for more
+    than 1,500 unknowns whose pivots leave the diagonal. It is -1 also for closed contacts of the paper's
+    elements: their force is normal to the chord and has no energy, and in slip, whose force has none either.
+    A contact that sticks is held at its arc position; on a face the shear strain moves it.
     """
     if any(
         touch is not None and touch.grip is not None and touch.grip.held is None for touch in state.touches
@@ -131,19 +121,7 @@ def mode(assembler: Assembler, state: State, system: Linearisation) -> Mode | No
 
     A column and a row are added to the tangent, which makes it regular. They converge to the null vectors (Govaerts 2000).
 
-    Parameters
-    ----------
-    assembler : Assembler
-        Assembler of the model.
-    state : State
-        Configuration in equilibrium.
-    system : Linearisation
-        Residual and tangent at that state.
-
-    Returns
-    -------
-    Mode or None
-        None where the tangent has two null vectors at once, or numbers that are not finite.
+    None where the tangent has two null vectors at once, or numbers that are not finite.
     """
     from scipy.sparse.linalg import splu
 
@@ -228,14 +206,7 @@ def _with_variation(
 ) -> Symmetric:
     """Symmetric tangent in which the second variation of exact elements takes the place of their tangent.
 
-    Parameters
-    ----------
-    assembler, state, system
-        As for `index`.
-    exact : tuple
-        The exact elements, and their forces.
-    symmetric : tuple
-        Units of the unknowns, and how many forces of contacts are unknown.
+    ``symmetric``: units of the unknowns, and how many forces of contacts are unknown.
     """
     model, (group, balance), (units, multipliers) = assembler.model, exact, symmetric
     mixed = len(model.groups) > 1

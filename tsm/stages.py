@@ -21,10 +21,7 @@ def stage_of(load_parameter: float, stages: int) -> int:
 class Increments:
     """Quantities that rise from zero by an increment in every stage.
 
-    Parameters
-    ----------
-    rows : ndarray, shape (stages, ...)
-        Increments of the quantities; each stays after its stage.
+    ``rows`` (stages, ...): increments of the quantities; each stays after its stage.
     """
 
     def __init__(self, rows: Array) -> None:

@@ -45,14 +45,9 @@ def allowed(unexplained: float) -> float:
 class StepControl:
     """Length of the next load step.
 
-    Attributes
-    ----------
-    step : float
-        Longest next step of the load parameter.
-    failure : Status
-        Why the last attempt failed.
-    part : float
-        Part of the failed step that is tried next.
+    ``step``: longest next step of the load parameter.
+    ``failure``: why the last attempt failed.
+    ``part``: part of the failed step that is tried next.
     """
 
     def __init__(self, settings: Settings, failure: Status) -> None:

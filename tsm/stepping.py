@@ -64,22 +64,13 @@ _COINCIDENT = 1e-6
 class Stepper:
     """One march.
 
-    Attributes
-    ----------
-    track : Track
-        The path so far, from which the next state is predicted.
-    control : StepControl
-        Length of the next step.
-    log : StepLog
-        Events, iterations and cut-backs since the last yielded step.
-    margins : list of Margin
-        Margins of the events that the contacts of the last equilibrium may have next.
-    chatter : Counter
-        Changes of every contact pair at every load parameter.
-    target : float
-        Next prescribed load parameter.
-    turned : float
-        Load parameter at which contacts with friction followed a corner of the pins' paths last.
+    ``track``: the path so far, from which the next state is predicted.
+    ``control``: length of the next step.
+    ``log``: events, iterations and cut-backs since the last yielded step.
+    ``margins``: margins of the events that the contacts of the last equilibrium may have next.
+    ``chatter``: changes of every contact pair at every load parameter.
+    ``target``: next prescribed load parameter.
+    ``turned``: load parameter at which contacts with friction followed a corner of the pins' paths last.
     """
 
     def __init__(self, model: Model, settings: Settings) -> None:

@@ -32,16 +32,10 @@ _GROWING, _ROOM = 1.4, 0.6
 class Track:
     """The path up to the last accepted equilibrium.
 
-    Attributes
-    ----------
-    accepted : Equilibrium
-        The last one.
-    history : list of State
-        States for the extrapolation, oldest first, all with the same closed contacts.
-    tangent, earlier : PathTangent
-        Tangents at the last equilibrium and at the one before it.
-    index : int
-        Index of the last equilibrium that has one.
+    ``accepted``: the last one.
+    ``history``: states for the extrapolation, oldest first, all with the same closed contacts.
+    ``tangent, earlier``: tangents at the last equilibrium and at the one before it.
+    ``index``: index of the last equilibrium that has one.
     """
 
     def __init__(self, newton: Newton, start: Equilibrium) -> None:

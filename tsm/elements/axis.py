@@ -32,20 +32,9 @@ def deflected_axes(p: Properties, x: Array, force: Array, contacts: Sequence[Poi
     corrections therefore close the axis: a and b fit the rotation of end j and the direction of the chord, and a factor close to one
     fits the length of the chord.
 
-    Parameters
-    ----------
-    p : Properties
-        Constants of the elements, arrays over them.
-    x, force : ndarray, shape (6, elements)
-        Displacements of the elements and nodal forces on them.
-    contacts : sequence of PointForce
-        Contact forces on the elements.
-    xi : ndarray, shape (m,)
-        Positions along the elements, as parts of the length.
-
-    Returns
-    -------
-    ndarray, shape (elements, m, 2)
+    ``x, force`` (6, elements): displacements of the elements and nodal forces on them. ``contacts``: contact
+    forces on the elements. ``xi`` (m,): positions along the elements, as parts of the length. Returns
+    (elements, m, 2).
     """
     dx, dy = p.dx0 + x[3] - x[0], p.dy0 + x[4] - x[1]
     turn = chord_rotation(p.dx0 * dy - p.dy0 * dx, p.dx0 * dx + p.dy0 * dy)

@@ -120,19 +120,8 @@ def _coefficients(p: Properties, e: Array, c: Array, r4: Array, r2: Array) -> Co
 def response(a: Coefficients, x: Array) -> tuple[Array, Array]:
     """Nodal forces and exact tangent of beam elements.
 
-    Parameters
-    ----------
-    a : Coefficients
-        Coefficients of the energy.
-    x : ndarray, shape (6, n)
-        Element displacements, component first.
-
-    Returns
-    -------
-    force : ndarray, shape (6, n)
-        Gradient of the energy.
-    tangent : ndarray, shape (36, n)
-        Its derivative, row by row, symmetric.
+    ``x`` (6, n): element displacements, component first. Returns ``force`` (6, n), gradient of the energy;
+    ``tangent`` (36, n), its derivative, row by row, symmetric.
     """
     force, tangent = reduced_response(a, x)
     return GATHER @ force, SPREAD @ tangent
@@ -141,19 +130,10 @@ def response(a: Coefficients, x: Array) -> tuple[Array, Array]:
 def reduced_response(a: Coefficients, x: Array) -> tuple[Array, Array]:
     """Forces and tangent of beam elements over the four quantities that they depend on, chord (x, y), m and h.
 
-    Parameters
-    ----------
-    a : Coefficients
-        Coefficients of the energy.
-    x : ndarray, shape (6, ...)
-        Element displacements, component first; the coefficients have the same axes behind the first.
-
-    Returns
-    -------
-    force : ndarray, shape (4, ...)
-        Gradient of the energy; `GATHER` converts it to nodal forces.
-    tangent : ndarray, shape (10, ...)
-        Upper triangle of the gradient's derivative in the order of `PAIRS`; `SPREAD` converts it to the nodal tangent.
+    ``x`` (6, ...): element displacements, component first; the coefficients have the same axes behind the
+    first. Returns ``force`` (4, ...), gradient of the energy; `GATHER` converts it to nodal forces;
+    ``tangent`` (10, ...), upper triangle of the gradient's derivative in the order of `PAIRS`; `SPREAD`
+    converts it to the nodal tangent.
     """
     shift = x[3:5] - x[:2]
     chord = a.chord + shift

@@ -40,27 +40,9 @@ def response(
 ) -> tuple[Array, Array]:
     """Forces and exact tangent of an element together with the node that touches it.
 
-    Parameters
-    ----------
-    element_force : callable
-        Element force equation, see `ElementForce`.
-    p : Properties
-        Constants of the element.
-    x : sequence of 6 numbers
-        Its displacements.
-    lever : sequence of 2 numbers
-        ``x_i - x_c``, from the contacting node to the element's end i.
-    side : float
-        +1 where the node comes from the right, -1 from the left.
-    offset : float
-        Distance of the contact surface from the axis.
-
-    Returns
-    -------
-    force : ndarray, shape (8,)
-        On the element (6) and the node (2).
-    tangent : ndarray, shape (8, 8)
-        Its derivative.
+    ``lever``: ``x_i - x_c``, from the contacting node to the element's end i. ``side``: +1 where the node
+    comes from the right, -1 from the left. ``offset``: distance of the contact surface from the axis. Returns
+    ``force`` (8,), on the element (6) and the node (2); ``tangent`` (8, 8), its derivative.
     """
     (dx, dy), (rx, ry) = (p.dx0 + (x[3] - x[0]), p.dy0 + (x[4] - x[1])), (-lever[0], -lever[1])
     length = np.sqrt(dx * dx + dy * dy)

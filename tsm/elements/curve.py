@@ -23,13 +23,6 @@ class Curve:
 
     ``w(xi) = xi (1 - xi) ((1 - xi) tan s_i - xi tan s_j)`` with the end slopes ``s_i, s_j`` of the centre line from
     the chord: the rotations from the chord plus the shear strain of the element, ``w' = theta + gamma``.
-
-    Parameters
-    ----------
-    p : Properties
-        Constants of the element, plain numbers.
-    x : sequence of 6 numbers
-        Its displacements.
     """
 
     def __init__(self, p: Properties, x: Any) -> None:
@@ -54,17 +47,8 @@ class Curve:
     def approach(self, xi: Any, rx: Any, ry: Any) -> tuple[Any, tuple[Any, Any], tuple[Any, Any]]:
         """Newton step from xi towards the point of the curve that is closest to a node.
 
-        Parameters
-        ----------
-        xi : float or ndarray
-            Position on the element.
-        rx, ry : float or ndarray
-            Vector from the node to the element's end i.
-
-        Returns
-        -------
-        tuple
-            What to take from xi, the vector from the node to the curve at xi, and the tangent there.
+        ``rx, ry``: vector from the node to the element's end i. Returns what
+        to take from xi, the vector from the node to the curve at xi, and the tangent there.
         """
         (w, dw, ddw), dx, dy = self.deflection(xi), self.dx, self.dy
         px, py = rx + xi * dx - w * dy, ry + xi * dy + w * dx

@@ -10,15 +10,7 @@ from tsm.elements.properties import Array
 
 
 class Dual:
-    """A value and its gradient over a list of variables.
-
-    Parameters
-    ----------
-    value : float or complex
-        Value.
-    gradient : ndarray, shape (n,)
-        Derivatives.
-    """
+    """A value and its gradient over a list of variables."""
 
     __slots__ = ("gradient", "value")
 

@@ -53,29 +53,11 @@ def response(
 ) -> tuple[Array, Array]:
     """Gradient and Hessian of the contact's Lagrangian.
 
-    Parameters
-    ----------
-    p : Properties
-        Constants of the touched element.
-    x : sequence of 6 numbers
-        Its displacements.
-    lever : sequence of 2 numbers
-        ``x_i - x_c``, from the contacting node to the element's end i.
-    xi : number
-        Material position on the element.
-    force : sequence of 2 numbers
-        Force on the beam.
-    side : float
-        +1 where the node comes from the right, -1 from the left.
-    offset : float
-        Distance of the contact surface from the axis.
-
-    Returns
-    -------
-    gradient : ndarray, shape (11,)
-        With respect to element (6), node (2), force (2) and arc position ``xi l0``.
-    tangent : ndarray, shape (11, 11)
-        Its derivative, symmetric.
+    ``lever``: ``x_i - x_c``, from the contacting node to the element's end i. ``xi``: material position on
+    the element. ``force``: force on the beam. ``side``: +1 where the node comes from the right, -1 from the
+    left. ``offset``: distance of the contact surface from the axis. Returns ``gradient`` (11,), with respect
+    to element (6), node (2), force (2) and arc position ``xi l0``; ``tangent`` (11, 11), its derivative,
+    symmetric.
     """
     gradient, hessian = jet(p, x, xi, force, side, offset)
     full = -(gradient @ REDUCE)
@@ -96,17 +78,8 @@ def response(
 def jet(p: Properties, x: Any, xi: Any, force: Any, side: Any, offset: Any) -> tuple[Array, Array]:
     """First and second derivatives of ``F . (p(xi) - x_i) + C(xi) F.F/2`` in chord, end rotations, force and xi.
 
-    Parameters
-    ----------
-    p, x, xi, force, side, offset
-        As for `response`, with numbers for one contact, or arrays with one entry per contact.
-
-    Returns
-    -------
-    gradient : ndarray, shape (7, ...)
-        With respect to ``dx, dy, theta_i, theta_j`` of the element, force (2) and xi.
-    hessian : ndarray, shape (28, ...)
-        Upper triangle of its derivative, row by row.
+    Returns ``gradient`` (7, ...), with respect to ``dx, dy, theta_i, theta_j`` of the element, force (2) and
+    xi; ``hessian`` (28, ...), upper triangle of its derivative, row by row.
     """
     curve = Curve(p, x)
     dx, dy, (Fx, Fy) = curve.dx, curve.dy, force
@@ -192,21 +165,10 @@ def _surface(curve: Curve, xi: Any, force: Any, dC: tuple[Any, Any, Any], l0: An
 def crossing(p: Properties, xi: tuple[Any, Any], first: Any, second: Any) -> tuple[Array, Array]:
     """Gradient and Hessian of ``-C12 F_1 . F_2``, the coupling of two contacts on one element.
 
-    Parameters
-    ----------
-    p : Properties
-        Constants of the element.
-    xi : tuple of numbers
-        Positions of both contacts; or arrays over many elements, as all the others, with the contacts in the same order on each.
-    first, second : sequence of 2 numbers
-        Forces on the beam.
-
-    Returns
-    -------
-    gradient : ndarray, shape (6, ...)
-        With respect to force (2) and arc position of the first, then of the second contact.
-    tangent : ndarray, shape (6, 6, ...)
-        Its derivative.
+    ``xi``: positions of both contacts; or arrays over many elements, as all the others, with the contacts in
+    the same order on each. ``first, second``: forces on the beam. Returns ``gradient`` (6, ...), with respect
+    to force (2) and arc position of the first, then of the second contact; ``tangent`` (6, 6, ...), its
+    derivative.
     """
     C, dx, de, dxx, dxe, dee = cross_compliance(p, *xi)
     l0 = p.l0
@@ -232,10 +194,7 @@ def cross_compliance(p: Properties, xi: Any, eta: Any) -> tuple[Any, Any, Any, A
 
         C12 = l0^3/(12 EI) (2 x b (1 + Phi/2 - b^2 - x^2) - z z' (3 + m m'/(1 + Phi)))
 
-    Returns
-    -------
-    tuple
-        Value, derivatives in xi and eta, and the second ones xi-xi, xi-eta, eta-eta.
+    Returns the value, derivatives in xi and eta, and the second ones xi-xi, xi-eta, eta-eta.
     """
     if np.any(np.real(xi) > np.real(eta)):
         C, d_eta, d_xi, second, both, first = cross_compliance(p, eta, xi)

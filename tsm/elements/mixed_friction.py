@@ -68,21 +68,9 @@ def response(
 ) -> tuple[Array, Array]:
     """Residual of a contact with friction and its derivative.
 
-    Parameters
-    ----------
-    p, x, lever, xi, force
-        As for `ContactLaw.response`.
-    surface : Surface
-        Side and offset of the contact.
-    rub : Rub
-        State of the friction.
-
-    Returns
-    -------
-    residual : ndarray, shape (11,)
-        Rows of element (6), node (2), force (2) and arc position.
-    tangent : ndarray, shape (11, 11)
-        Its derivative, not symmetric.
+    ``surface``: side and offset of the contact. ``rub``: state of the friction. Returns ``residual`` (11,),
+    rows of element (6), node (2), force (2) and arc position; ``tangent`` (11, 11), its derivative, not
+    symmetric.
     """
     beam = _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face)
     (Fx, Fy), (Tx, Ty), (rx, ry) = beam.force, beam.tangent, beam.place

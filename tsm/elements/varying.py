@@ -168,14 +168,8 @@ def tangent_rate(segments: VaryingSegments, field: Field, inside: Array, inputs:
 def tangent_slope(course: Course, force: tuple[Any, Any], angle: Any) -> tuple[Array, Array]:
     """Derivatives (2,) of the tangent vector r' at one section by the arc position and by the load parameter, the angle and n held.
 
-    Parameters
-    ----------
-    course : Course
-        What varies, at a single point.
-    force : tuple of 2 numbers
-        Internal force there.
-    angle : number
-        Angle of the section.
+    ``course``: what varies, at a single point. ``force``: internal force there. ``angle``: angle of the
+    section.
     """
     c, s = cosine(angle), sine(angle)
     nx, ny = force

@@ -59,25 +59,13 @@ class Change(NamedTuple):
 class ElementGroup(ABC):
     """Elements of a model with the same kind of equations.
 
-    Parameters
-    ----------
-    model : Model
-        The structure.
-    elements : ndarray of int, shape (e,)
-        Global numbers of the elements.
-    dofs : ndarray of int, shape (n, e)
-        Degrees of freedom of the elements.
+    ``elements`` (e,) are numbered globally. ``dofs`` (n, e): degrees of freedom of the elements.
 
-    Attributes
-    ----------
-    number : int
-        Number of the group in the model.
-    internal : bool
-        Whether an element has a force and a moment as degrees of freedom, and further unknowns inside, which are eliminated.
-    past_node : float
-        Part of an element's length by which a contact may lie past its end.
-    slip_sign : float
-        Sign of the row of slip: of the row, in ``F_t - sigma mu F_n``.
+    ``number``: number of the group in the model.
+    ``internal``: whether an element has a force and a moment as degrees of freedom, and further unknowns
+        inside, which are eliminated.
+    ``past_node``: part of an element's length by which a contact may lie past its end.
+    ``slip_sign``: sign of the row of slip: of the row, in ``F_t - sigma mu F_n``.
     """
 
     internal: ClassVar[bool]

@@ -35,14 +35,7 @@ _KEPT = 16
 class Rods:
     """The exact elements of a model, straight and uniform ones without loads along them.
 
-    Parameters
-    ----------
-    model : Model
-        The structure.
-    dofs : ndarray of int, shape (9, r)
-        Degrees of freedom of the elements.
-    exact : ndarray of int, shape (r,)
-        Global numbers of the elements.
+    ``dofs`` (9, r): degrees of freedom of the elements. ``exact`` (r,): global numbers of the elements.
     """
 
     varies: ClassVar[bool] = False
@@ -282,18 +275,10 @@ class Rods:
     ) -> Array:
         """Change of the inner angles that follows from a change of all other unknowns.
 
-        Parameters
-        ----------
-        tangent : RodTangent
-            At the state.
-        state : State
-            Configuration before the change.
-        dq : ndarray, shape (dofs,)
-            Change of the displacements and element forces.
-        contacts : ndarray, shape (contact unknowns,)
-            Change of the contacts' unknowns.
-        fixed : tuple of 2 float
-            Change of the load parameter; then 1 to remove the residual inside, 0 to follow a path on which it is zero.
+        ``tangent``: at the state. ``state``: configuration before the change. ``dq`` (dofs,): change of the
+        displacements and element forces. ``contacts`` (contact unknowns,): change of the contacts' unknowns.
+        ``fixed``: change of the load parameter; then 1 to remove the residual inside, 0 to follow a path on
+        which it is zero.
         """
         inputs = self.inputs(tangent, state, dq, contacts, fixed)
         change: Array = (tangent.inner @ inputs[:, :, None])[:, :, 0]

@@ -71,16 +71,9 @@ def by_selectors(tangents: Tangents, selectors: Array, explicit: Explicit | None
 def residual(apart: Point, force: Point, tangents: Tangents, reach: float, steep: float = 0.0) -> list[Any]:
     """Residual of position (2) and direction.
 
-    Parameters
-    ----------
-    apart : tuple of 2 numbers
-        Vector from the contacting node to the axis.
-    force : tuple of 2 numbers
-        Force on the beam.
-    tangents : tuple of rod.Tangent
-        Tangent vectors before and after the contact.
-    reach, steep : float
-        Offset of the surface, positive to the right, and its derivative by the arc position.
+    ``apart``: vector from the contacting node to the axis. ``force``: force on the beam. ``tangents``:
+    tangent vectors before and after the contact. ``reach, steep``: offset of the surface, positive to the
+    right, and its derivative by the arc position.
     """
     if steep:
         surface = leaning(tangents, steep)
@@ -103,18 +96,10 @@ def differentiate(
 ) -> None:
     """Add to the rows (3, n) of position and direction the derivatives through the tangent vectors.
 
-    Parameters
-    ----------
-    rows : ndarray, shape (3, n)
-        Derivatives by the unknowns; the derivatives of the axis' position are entered already.
-    force, tangents
-        As for `residual`.
-    face : tuple of 2 float
-        Offset of the surface, positive to the right, and its derivative by the arc position.
-    selectors : ndarray, shape (6, n)
-        Derivatives of the section's angle, the internal force before, the contact force, and the arc position.
-    explicit : Explicit, optional
-        Further derivatives of the tangent vectors.
+    ``rows`` (3, n): derivatives by the unknowns; the derivatives of the axis' position are entered already.
+    ``face``: offset of the surface, positive to the right, and its derivative by the arc position.
+    ``selectors`` (6, n): derivatives of the section's angle, the internal force before, the contact force,
+    and the arc position. ``explicit``: further derivatives of the tangent vectors.
     """
     reach, steep = face
     arc, selectors = selectors[5], selectors[:5]

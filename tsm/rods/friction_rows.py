@@ -86,18 +86,10 @@ class Rubbing(NamedTuple):
     ) -> Forms:
         """Derivatives.
 
-        Parameters
-        ----------
-        grip, stiffness
-            As for `residual`.
-        tangents : tuple of rod.Tangent
-            Tangent vectors before and after the contact.
-        selectors : ndarray, shape (6, n)
-            Derivatives of the section's angle, the internal force before (2), the contact force (2), and the arc position.
-        moment : ndarray, shape (n,)
-            Derivative of the moment before the contact.
-        explicit : Explicit, optional
-            Further derivatives of the tangent vectors and of the curvature.
+        ``tangents``: tangent vectors before and after the contact. ``selectors`` (6, n): derivatives of the
+        section's angle, the internal force before (2), the contact force (2), and the arc position.
+        ``moment`` (n,): derivative of the moment before the contact. ``explicit``: further derivatives of the
+        tangent vectors and of the curvature.
         """
         pair, (fx, fy), (tx, ty), stretch = self.pair, self.force, self.mean.t, self.mean.stretch
         before, after = tangents

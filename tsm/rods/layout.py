@@ -47,14 +47,10 @@ def layout(count: int, cuts: Cuts) -> Layout:
 def chain(count: int) -> tuple[Array, Array, Array]:
     """Constant matrices of an element with `count` cuts.
 
-    Returns
-    -------
-    inputs : ndarray, shape (count + 1, 7, unknowns + 1)
-        Inputs of the segments by the element's unknowns, the moments at the cuts left open.
-    tangent : ndarray, shape (unknowns, unknowns + 1)
-        Tangent, all but the rows of arrival and of the contacts.
-    selectors : ndarray, shape (count, 6, unknowns + 1)
-        Angle, force before (x, y), contact force (x, y) and arc position of every cut by the unknowns.
+    Returns ``inputs`` (count + 1, 7, unknowns + 1), inputs of the segments by the element's unknowns, the
+    moments at the cuts left open; ``tangent`` (unknowns, unknowns + 1), tangent, all but the rows of arrival
+    and of the contacts; ``selectors`` (count, 6, unknowns + 1), angle, force before (x, y), contact force (x,
+    y) and arc position of every cut by the unknowns.
     """
     unknowns = OWN + CUT * count
     inputs = np.zeros((count + 1, INPUTS, unknowns + 1))

@@ -35,18 +35,11 @@ class Stations(NamedTuple):
 class RodShape:
     """Polynomials of angle, moment and position in every segment.
 
-    Parameters
-    ----------
-    first, last : ndarray of int, shape (r,)
-        First and last segment of every element.
-    arc, length : ndarray, shape (s,)
-        Arc position of the start within the element, and undeformed length, of every segment.
-    force : ndarray, shape (2, s)
-        Internal force at the start of every segment.
-    start : ndarray, shape (4, s) or (6, s)
-        Position (x, y), angle and moment at the start of every segment, and the internal force where it varies.
-    rates : ndarray, shape (4, s, p) or (6, s, p)
-        Their derivatives in the arc position at the Gauss nodes.
+    ``first, last`` (r,): first and last segment of every element. ``arc, length`` (s,): arc position of the
+    start within the element, and undeformed length, of every segment. ``force`` (2, s): internal force at the
+    start of every segment. ``start`` (4, s) or (6, s): position (x, y), angle and moment at the start of
+    every segment, and the internal force where it varies. ``rates`` (4, s, p) or (6, s, p): their derivatives
+    in the arc position at the Gauss nodes.
     """
 
     def __init__(

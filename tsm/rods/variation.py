@@ -107,16 +107,8 @@ def _square(segments: Any) -> Array:
 def variation(rods: Rods, state: State, balance: RodBalance, transfer: Array | None = None) -> Variation:
     """Second variation at a state in equilibrium.
 
-    Parameters
-    ----------
-    rods : Rods
-        The exact elements.
-    state : State
-        In equilibrium.
-    balance : RodBalance
-        Their residual there.
-    transfer : ndarray, shape (s, 4, 7), optional
-        Transfer of the segments, see `rod.Condensed`, where it is known.
+    ``balance``: their residual there. ``transfer`` (s, 4, 7), optional: transfer of the segments, see
+    `rod.Condensed`, where it is known.
     """
     pieces = _pieces(rods, state, balance, transfer)
     place, pairs = balance.entry.place, dict(profile_of(state).cuts)
@@ -259,14 +251,10 @@ def _bordered(
 def _stations(counts: tuple[int, ...], short: tuple[bool, ...], width: int) -> tuple[Array, Array, Array]:
     """Constant matrices of an element whose segments have `counts` pieces, which may be short.
 
-    Returns
-    -------
-    fixed : ndarray, shape (n, n)
-        Second derivatives of ``n . (r_j - r_i) - sum F . (r_j - x_c)``.
-    inputs : ndarray, shape (pieces, width, n)
-        Inputs of the pieces by the element's unknowns; only short pieces have a moment. The seventh is the arc position of the start.
-    directions : ndarray, shape (contacts, 6, n)
-        Angle, force before, contact force and arc position of every contact by the same.
+    Returns ``fixed`` (n, n), second derivatives of ``n . (r_j - r_i) - sum F . (r_j - x_c)``;
+    ``inputs`` (pieces, width, n), inputs of the pieces by the element's unknowns; only short pieces have a
+    moment. The seventh is the arc position of the start; ``directions`` (contacts, 6, n), angle, force
+    before, contact force and arc position of every contact by the same.
     """
     contacts, pieces = len(counts) - 1, sum(counts)
     own_angle = OWN + CUT * contacts

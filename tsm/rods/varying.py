@@ -29,13 +29,7 @@ _UNDEFORMED_ORDER = 24
 
 
 class VaryingRods(Rods):
-    """The exact elements of a model with loads along them, natural curvature or taper.
-
-    Parameters
-    ----------
-    model, dofs, exact
-        As for `Rods`.
-    """
+    """The exact elements of a model with loads along them, natural curvature or taper."""
 
     varies: ClassVar[bool] = True
 

@@ -22,23 +22,9 @@ def hessians(
 ) -> tuple[Array, Array]:
     """Hessians of G (s, 7, 7) over angle, moment and angle at the ends, force, length and arc position of the start.
 
-    Parameters
-    ----------
-    rods : VaryingRods
-        The exact elements.
-    segments : VaryingSegments
-        Segments in equilibrium.
-    ends : ndarray, shape (2, 2, s)
-        Angles, then moments, at both ends.
-    transfer : ndarray, shape (s, 4, 9)
-        Transfer of the segments.
-    load_parameter : float
-        Load parameter.
-
-    Returns
-    -------
-    tuple of 2 ndarray
-        With the moment with which the angle arrives, as `variation._hessian`; with the moment as an input, for short segments.
+    ``segments``: segments in equilibrium. ``ends`` (2, 2, s): angles, then moments, at both ends.
+    ``transfer`` (s, 4, 9): transfer of the segments. Returns two: with the moment with which the angle
+    arrives, as `variation._hessian`; with the moment as an input, for short segments.
     """
     arcs = np.concatenate([segments.begin, segments.begin + segments.length], axis=1)
     course = rods.course(segments.owner, arcs, load_parameter)
