@@ -59,6 +59,8 @@ class Change(NamedTuple):
 class ElementGroup(ABC):
     """Elements of a model with the same kind of equations.
 
+    What is not abstract is zero, or nothing, where an element has no unknowns inside and no loads along it.
+
     ``elements`` (e,) are numbered globally. ``dofs`` (n, e): degrees of freedom of the elements.
 
     ``number``: number of the group in the model.
@@ -87,17 +89,17 @@ class ElementGroup(ABC):
     def rate(self, state: State, q: Array, contacts: Array) -> Array:
         """Change (n, e) of the forces with the degrees of freedom; what belongs to the contacts' rows is added to `contacts`."""
 
-    @abstractmethod
-    def load_rate(self, state: State, contacts: Array) -> Array:
+    def load_rate(self, _state: State, _contacts: Array) -> Array:
         """Change (n, e) of the forces with the load parameter, by loads along the elements; the contacts' rows change in `contacts`."""
+        return np.zeros(self.dofs.shape)
 
-    @abstractmethod
-    def load_work(self, state: State) -> float:
+    def load_work(self, _state: State) -> float:
         """Work of the loads along the elements, as large as they are at the state, on the displacements to the state."""
+        return 0.0
 
-    @abstractmethod
-    def load_power(self, state: State, tangent: Any, dofs: Array, contacts: Array) -> float:
+    def load_power(self, _state: State, _tangent: Any, _dofs: Array, _contacts: Array) -> float:
         """Work of the loads along the elements at rates of all degrees of freedom and of the contacts' unknowns."""
+        return 0.0
 
     @abstractmethod
     def pin_rate(
@@ -117,21 +119,21 @@ class ElementGroup(ABC):
     def energy(self, state: State) -> float:
         """Strain energy of elements and contacts in equilibrium."""
 
-    @abstractmethod
     def undeformed(self, state: State) -> State:
         """State with the unknowns inside straight elements, without contacts."""
+        return state
 
-    @abstractmethod
-    def with_touches(self, before: State, after: State) -> State:
+    def with_touches(self, _before: State, after: State) -> State:
         """State `after`, whose contacts differ from `before`, with inner unknowns that fit its contacts."""
+        return after
 
-    @abstractmethod
-    def with_change(self, before: State, after: State, tangent: Any, change: Change) -> State:
+    def with_change(self, _before: State, after: State, _tangent: Any, _change: Change) -> State:
         """State `after` a change, with the unknowns inside changed too."""
+        return after
 
-    @abstractmethod
     def alike(self, history: list[State]) -> list[State]:
         """The latest states that can be extrapolated together."""
+        return history
 
     def turned(self, _one: State, _other: State, _like: State) -> Array:
         """Rotations inside the elements from one state to another, at the Gauss nodes of a third; nan where the elements are cut otherwise."""
@@ -141,17 +143,17 @@ class ElementGroup(ABC):
         """Rates of the rotations inside the elements at rates of all degrees of freedom and of the contacts' unknowns."""
         return np.zeros(0)
 
-    @abstractmethod
-    def refined(self, state: State, forces: Any, tolerance: float) -> State | None:
+    def refined(self, _state: State, _forces: Any, _tolerance: float) -> State | None:
         """State with a finer integration inside the elements, None if the integration of `state` is fine enough."""
+        return None
 
-    @abstractmethod
-    def inaccurate(self, forces: Any, tolerance: float) -> bool:
+    def inaccurate(self, _forces: Any, _tolerance: float) -> bool:
         """Whether the finest integration inside the elements does not suffice."""
+        return False
 
-    @abstractmethod
-    def integration_error(self, forces: Any) -> float:
+    def integration_error(self, _forces: Any) -> float:
         """Estimated error of the integration inside the elements, see `Settings.integration_tolerance`."""
+        return 0.0
 
     @abstractmethod
     def project(self, pair: PairModel, state: State) -> Projection:

@@ -15,7 +15,7 @@ from tsm.elements.beam import Coefficients
 from tsm.elements.contact_law import Friction, Rub, Surface
 from tsm.elements.curve import Curve
 from tsm.elements.properties import Array, Properties
-from tsm.groups.base import Change, ElementGroup
+from tsm.groups.base import ElementGroup
 from tsm.projection import (
     AT_NODE,
     PROJECTED,
@@ -96,18 +96,6 @@ class ClosedFormGroup(ElementGroup):
         _, tangent = beam_element.response(self.coefficients, state.q[self.dofs])
         rate: Array = np.einsum("ijn,jn->in", tangent.reshape(6, 6, -1), q[self.dofs])
         return rate
-
-    def load_rate(self, _state: State, _contacts: Array) -> Array:
-        """Zero: there are no loads along the elements."""
-        return np.zeros((6, len(self.elements)))
-
-    def load_work(self, _state: State) -> float:
-        """Zero: there are no loads along the elements."""
-        return 0.0
-
-    def load_power(self, _state: State, _tangent: Any, _dofs: Array, _contacts: Array) -> float:
-        """Zero: there are no loads along the elements."""
-        return 0.0
 
     def pin_rate(
         self, pair: PairModel, touch: Touch, state: State, velocity: tuple[float, float]
@@ -197,33 +185,6 @@ class ClosedFormGroup(ElementGroup):
         x = state.q[model.dofs[:, element]].tolist()
         start_x, start_y = model.element_start[element]
         return model.element[element], x, (start_x + x[0] - cx, start_y + x[1] - cy)
-
-    def undeformed(self, state: State) -> State:
-        """The state: nothing is unknown inside the elements."""
-        return state
-
-    def with_touches(self, _before: State, after: State) -> State:
-        """The state `after`: nothing is unknown inside the elements."""
-        return after
-
-    def with_change(self, _before: State, after: State, _tangent: ClosedFormForces, _change: Change) -> State:
-        """The state `after`: nothing is unknown inside the elements."""
-        return after
-
-    def alike(self, history: list[State]) -> list[State]:
-        """All states."""
-        return history
-
-    def refined(self, _state: State, _forces: ClosedFormForces, _tolerance: float) -> None:
-        """Nothing is integrated."""
-
-    def inaccurate(self, _forces: ClosedFormForces, _tolerance: float) -> bool:
-        """Nothing is integrated."""
-        return False
-
-    def integration_error(self, _forces: ClosedFormForces) -> float:
-        """Nothing is integrated."""
-        return 0.0
 
     def project(self, pair: PairModel, state: State) -> Projection:
         """Closest point. The chords give the owner, and Newton's method on the owner's curve gives the point."""
