@@ -1,6 +1,9 @@
 """Mesh files of the user, read by meshio and checked."""
 
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
 from pathlib import Path
+from stat import S_ISREG
 from typing import Any
 
 import numpy as np
@@ -9,13 +12,18 @@ from scipy.sparse.csgraph import connected_components
 
 from fem_reference.arrays import Array, Floats, Ints
 from fem_reference.mesh import EDGES, Discretisation, from_basis, scalar_basis
-from fem_reference.mesh_text import MeshError, check_file
 from fem_reference.sampling import SECTION_LAYERS, sample_basis, section_points
 from fem_reference.strip import Strip
 
 _ROUND_OFF = 1e-9
 _FACE_TOLERANCE = 1e-6
 """Largest distance of a face from half the height, relative to the height: the file may hold few digits."""
+_LARGEST = 16 * 2**20
+"""Largest mesh file that is read [bytes]."""
+
+
+class MeshError(ValueError):
+    """A mesh file breaks a rule; the message is one line."""
 
 
 def read_mesh(strip: Strip) -> Discretisation:
@@ -51,9 +59,10 @@ def _contents(path: Path) -> tuple[Floats, Ints, dict[str, Ints]]:
     """Read corners ``(n, 2)``, quadrilaterals ``(e, 4)`` and the lines ``(l, 2)`` of each named edge."""
     import meshio
 
-    check_file(path)
+    _check_file(path)
     try:
-        mesh = meshio.read(path)
+        with redirect_stdout(StringIO()), redirect_stderr(StringIO()):  # meshio prints what it cannot read
+            mesh = meshio.read(path)
     except (meshio.ReadError, *_UNREADABLE) as error:
         reason = " ".join(str(error).split())[:80] or type(error).__name__
         raise MeshError(f"cannot be read ({reason})") from None
@@ -61,6 +70,8 @@ def _contents(path: Path) -> tuple[Floats, Ints, dict[str, Ints]]:
     quads, lines = [], dict[str, list[Ints]]()
     named = _names(mesh)
     for number, block in enumerate(mesh.cells):
+        if not len(block.data):
+            continue
         if block.type.startswith("quad"):
             _check_straight(mesh.points[:, :2], block.data)
             quads.append(block.data[:, :4])
@@ -76,6 +87,18 @@ def _contents(path: Path) -> tuple[Floats, Ints, dict[str, Ints]]:
     number_of[corners] = np.arange(corners.size)
     edges = {name: number_of[np.concatenate(parts)] for name, parts in lines.items()}
     return mesh.points[corners, :2].astype(float), local.reshape(-1, 4), edges
+
+
+def _check_file(path: Path) -> None:
+    """Require a regular file of at most `_LARGEST` bytes."""
+    try:
+        info = path.stat()
+    except (OSError, ValueError) as error:
+        raise MeshError(f"cannot be read ({getattr(error, 'strerror', None) or error})") from None
+    if not S_ISREG(info.st_mode):
+        raise MeshError("must be a regular file")
+    if info.st_size > _LARGEST:
+        raise MeshError(f"must not be larger than 16 MB, it has {info.st_size / 2**20:.4g}")
 
 
 _UNREADABLE = (

@@ -217,37 +217,35 @@ def test_mesh_that_breaks_a_rule_costs_one_line(tmp_path, rule):
 
 
 @pytest.mark.parametrize("version", ["2", "4"])
-def test_every_broken_line_of_a_mesh_text_is_named(tmp_path, version):
-    """Every line of a small mesh spoilt in turn, and the text cut off behind it."""
+def test_a_text_that_is_cut_off_or_counts_wrongly_is_refused_and_nothing_is_printed(tmp_path, version, capfd):
     path = tmp_path / "a.msh"
     (write if version == "2" else write_4)(path, *parts(nx=2, ny=1))
     pulled(mesh_file=str(path))
     lines = path.read_text().splitlines()
-    begin, end = (lines.index(name) for name in ("$Nodes", "$EndElements"))
-    assert {"$EndNodes", "$Elements"} < set(lines[begin:end])
-    for number in range(begin + 1, end):
+    for number in range(lines.index("$Nodes") + 1, lines.index("$EndElements")):
         count = lines[number - 1] in ("$Nodes", "$Elements")
-        others = [lines[number] + " x", *(["9999999999", "-1", "1e3", ""] if count else [])]
-        for spoilt in (*([*lines[:number], other, *lines[number + 1 :]] for other in others), lines[:number]):
-            path.write_text("\n".join(spoilt) + "\n")
-            message = refused(path)
-            assert "line " in message or "ends before" in message, (number, message)
+        spoilt = [
+            [*lines[:number], other, *lines[number + 1 :]]
+            for other in ("9999999999", "-1", "1e3", "")
+            if count
+        ]
+        for text in (*spoilt, lines[:number]):
+            path.write_text("\n".join(text) + "\n")
+            refused(path)
+    assert capfd.readouterr() == ("", "")
 
 
-def test_only_whole_text_in_regular_files_of_at_most_16_mb_is_read(tmp_path):
+def test_only_regular_files_of_at_most_16_mb_are_read(tmp_path):
     fifo, large = tmp_path / "fifo.msh", tmp_path / "large.msh"
     os.mkfifo(fifo)
     with large.open("wb") as file:
         file.truncate(2**24 + 1)
-    binary = tmp_path / "binary.msh"
-    binary.write_bytes(b"$MeshFormat\n2.2 1 8\n\x01\x00\x00\x00\n$EndMeshFormat\n")
     triangle = meshio.Mesh(np.eye(3) * [1, 1, 0], [("triangle", np.array([[0, 1, 2]]))])
     meshio.write(tmp_path / "a.vtu", triangle)
     for path, rule in {
         fifo: "must be a regular file",
         "/dev/zero": "must be a regular file",
         large: "must not be larger than 16 MB",
-        binary: "line 2: must be Gmsh's text format",
         tmp_path / "a.vtu": 'it has cells of type "triangle"',
         tmp_path / "nothing.msh": "cannot be read",
     }.items():
