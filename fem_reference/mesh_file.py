@@ -70,7 +70,7 @@ def _contents(path: Path) -> tuple[Floats, Ints, dict[str, Ints]]:
     quads, lines = [], dict[str, list[Ints]]()
     named = _names(mesh)
     for number, block in enumerate(mesh.cells):
-        if not len(block.data):
+        if not block.data.size:
             continue
         if block.type.startswith("quad"):
             _check_straight(mesh.points[:, :2], block.data)
