@@ -13,6 +13,10 @@ from fem_reference.status import Status
 from fem_reference.touch import Condition, Touch
 
 
+_BALANCE = 1e-6
+"""Largest accepted imbalance of reactions, contact forces and end loads, relative to the same force as `Settings.tolerance`."""
+
+
 @np.errstate(all="ignore")  # values that are not finite become a status
 def equilibrium(model: Model, guess: State, settings: Settings, *, keep_set: bool = False) -> Attempt:
     """Find the equilibrium with unilateral contact at the load parameter of ``guess``; never raises.
@@ -115,7 +119,7 @@ def _verified(model: Model, attempt: Attempt, settings: Settings) -> Attempt:
             return replace(attempt, status=Status.LOST_CONTACT, pair=number)
         if touch.closed and -touch.gap > settings.max_penetration * _length(model, touch):
             return replace(attempt, status=Status.TOO_DEEP, pair=number)
-    allowed = settings.balance_tolerance * force_scale(model, state) + model.balance_round_off
+    allowed = _BALANCE * force_scale(model, state) + model.balance_round_off
     if imbalance(model, state) > allowed:
         return replace(attempt, status=Status.UNBALANCED)
     conditions = tuple(_rearmed(model, touch) for touch in state.touches)

@@ -30,7 +30,7 @@ from fem_reference.slip_events import SlipEvent, first_slip_event
 from fem_reference.state import State, at_rest, build_state, with_conditions
 from fem_reference.status import Status
 from fem_reference.touch import Condition, Touch
-from fem_reference.track import TRACK_LENGTH, Accepted, accept, departure, predict
+from fem_reference.track import ORDER, TRACK_LENGTH, Accepted, accept, departure, predict
 
 _LOAD_ROUND_OFF = 1e-9
 """Largest distance at which the turn of a pin's path and the end of a step coincide."""
@@ -116,12 +116,12 @@ def march(model: Model, load_parameters: Floats, settings: Settings) -> Iterator
     track: tuple[Accepted, ...] = (start,)
     trial = settings.first_step
     if model.ill_conditioned or start.index > 0:
-        progress = _Progress(model=model, track=track, trial=trial, order=settings.predictor_order)
+        progress = _Progress(model=model, track=track, trial=trial, order=ORDER)
         progress.cause = Status.ILL_CONDITIONED
         yield _step(progress, Status.ILL_CONDITIONED)
         return
     for target in map(float, load_parameters):
-        progress = _Progress(model=model, track=track, trial=trial, order=settings.predictor_order)
+        progress = _Progress(model=model, track=track, trial=trial, order=ORDER)
         status = _advance(model, target, progress, settings)
         yield _step(progress, status)
         if status is not Status.CONVERGED:
@@ -247,7 +247,7 @@ def _accept_and_lengthen(
     """Accept a state after a step h, and choose the next step from the step's departure."""
     step = h * max(0.5, min(2.0, 0.8 * settings.largest_departure / max(distance, 1e-9)))
     progress.trial = step if h >= progress.trial * (1 - 1e-6) else max(step, progress.trial)
-    progress.order = settings.predictor_order
+    progress.order = ORDER
     progress.accept(candidate)
 
 
@@ -323,7 +323,7 @@ def _at_smallest_step(
         contact_event(SLIP_OFF, touch, lost, goal, 0),
         *(event for event in progress.events[before:] if event.pair != lost),
     ]
-    progress.trial, progress.order = settings.first_step, settings.predictor_order
+    progress.trial, progress.order = settings.first_step, ORDER
     return None
 
 

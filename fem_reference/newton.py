@@ -14,6 +14,10 @@ from fem_reference.status import Status
 from fem_reference.tangent import Correction, linearise
 
 
+_SMALLEST_DAMPING = 1 / 64
+"""Least part of a correction that is taken."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Attempt:
     """Result of one search for equilibrium."""
@@ -41,7 +45,7 @@ def iterate(model: Model, state: State, settings: Settings) -> Attempt:
         if correction is None:
             status = Status.SINGULAR
             break
-        if correction.size > settings.largest_growth * last.size and damping > settings.smallest_damping:
+        if correction.size > settings.largest_growth * last.size and damping > _SMALLEST_DAMPING:
             damping /= 2
         else:
             base, last, damping = state, correction, 1.0

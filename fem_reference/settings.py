@@ -17,24 +17,19 @@ class Settings:
     max_iterations
         Largest number of Newton iterations with one set of closed contacts. Near a buckling load 30 are needed, because a
         large bending correction also stretches the strip and changes the sign of its lateral stiffness.
-    largest_growth, smallest_damping
-        A correction is halved if the next correction exceeds it by the factor ``largest_growth``. It is halved at most
-        down to the part ``smallest_damping``. A factor near one also rejects corrections that converge.
+    largest_growth
+        A correction is halved if the next correction exceeds it by this factor. A factor near one also rejects corrections that
+        converge.
     max_contact_changes
         Largest number of changes of the set of closed contacts in one attempt.
     max_augmentations
         Largest number of augmented Lagrangian steps in one attempt.
     max_penetration
         Largest accepted penetration, relative to the strip's length.
-    balance_tolerance
-        Largest accepted imbalance of clamp reactions, contact forces and end loads, relative to the same force as
-        ``tolerance``.
     min_step
         Smallest step of the load parameter.
     max_attempts
         Largest number of attempts between two requested load parameters. The double beam needs 82 from 0 to 1.
-    predictor_order
-        Degree, at most 5, of the polynomial in the load parameter that extrapolates accepted states and their rates.
     first_step
         First step of the load parameter, unless the first requested load parameter is smaller.
     largest_departure
@@ -53,14 +48,11 @@ class Settings:
     tolerance: float = 1e-9
     max_iterations: int = 40
     largest_growth: float = 5.0
-    smallest_damping: float = 1 / 64
     max_contact_changes: int = 6
     max_augmentations: int = 12
     max_penetration: float = 1e-3
-    balance_tolerance: float = 1e-6
     min_step: float = 1e-6
     max_attempts: int = 100
-    predictor_order: int = 3
     first_step: float = 0.1
     largest_departure: float = 1 / 3
     branch: str = "stop"
@@ -68,9 +60,7 @@ class Settings:
     def __post_init__(self) -> None:
         for field in (
             "tolerance",
-            "smallest_damping",
             "max_penetration",
-            "balance_tolerance",
             "min_step",
             "first_step",
             "largest_departure",
@@ -85,7 +75,6 @@ class Settings:
             ("max_contact_changes", 0),
             ("max_augmentations", 0),
             ("max_attempts", 1),
-            ("predictor_order", 0),
         ):
             value = getattr(self, field)
             if not isinstance(value, int) or value < low:

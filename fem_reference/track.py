@@ -16,6 +16,8 @@ from fem_reference.tangent import Correction, Tangent, linearise
 
 TRACK_LENGTH = 3
 """Largest number of accepted states in a prediction."""
+ORDER = 3
+"""Degree of the polynomial in the load parameter that extrapolates accepted states and their rates."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -71,9 +71,7 @@ REFUSED = {
     (fr.Settings, "Settings"): {
         "tolerance": [0.0],
         "min_step": [1.0],
-        "balance_tolerance": [NAN],
         "max_iterations": [0],
-        "predictor_order": [-1],
         "largest_growth": [0.5],
         "branch": ["other"],
     },
