@@ -12,7 +12,6 @@ from fem_reference.state import State, imbalance, with_conditions
 from fem_reference.status import Status
 from fem_reference.touch import Condition, Touch
 
-
 _BALANCE = 1e-6
 """Largest accepted imbalance of reactions, contact forces and end loads, relative to the same force as `Settings.tolerance`."""
 

@@ -13,7 +13,6 @@ from fem_reference.state import State, build_state, residual, tie_residuals, wit
 from fem_reference.status import Status
 from fem_reference.tangent import Correction, linearise
 
-
 _SMALLEST_DAMPING = 1 / 64
 """Least part of a correction that is taken."""
 
