@@ -60,12 +60,11 @@ def index(assembler: Assembler, state: State, system: Linearisation) -> int:
     A contact that is closed without force admits variations to one side only. The index is then defined only if it is the same with the
     contact open, where the structure is no mechanism.
 
-    Returns the number of negative eigenvalues; a lower bound for an exact element with more than a few
-    hundred
-    modes. The index is -1, not defined, for a singular tangent, for numbers that are not finite, and for more
-    than 1,500 unknowns whose pivots leave the diagonal. It is -1 also for closed contacts of the paper's
-    elements: their force is normal to the chord and has no energy, and in slip, whose force has none either.
-    A contact that sticks is held at its arc position; on a face the shear strain moves it.
+    The number is a lower bound for an exact element with more than a few hundred modes. It is -1, not
+    defined, for a singular tangent, for numbers that are not finite, and for more than 1,500 unknowns whose
+    pivots leave the diagonal. It is -1 also for closed contacts of the paper's elements: their force is
+    normal to the chord and has no energy, and in slip, whose force has none either. A contact that sticks is
+    held at its arc position; on a face the shear strain moves it.
     """
     if any(
         touch is not None and touch.grip is not None and touch.grip.held is None for touch in state.touches
