@@ -27,7 +27,7 @@ from enum import Enum
 
 import numpy as np
 
-from tsm import scaling
+from tsm import scales
 from tsm.ends import clearance
 from tsm.friction import cone, traction
 from tsm.line_contact import curvature
@@ -184,7 +184,7 @@ def least_push(newton: Newton, k: int) -> float:
     pair = newton.model.pairs[k]
     beam, section = pair.target.beam, pair.target.beam.section
     own = max(ROUND_OFF, newton.tolerance) * section.EI / beam.length**2
-    noise = scaling.ROUND_OFF * section.EA * beam.elements
+    noise = scales.ROUND_OFF * section.EA * beam.elements
     return max(own, noise if pair.node < 0 else newton.noise * newton.model.least_force)
 
 

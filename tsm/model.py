@@ -17,11 +17,11 @@ from tsm.conditions import dead_loads, held_components, motions, springs_of
 from tsm.elements import EXACT, ClosedForm, Integrated
 from tsm.elements.beam import Coefficients
 from tsm.elements.properties import Array, Properties
-from tsm.groups import GROUPS, ClosedFormGroup, ElementGroup, ExactGroup
+from tsm.groups import GROUPS, ElementGroup, ExactGroup
 from tsm.ordering import block_order
 from tsm.pairs import BeamModel, PairModel
 from tsm.rods.assembly import Rods
-from tsm.sizes import Sizes, joined_extents, sizes_of
+from tsm.scales import Sizes, joined_extents, sizes_of, units_of
 from tsm.stages import Increments
 from tsm.structure import Beam, Structure
 
@@ -58,7 +58,8 @@ class Model:
     ``springs``: springs to the ground and in hinges, None without.
     ``joints``: node of the joint by node of the beam's end behind a hinge. The two share their displacements.
     ``slaves, masters``: displacements of the ends behind hinges, which are no unknowns, and of their joints.
-    ``sizes``: length, extent, force_scale and least_force; they are attributes too, as plain numbers.
+    ``sizes``: length, extent, force_scale and least_force, which are attributes too.
+    ``units, row_units``: units of the unknowns, and of the equations.
     """
 
     def __init__(self, structure: Structure) -> None:
@@ -79,10 +80,10 @@ class Model:
             [[getattr(b.section, name) for b in structure.beams] for name in ("EA", "GA", "EI")]
         )
         l0 = np.concatenate([beam.lengths for beam in self.beams.values()])
-        self.properties = self.properties_of(self.coordinates, l0, sections)
-        lengths = np.array([beam.length for beam in structure.beams])
-        self.sizes = self.sizes_of(self.coordinates, lengths, sections[2])
-        self.length, self.extent, self.force_scale, self.least_force = map(float, self.sizes)
+        self.properties = self._properties(l0, sections)
+        self.sizes = self._sizes(np.array([beam.length for beam in structure.beams]), sections[2])
+        self.length, self.extent, self.force_scale, self.least_force = self.sizes
+        self.units, self.row_units = (unit[self.kind] for unit in units_of(self.sizes))
         self.rubbed = any(pair.rubs for pair in self.pairs)
         turns = {turn for pin in structure.pins for turn in (pin.corners if self.rubbed else pin.turns)}
         self.turns = tuple(sorted(turns.union(map(float, range(1, self.stages)))))
@@ -168,14 +169,14 @@ class Model:
         self.closed = np.flatnonzero(self.block < 0)
         self.dof_count = 3 * count
 
-    def sizes_of(self, coordinates: Array, lengths: Array, EI: Array) -> Sizes:
-        """Sizes from node positions (nodes, 2, ...), and lengths and bending stiffnesses (beams, ...) of the beams."""
+    def _sizes(self, lengths: Array, EI: Array) -> Sizes:
+        """Sizes from lengths and bending stiffnesses (beams,) of the beams."""
         if not self.joined:
             return sizes_of(lengths, lengths, EI)
         starts = np.array([beam.nodes[0] for beam in self.beams.values()])
         links = np.array(list(self.joints.items()), dtype=int).reshape(-1, 2)
         nodes = np.concatenate([self.element_nodes, links])
-        return sizes_of(lengths, joined_extents(nodes, starts, coordinates, lengths), EI)
+        return sizes_of(lengths, joined_extents(nodes, starts, self.coordinates, lengths), EI)
 
     @cached_property
     def kind(self) -> Array:
@@ -188,20 +189,6 @@ class Model:
         contacts = [_CONTACT_KINDS[: pair.element_type.contact_unknowns] for pair in self.pairs]
         kind: Array = np.concatenate([nodal, *contacts])
         return kind
-
-    @cached_property
-    def units(self) -> Array:
-        """Units of the unknowns, from the longest beam and the largest ``EI/L^2``."""
-        L, F = self.length, self.force_scale
-        units: Array = np.array([L, L, 1.0, F, F, F * L, F, F, L, 1.0])[self.kind]
-        return units
-
-    @cached_property
-    def row_units(self) -> Array:
-        """Units of the equations."""
-        L, F = self.length, self.force_scale
-        units: Array = np.array([F, F, F * L, L, L, 1.0, L, L, F, 1.0])[self.kind]
-        return units
 
     @property
     def stick_stiffness(self) -> float:
@@ -247,11 +234,6 @@ class Model:
     def group_of(self, beam: BeamModel) -> ElementGroup:
         """Group of a beam's elements."""
         return next(group for group in self.groups if beam.first in group.elements)
-
-    @property
-    def coefficients(self) -> Coefficients:
-        """Coefficients of the elements in closed form."""
-        return next(group.coefficients for group in self.groups if isinstance(group, ClosedFormGroup))
 
     @property
     def rods(self) -> Rods | None:
@@ -342,30 +324,25 @@ class Model:
             widest = max(widest, int((rows.max(axis=0) - least).max(initial=0)))
         return widest
 
-    def properties_of(self, coordinates: Array, l0: Array, sections: Array) -> Properties:
-        """Constants of the elements.
-
-        ``coordinates`` (nodes, 2, ...): undeformed node positions of one structure, or of many in the last
-        axis. ``l0`` (elements, ...): lengths of the elements. ``sections`` (3, beams, ...): EA, GA and EI of
-        the beams.
-        """
+    def _properties(self, l0: Array, sections: Array) -> Properties:
+        """Constants of all elements from their lengths (elements,), and EA, GA and EI (3, beams) of the beams."""
         counts = [beam.beam.elements for beam in self.beams.values()]
         EA, GA, EI = np.repeat(sections, counts, axis=1)
         sheared = np.repeat([beam.kind.sheared for beam in self.beams.values()], counts)
-        d = coordinates[self.element_nodes[:, 1]] - coordinates[self.element_nodes[:, 0]]
-        Phi = np.where(sheared.reshape(-1, *[1] * (l0.ndim - 1)), 12 * EI / (GA * l0**2), 0.0)
-        return Properties(dx0=d[:, 0].copy(), dy0=d[:, 1].copy(), l0=l0, EA=EA, EI=EI, Phi=Phi)
+        dx0, dy0 = np.diff(self.coordinates[self.element_nodes], axis=1)[:, 0].T.copy()
+        return Properties(dx0, dy0, l0, EA, EI, np.where(sheared, 12 * EI / (GA * l0**2), 0.0))
 
-    def coefficients_of(self, properties: Properties) -> Coefficients:
-        """Coefficients of the energy of the elements in closed form; the properties are arrays over all elements."""
-        parts = []
-        for beam in self.beams.values():
-            kind = beam.kind
-            if isinstance(kind, ClosedForm):
-                properties_there = Properties(*(column[beam.first : beam.last + 1] for column in properties))
-                parts.append(kind.coefficients(properties_there))
-        axis = -properties.l0.ndim
-        return Coefficients(*(np.concatenate(part, axis=axis) for part in zip(*parts, strict=True)))
+    @cached_property
+    def coefficients(self) -> Coefficients:
+        """Coefficients of the energy of the elements in closed form."""
+        parts = [
+            beam.kind.coefficients(
+                Properties(*(column[beam.first : beam.last + 1] for column in self.properties))
+            )
+            for beam in self.beams.values()
+            if isinstance(beam.kind, ClosedForm)
+        ]
+        return Coefficients(*(np.concatenate(part, axis=-1) for part in zip(*parts, strict=True)))
 
     def node_position(self, pair: PairModel, q: Array, load_parameter: float) -> tuple[float, float]:
         """Current position of a pair's contacting node."""

@@ -11,7 +11,7 @@ from tsm.contact import chord_owner, handed_over
 from tsm.elements.properties import Array
 from tsm.groups import Change
 from tsm.model import Model
-from tsm.scaling import SHARP, TURN, largest, scales_of
+from tsm.scales import ROUND_OFF, SHARP, TURN, WAY, largest, units_of
 from tsm.settings import Settings
 from tsm.state import State, Touch
 from tsm.status import Status
@@ -74,6 +74,25 @@ class _Iteration(NamedTuple):
         return not residual <= _RISE * self.residual and self.part > _SHORTEST
 
 
+def _scales(model: Model) -> tuple[Array, Array, float]:
+    """Factors that make residuals comparable, reciprocals of the largest step, over all unknowns, and scaled round-off of the residual.
+
+    Forces are counted in ``EI/L^2``, positions in L/1000. Round-off is ``4 eps (EA L/l0 + EI/l0^2)`` for an
+    element in closed form, and ``4 eps`` of the node positions where positions are equations.
+    """
+    sharp = np.where(np.isin(np.arange(10), (0, 1, 2, 8)), 1.0, SHARP)
+    residual = 1 / (units_of(model.sizes)[1] * sharp)
+    way, turn = 1 / (WAY * model.extent), 1 / TURN
+    step = np.array([way, way, turn, 0.0, 0.0, 0.0, 0.0, 0.0, way, turn])
+    EA, EI, l0 = (
+        value[model.closed] for value in (model.properties.EA, model.properties.EI, model.properties.l0)
+    )
+    noise = ROUND_OFF * (EA * model.extent / l0 + EI / l0**2).max(initial=0.0) / model.least_force
+    if len(model.kind) > model.equations or any(group.internal for group in model.groups):
+        noise = max(noise, ROUND_OFF * np.abs(model.coordinates).max() / (SHARP * model.length))
+    return residual[model.kind], step[model.kind], float(noise)
+
+
 class Newton:
     """Newton's method on forces, contact positions and directions together.
 
@@ -89,8 +108,7 @@ class Newton:
         self.max_iterations = settings.max_iterations
         self.integration_tolerance = settings.integration_tolerance
         self.tolerance = settings.tolerance
-        scales = scales_of(model, model.coordinates, model.properties, model.sizes)
-        self.scale, self.per_step, self.noise = scales.residual, scales.step, float(scales.noise)
+        self.scale, self.per_step, self.noise = _scales(model)
         kind = model.kind
         self.per_unknown = self.per_step + np.where((kind > 2) & (kind < 6), 1 / model.units, 0.0)
         if model.springs is not None:
@@ -136,13 +154,13 @@ class Newton:
     def size(self, motion: Array) -> float:
         """Largest entry of a motion, in largest Newton steps; nan inside does not count."""
         nodes = self.model.equations
-        size, inside = float(largest(motion[:nodes], self.per_step[:nodes])), motion[nodes:]
+        size, inside = largest(motion[:nodes], self.per_step[:nodes]), motion[nodes:]
         return max(size, float(np.fmax.reduce(np.abs(inside))) / TURN) if len(inside) else size
 
     def norm(self, system: Linearisation) -> float:
         """Scaled norm of a residual."""
         inside = max(forces.inside for forces in system.groups)
-        return max(float(largest(system.residual, self.scale)), inside / SHARP)
+        return max(largest(system.residual, self.scale), inside / SHARP)
 
     def solve(self, start: State, drag: Drag | None = None, *, across: Array | None = None) -> Equilibrium:
         """Iterate from a start to equilibrium.
@@ -283,7 +301,7 @@ class Newton:
         """
         model = self.model
         dq, dz = step[: model.equations], step[model.equations :]
-        size = float(largest(step, self.per_step))
+        size = largest(step, self.per_step)
         factor = part * (self.longest / size if size > self.longest else 1.0)
         begin, end = state.load_parameter, state.load_parameter if t is None else t
         if end != begin:

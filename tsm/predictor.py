@@ -15,15 +15,7 @@ from tsm.projection import arc_position
 from tsm.state import State, Touch
 
 
-def weights_at(times: Sequence[Any], t: Any) -> list[Any]:
-    """Lagrange weights that extrapolate values at earlier times to t, as numbers or as arrays over many structures."""
-    return [
-        math.prod((t - other) / (time - other) for k, other in enumerate(times) if k != n)
-        for n, time in enumerate(times)
-    ]
-
-
-def weighted(weights: Sequence[Any], values: Iterable[Any]) -> Any:
+def weighted(weights: Sequence[float], values: Iterable[Any]) -> Any:
     """Weighted sum."""
     return sum(weight * value for weight, value in zip(weights, values, strict=True))
 
@@ -32,7 +24,11 @@ def extrapolate(model: Model, history: list[State], t: float) -> State:
     """State at t by the polynomial through earlier states, all with the same closed contacts."""
     for group in model.groups:
         history = group.alike(history)
-    weights = weights_at([state.load_parameter for state in history], t)
+    times = [state.load_parameter for state in history]
+    weights = [  # Lagrange's
+        math.prod((t - other) / (time - other) for k, other in enumerate(times) if k != n)
+        for n, time in enumerate(times)
+    ]
     last = history[-1]
     moved = replace(last, load_parameter=t, q=weighted(weights, [state.q for state in history]))
     if last.profile:

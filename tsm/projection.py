@@ -55,15 +55,10 @@ def slide(lengths: Sequence[float], k: int, xi: float, past: float = 0.0) -> tup
     return k, xi
 
 
-def project_on_chords(positions: Array, node: Array) -> tuple[Array, Array]:
-    """Chord that is nearest to a node, shape (...), and positions of the node's projections on all chords, shape (chords, ...).
-
-    ``positions`` (nodes, 2, ...): ends of the chords of one beam, or of many in the last axis.
-    ``node`` (2, ...): position of the node.
-    """
+def project_on_chords(positions: Array, node: Array) -> tuple[int, Array]:
+    """Chord, between positions (nodes, 2), that is nearest to a node (2,), and positions of its projections on all chords."""
     d = np.diff(positions, axis=0)
     r = node - positions[:-1]
-    xi = np.einsum("ij...,ij...->i...", d, r) / np.einsum("ij...,ij...->i...", d, d)
+    xi = np.einsum("ij,ij->i", d, r) / np.einsum("ij,ij->i", d, d)
     apart = r - np.clip(xi, 0.0, 1.0)[:, None] * d
-    owner = np.argmin(np.einsum("ij...,ij...->i...", apart, apart), axis=0)
-    return owner, xi
+    return int(np.argmin(np.einsum("ij,ij->i", apart, apart))), xi

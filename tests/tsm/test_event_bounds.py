@@ -20,7 +20,7 @@ from tsm.model import Model
 from tsm.newton import Newton
 from tsm.projection import arc_position, slide
 from tsm.root import find_root
-from tsm.sizes import joined_extents, sizes_of
+from tsm.scales import joined_extents, sizes_of
 
 
 def open_states(*path):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -11,7 +10,6 @@ import numpy as np
 from tsm.contact_block import ContactBlock
 from tsm.elements import beam as beam_element
 from tsm.elements.axis import PointForce, deflected_axes
-from tsm.elements.beam import Coefficients
 from tsm.elements.contact_law import Friction, Rub, Surface
 from tsm.elements.curve import Curve
 from tsm.elements.properties import Array, Properties
@@ -65,14 +63,9 @@ class ClosedFormGroup(ElementGroup):
     past_node = AT_NODE
     slip_sign = -1.0
 
-    @cached_property
-    def coefficients(self) -> Coefficients:
-        """Coefficients of the elements' energy."""
-        return self.model.coefficients_of(self.model.properties)
-
     def forces(self, state: State, contacts: ContactBlock) -> ClosedFormForces:
         """Forces and tangents of elements and contacts."""
-        force, tangent = beam_element.response(self.coefficients, state.q[self.dofs])
+        force, tangent = beam_element.response(self.model.coefficients, state.q[self.dofs])
         for k, pair in self.model.pairs_of(self):
             touch = state.touches[k]
             if touch is None:
@@ -93,7 +86,7 @@ class ClosedFormGroup(ElementGroup):
 
     def rate(self, state: State, q: Array, _contacts: Array) -> Array:
         """Change (6, e) of the forces with the nodal displacements."""
-        _, tangent = beam_element.response(self.coefficients, state.q[self.dofs])
+        _, tangent = beam_element.response(self.model.coefficients, state.q[self.dofs])
         rate: Array = np.einsum("ijn,jn->in", tangent.reshape(6, 6, -1), q[self.dofs])
         return rate
 
@@ -149,7 +142,7 @@ class ClosedFormGroup(ElementGroup):
 
     def energy(self, state: State) -> float:
         """Strain energy of elements and contacts."""
-        total = float(beam_element.energy(self.coefficients, state.q[self.dofs]).sum())
+        total = float(beam_element.energy(self.model.coefficients, state.q[self.dofs]).sum())
         for k, pair in self.model.pairs_of(self):
             if (touch := state.touches[k]) is None:
                 continue
