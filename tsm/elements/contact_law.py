@@ -1,4 +1,4 @@
-"""Contact laws: force, tangent and energy of a contact inside an element in closed form, for one structure and for many."""
+"""Contact laws: force, tangent and energy of a contact inside an element in closed form."""
 
 from __future__ import annotations
 
@@ -67,17 +67,12 @@ class ContactLaw:
 
 @dataclass(frozen=True, kw_only=True)
 class Coupling:
-    """A contact law with unknowns, for many contacts at a time and for two contacts on one element."""
+    """A contact law with unknowns: two contacts on one element, and friction."""
 
-    # ``(p, x, xi, force, side, offset) -> (gradient, hessian)`` of the same law for many contacts, of
-    # shapes (7, m) over ``dx, dy, theta_i, theta_j, F_x, F_y, xi`` and (28, m), `UPPER`. See
-    # `mixed_contact.jet`
-    jet: Callable[[Properties, Any, Any, Any, Any, Any], tuple[Array, Array]]
     # ``(p, xi, eta) -> number``: deflection of the element at xi by a unit force at eta
     dent: Callable[[Properties, Any, Any], Any]
     # ``(p, (xi, eta), force, force) -> (gradient, tangent)``: coupling of two contacts on one element, over
-    # force (2) and arc position of the first contact, then of the second. The arguments are numbers, or
-    # arrays over many elements with ``xi <= eta``
+    # force (2) and arc position of the first contact, then of the second
     crossing: Callable[[Properties, tuple[Any, Any], Any, Any], tuple[Array, Array]]
     friction: Friction | None = None  # the law with friction; None if the law has none
 

@@ -111,7 +111,7 @@ def jet(p: Properties, x: Any, xi: Any, force: Any, side: Any, offset: Any) -> t
             a * hss + ddC * half,
         ]
     )  # fmt: skip
-    if isinstance(offset, np.ndarray) or offset:
+    if offset:
         on_surface = _surface(curve, xi, force, (dC, ddC, dddC), p.l0)
         gradient = gradient - side * offset * on_surface[0]
         hessian = hessian - side * offset * on_surface[1]

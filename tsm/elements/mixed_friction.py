@@ -34,33 +34,32 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tsm.elements.contact_law import Friction, Rub, Surface
-from tsm.elements.curve import Curve, Jet
-from tsm.elements.dual import Dual
+from tsm.elements.curve import Curve
 from tsm.elements.mixed_contact import LEVER, REDUCE, compliance, cross_compliance
 from tsm.elements.properties import Array, Properties, chord_rotation, unwind
+from tsm.elements.varied import derivatives, plain, varied
 
 _ITERATIONS = 50
 _LAST = 1e-15
 """Relative change at which an iteration ends."""
-_SYMMETRIC = [[min(a, b) * (9 - min(a, b)) // 2 + max(a, b) for b in range(5)] for a in range(5)]
-"""Entry of a `Jet`'s hessian at row and column."""
 
 
-Pair = tuple[Dual, Dual]
+Pair = tuple[Any, Any]
 
 
 class Loaded(NamedTuple):
-    """An element under the force and couple of a contact, over ``dx, dy, theta_i, theta_j, F_x, F_y, xi``."""
+    """An element under the force and couple of a contact; arrays (8,), see `varied`."""
 
-    force: tuple[Dual, Dual]  # force F on the beam
-    tangent: tuple[Dual, Dual]  # mean tangent T, per undeformed length
-    stretch: Dual  # |T|
-    place: tuple[Dual, Dual]  # point r of the axis from the element's end i
-    nodal: tuple[Dual, ...]  # loads on chord and end rotations
-    energy: Dual  # strain energy E by the contact
-    curvature: Dual  # theta', per undeformed length
-    shear: Dual  # psi, the angle from the section's normal to T
-    slope: Dual  # phi, the angle of T
+    xi: Any  # position
+    force: Pair  # force F on the beam
+    tangent: Pair  # mean tangent T, per undeformed length
+    stretch: Any  # |T|
+    place: Pair  # point r of the axis from the element's end i
+    nodal: tuple[Any, ...]  # loads on chord and end rotations
+    energy: Any  # strain energy E by the contact
+    curvature: Any  # theta', per undeformed length
+    shear: Any  # psi, the angle from the section's normal to T
+    slope: Any  # phi, the angle of T
 
 
 def response(
@@ -80,12 +79,18 @@ def response(
     if rub.held is None:
         last = rub.lean * (Fy * Tx - Fx * Ty) - Fx * Tx - Fy * Ty
     else:
-        last = rub.unit * _crept(beam, xi * p.l0, surface.side, rub)
-    rows = (*(-load for load in beam.nodal), -rx, -ry, last)
-    residual = np.array([row.value for row in rows]) @ REDUCE
-    tangent = REDUCE.T @ np.array([row.gradient for row in rows]) @ REDUCE - LEVER
+        last = rub.unit * _crept(beam, p.l0, surface.side, rub)
+    rows = np.array([*(-load for load in beam.nodal), -rx, -ry, last])
     at_node = np.array([*(-part for part in force), 0, 0, 0, 0, *force, *(-part for part in lever), 0])
-    return residual + at_node, tangent
+    tangent = REDUCE.T @ _by_arc(rows, p.l0) @ REDUCE - LEVER
+    return plain(rows) @ REDUCE + at_node, tangent
+
+
+def _by_arc(values: Any, l0: float) -> Array:
+    """Derivatives with the arc position in place of xi."""
+    rates = derivatives(values)
+    rates[..., 6] /= l0
+    return rates
 
 
 def split(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> tuple[Any, Any, Any]:
@@ -98,8 +103,8 @@ def split(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub
 def slip(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> Array:
     """Slip rate as a linear form over the eleven unknowns: the force F_t on it is the power that friction dissipates."""
     beam = _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face)
-    form = surface.side * (rub.face * beam.shear.gradient + rub.radius * beam.slope.gradient)
-    form[6] += _tilted(beam, rub)[1] + surface.side * rub.face * beam.curvature.value
+    form = _by_arc(surface.side * (rub.face * beam.shear + rub.radius * beam.slope), p.l0)
+    form[6] += _tilted(beam, rub)[1] + surface.side * rub.face * plain(beam.curvature)
     rate: Array = form @ REDUCE
     return rate
 
@@ -112,13 +117,15 @@ def tilt(p: Properties, xi: Any, eta: Any) -> Any:
 def hold(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> Rub:
     """State of the friction where a stick begins, here and now."""
     beam = _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face)
-    path = beam.stretch.value + surface.side * rub.face * beam.curvature.value
-    return rub._replace(lean=0.0, held=xi * p.l0, path=path, shear=beam.shear.value, slope=beam.slope.value)
+    path, shear, slope = plain(
+        [beam.stretch + surface.side * rub.face * beam.curvature, beam.shear, beam.slope]
+    )
+    return rub._replace(lean=0.0, held=xi * p.l0, path=path, shear=shear, slope=slope)
 
 
 def energy(p: Properties, x: Any, _lever: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> Any:
     """Contribution of the contact to the strain energy."""
-    return _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face).energy.value
+    return plain(_loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face).energy)
 
 
 def crossing(
@@ -157,18 +164,17 @@ def crossing(
 
 def _tilted(beam: Loaded, rub: Rub) -> tuple[tuple[Any, Any], Any]:
     """Mean tangent with the deflection by other contacts on the element, and its length."""
-    Tx, Ty = (part.value + more for part, more in zip(beam.tangent, rub.tilt, strict=True))
+    Tx, Ty = (part + more for part, more in zip(plain(beam.tangent), rub.tilt, strict=True))
     return (Tx, Ty), np.sqrt(Tx * Tx + Ty * Ty)
 
 
-def _crept(beam: Loaded, arc: Any, side: float, rub: Rub) -> Dual:
+def _crept(beam: Loaded, l0: float, side: float, rub: Rub) -> Any:
     """Path of the face along the node since the stick began."""
-    crept = Dual(arc - rub.held, np.eye(7)[6])
+    crept = beam.xi * l0 - rub.held
     if not rub.face and not rub.radius:
         return crept
     path = beam.stretch + side * rub.face * beam.curvature
-    turned = Dual(unwind(beam.slope.value - rub.slope), beam.slope.gradient)
-    rolled: Dual = side * (rub.face * (beam.shear - rub.shear) + rub.radius * turned)
+    rolled = side * (rub.face * (beam.shear - rub.shear) + rub.radius * unwind(beam.slope - rub.slope))
     return (path + rub.path) / 2 * crept + rolled
 
 
@@ -178,18 +184,16 @@ def _loaded(p: Properties, x: tuple[Any, ...], xi: Any, force: tuple[Any, Any], 
 
     Solution, margins and energies ask for the same one in turn. The derivatives with the arc position take the axes n and t of the unloaded curve with them, which turn by its curvature.
     """
-    curve, l0 = Curve(p, x), p.l0
-    dx, dy, Fx, Fy, arc = (
-        Dual(value, row)
-        for value, row in zip((curve.dx, curve.dy, *force, xi * l0), np.eye(7)[[0, 1, 4, 5, 6]], strict=True)
-    )
-    part = arc / l0
-    w, (wx, wy, wi, wj, slope) = _lifted(curve.deflection_jet(xi), l0)
-    phi, (*phi_x, bend) = _lifted(curve.slope_angle_jet(xi), l0)
-    gamma, gamma_x = _lifted(curve.shear_strain_jet(), l0)
-    c, s = phi.cos(), phi.sin()
+    moved, part, (Fx, Fy) = varied(x, xi, force)
+    curve, l0 = Curve(p, moved), p.l0
+    dx, dy = curve.dx, curve.dy
+    w, (wx, wy, wi, wj, slope) = curve.deflection_jet(part)[:2]
+    phi, (*phi_x, bend) = curve.slope_angle_jet(part)[:2]
+    gamma, (*gamma_x, _) = curve.shear_strain_jet()[:2]
+    slope, bend = slope / l0, bend / l0
+    c, s = np.cos(phi), np.sin(phi)
     N, S = Fy * c - Fx * s, Fx * c + Fy * s
-    a = _flexibility(p, xi, arc)
+    a = _flexibility(p, part)
     turned = (a.C - a.A) * bend
     along, across = (a.A_s * S - turned * N) / 2, (a.C_s * N - turned * S) / 2
     free = (
@@ -203,15 +207,16 @@ def _loaded(p: Properties, x: tuple[Any, ...], xi: Any, force: tuple[Any, Any], 
     along, across = a.A * S, a.C * N + a.K * M
     arm, by_phi = Fy * dx - Fx * dy, N * along - S * across
     nodal = (part * Fx + arm * wx + w * Fy, part * Fy + arm * wy - w * Fx, arm * wi, arm * wj)
-    kink = _angle(Ty * c - Tx * s, Tx * c + Ty * s)
+    kink = chord_rotation(Ty * c - Tx * s, Tx * c + Ty * s)
     return Loaded(
+        xi=part,
         force=(Fx, Fy),
         tangent=T,
-        stretch=(Tx * Tx + Ty * Ty).sqrt(),
+        stretch=np.sqrt(Tx * Tx + Ty * Ty),
         place=(part * dx - w * dy + along * c - across * s, part * dy + w * dx + along * s + across * c),
         nodal=tuple(
             load + (by_phi + M) * turn - M * strain
-            for load, turn, strain in zip(nodal, phi_x, gamma_x[:4], strict=True)
+            for load, turn, strain in zip(nodal, phi_x, gamma_x, strict=True)
         ),
         energy=(a.C * N * N + a.A * S * S + a.R * M * M) / 2 + a.K * N * M,
         curvature=bend + a.kappa * N + a.R_s * M / 2,
@@ -223,26 +228,25 @@ def _loaded(p: Properties, x: tuple[Any, ...], xi: Any, force: tuple[Any, Any], 
 class Flexibility(NamedTuple):
     """What a unit force and couple at a point of a held element do there, over seven variables."""
 
-    C: Dual  # C, C_s: deflection by a force across the element, and its derivative in the arc position
-    C_s: Dual
-    A: Dual  # A, A_s: displacement by a force along the element, and its derivative
-    A_s: Dual
-    K: Dual  # deflection by a couple, rotation by a force
-    R: Dual  # R, R_s: rotation by a couple, and its derivative
-    R_s: Dual
-    rho: Dual  # slope of the centre line by a couple, ``R`` and the shear strain
-    kappa: Dual  # curvature by a force, so that ``dK/ds = rho + kappa``
+    C: Any  # C, C_s: deflection by a force across the element, and its derivative in the arc position
+    C_s: Any
+    A: Any  # A, A_s: displacement by a force along the element, and its derivative
+    A_s: Any
+    K: Any  # deflection by a couple, rotation by a force
+    R: Any  # R, R_s: rotation by a couple, and its derivative
+    R_s: Any
+    rho: Any  # slope of the centre line by a couple, ``R`` and the shear strain
+    kappa: Any  # curvature by a force, so that ``dK/ds = rho + kappa``
 
 
-def _flexibility(p: Properties, xi: Any, arc: Dual) -> Flexibility:
+def _flexibility(p: Properties, xi: Any) -> Flexibility:
     l0, Phi = p.l0, p.Phi
-    C, dC, ddC, _ = compliance(p, xi)
-    part = arc / l0
-    z, dz = part * (1 - part), (1 - 2 * part) / l0
+    C, dC, *_ = compliance(p, xi)
+    z, dz = xi * (1 - xi), (1 - 2 * xi) / l0
     soft = l0 / (p.EI * (1 + Phi))
     return Flexibility(
-        C=Dual(C, dC / l0 * arc.gradient),
-        C_s=Dual(dC / l0, ddC / l0**2 * arc.gradient),
+        C=C,
+        C_s=dC / l0,
         A=l0 / p.EA * z,
         A_s=l0 / p.EA * dz,
         K=soft * l0**2 / 2 * z * z * dz,
@@ -253,49 +257,32 @@ def _flexibility(p: Properties, xi: Any, arc: Dual) -> Flexibility:
     )
 
 
-def _lifted(jet: Jet, l0: Any) -> tuple[Dual, list[Dual]]:
-    """Value and first derivatives of a `Jet`, with the arc position in place of xi."""
-    scale = np.array([1.0, 1.0, 1.0, 1.0, 1 / l0])
-    spread = np.zeros((5, 7))
-    spread[range(5), [0, 1, 2, 3, 6]] = scale
-    gradient, hessian = np.array(jet.gradient), np.array(jet.hessian)[_SYMMETRIC]
-    first = zip(scale * gradient, (scale[:, None] * hessian) @ spread, strict=True)
-    return Dual(jet.value, gradient @ spread), [Dual(value, row) for value, row in first]
-
-
-def _couple(force: Pair, free: Pair, sloped: Pair, lever: float) -> tuple[Dual, Pair]:
+def _couple(force: Pair, free: Pair, sloped: Pair, lever: float) -> tuple[Any, Pair]:
     """Couple ``M = lever F . T/|T|`` and the mean tangent ``T = free + M sloped``, by Newton's method.
 
-    The last step is made with derivatives: from the solution it has those of the solution.
+    A step more than the numbers need gives the derivatives those of the solution.
     """
-    M = Dual(0.0, np.zeros(7))
+    M = np.zeros_like(free[0])
     if not lever:
         return M, free
-    values = [[part.value for part in pair] for pair in (force, free, sloped)]
     for _ in range(_ITERATIONS):
-        step = _couple_step(M.value, values, lever)
-        M.value += step
-        if abs(step) <= _LAST * abs(M.value):
+        step = _couple_step(M, force, free, sloped, lever)
+        M = M + step
+        if (np.abs(step) <= _LAST * np.abs(M)).all():
             break
-    M = M + _couple_step(M, (force, free, sloped), lever)
+    M = M + _couple_step(M, force, free, sloped, lever)
     return M, (free[0] + M * sloped[0], free[1] + M * sloped[1])
 
 
-def _couple_step(M: Any, pairs: Any, lever: float) -> Any:
-    """Step of Newton's method for the couple, for numbers or with derivatives."""
-    (Fx, Fy), (x, y), (slope_x, slope_y) = pairs
-    Tx, Ty = x + M * slope_x, y + M * slope_y
+def _couple_step(M: Any, force: Pair, free: Pair, sloped: Pair, lever: float) -> Any:
+    """Step of Newton's method for the couple."""
+    (Fx, Fy), (slope_x, slope_y) = force, sloped
+    Tx, Ty = free[0] + M * slope_x, free[1] + M * slope_y
     square = Tx * Tx + Ty * Ty
     size = np.sqrt(square)
     along, across = Fx * Tx + Fy * Ty, Fy * Tx - Fx * Ty
     turn = (slope_y * Tx - slope_x * Ty) / square
     return (along * lever / size - M) / (1 - across * lever / size * turn)
-
-
-def _angle(cross: Dual, dot: Dual) -> Dual:
-    """Angle of a vector from its components across and along a direction."""
-    rate = (dot.value * cross.gradient - cross.value * dot.gradient) / (cross.value**2 + dot.value**2)
-    return Dual(chord_rotation(cross.value, dot.value), rate)
 
 
 FRICTION = Friction(

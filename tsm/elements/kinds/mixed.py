@@ -10,7 +10,6 @@ LAW = ContactLaw(
     response=mixed_contact.response,
     energy=mixed_contact.energy,
     coupling=Coupling(
-        jet=mixed_contact.jet,
         dent=mixed_contact.dent,
         crossing=mixed_contact.crossing,
         friction=FRICTION,
