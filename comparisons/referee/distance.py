@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.guess import SHORTEST, AnswerState
-from comparisons.referee.rod import axis_at_rest, face_slope, touching_distance
+from comparisons.referee.rod import angle, axis_at_rest, cross, face_of
 from comparisons.referee.state import Equilibrium
 from comparisons.response.round_off import (
     LAST_PLACES,
@@ -191,14 +191,9 @@ def gap_off(scene: Scene, exact: Equilibrium, spec: ContactSpec, gap: float) -> 
     away = exact.place(spec.node) - there.position
     ahead = np.einsum("mi,mi->m", away, there.tangent)
     feet = np.flatnonzero((ahead[:-1] >= 0.0) & (ahead[1:] <= 0.0))
-    across = (there.tangent[:, 0] * away[:, 1] - there.tangent[:, 1] * away[:, 0]) / np.hypot(
-        *there.tangent.T
-    )
-    true = (
-        (across if spec.side == "left" else -across)
-        - touching_distance(scene, spec, 0.0)
-        - face_slope(scene, spec) * arcs
-    )
+    face = face_of(scene, spec)
+    across = cross(there.tangent, away) / np.hypot(*there.tangent.T)
+    true = face.left * across - face.reach(arcs)
     return float(np.min(np.abs(gap - true[feet]), initial=math.inf)) if len(feet) else 0.0
 
 
@@ -286,10 +281,9 @@ def _misplaced(scene: Scene, answer: AnswerState) -> dict[str, float]:
         place, cut = _on_axis(arcs, line, answer.arcs[spec.pair])
         pin = "." not in spec.node
         node = scene.pin(spec.node).position(answer.load_parameter) if pin else answer.end(spec.node)
-        apart = float(np.hypot(*(place - node)))
-        distances[spec.pair] = (
-            max(0.0, abs(apart - touching_distance(scene, spec, answer.arcs[spec.pair])) - cut) / beam.length
-        )
+        reach = face_of(scene, spec).reach(answer.arcs[spec.pair])
+        apart = abs(float(np.hypot(*(place - node))) - reach)
+        distances[spec.pair] = max(0.0, apart - cut) / beam.length
     for support in scene.all_supports:
         here = np.array(scene.place(support.node))
         way = (answer.end(support.node) - here).tolist()
@@ -318,11 +312,6 @@ def _on_axis(arcs: Array, line: Array, arc: float) -> tuple[Array, float]:
         line[k] - line[first] if first < k else way,
         line[last] - line[k + 1] if last > k + 1 else way,
     )
-    turn = min(max(_angle(before, way), _angle(way, behind)), _SHARPEST)
+    turn = min(max(angle(before, way), angle(way, behind)), _SHARPEST)
     cut = 0.5 * float(np.hypot(*way)) * math.tan(turn)
     return (1.0 - part) * line[k] + part * line[k + 1], cut
-
-
-def _angle(a: Array, b: Array) -> float:
-    """Angle between two vectors."""
-    return abs(math.atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]))

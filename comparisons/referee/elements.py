@@ -91,8 +91,8 @@ def mesh_of(layout: Layout, grids: list[Array]) -> Mesh:
         part += [number] * (inner + 1)
         first += list(range(len(vertices), len(vertices) + inner + 1))
         ends = [layout.stations[k] for k in (item.first, item.last)]
-        vertices += [ends[0].rotation_unknown, *range(count, count + inner), ends[1].rotation_unknown]
-        turned += [ends[0].prescribed_rotation, *[0.0] * inner, ends[1].prescribed_rotation]
+        vertices += [ends[0].unknown[2], *range(count, count + inner), ends[1].unknown[2]]
+        turned += [ends[0].prescribed[2], *[0.0] * inner, ends[1].prescribed[2]]
         count += inner
     numbers, at = np.array(vertices), np.array(first)
     own = np.array([(item.force, item.force + 1, *item.arcs) for item in layout.parts])[part]

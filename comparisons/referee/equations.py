@@ -79,13 +79,14 @@ def element_before(mesh: Mesh, touch: Touch) -> int:
 
 def _add_parts(layout: Layout, z: Array, g: Array, k: Array) -> None:
     """Add ``c.(r_b - r_a - R_b + R_a)`` of the parts."""
+    shifts = layout.shifts(z)
     for part in layout.parts:
         own, axes = slice(part.force, part.force + 2), part.rod.axes
         n = z[own]
-        g[own] += _apart(layout, z, part)
+        g[own] += _apart(layout, z, part, shifts)
         for number, sign in ((part.first, -1.0), (part.last, 1.0)):
             there = layout.stations[number]
-            for component, unknown in enumerate(there.place.unknown):
+            for component, unknown in enumerate(there.unknown[:2]):
                 g[unknown] += sign * axes[component] @ n
                 k[own, unknown] += sign * axes[component]
                 k[unknown, own] += sign * axes[component]
@@ -103,24 +104,18 @@ def _add_parts(layout: Layout, z: Array, g: Array, k: Array) -> None:
 
 def _add_springs_and_loads(layout: Layout, z: Array, g: Array, k: Array) -> float:
     """Add dead loads, springs to the ground, ``k u^2/2``, and those of hinges; return the energy of the springs."""
-    energy = 0.0
-    for there in layout.stations:
-        if there.touch is None:
-            for unknown, load in zip(there.unknown, (*there.force, there.moment), strict=True):
-                g[unknown] -= load
-        if any(there.springs):
-            moved = (*there.place.displacement(z), there.rotation(z))
-            for unknown, stiffness, way in zip(there.unknown, there.springs, moved, strict=True):
-                g[unknown] += stiffness * way
-                k[unknown, unknown] += stiffness
-                energy += float(stiffness * way**2 / 2.0)
-    for hinge in layout.hinges:
-        ends = [layout.stations[number] for number in (hinge.end, hinge.joint)]
-        turns = np.array([there.rotation_unknown for there in ends])
-        moment = hinge.stiffness * (ends[0].rotation(z) - ends[1].rotation(z))
-        energy += moment * (ends[0].rotation(z) - ends[1].rotation(z)) / 2.0
-        np.add.at(g, turns, moment * np.array([1.0, -1.0]))
-        np.add.at(k, (turns[:, None], turns), hinge.stiffness * np.array([[1.0, -1.0], [-1.0, 1.0]]))
+    numbers, _, loads, springs = layout.tables
+    moved = layout.motions(z)
+    np.add.at(g, numbers, -loads)
+    np.add.at(g, numbers, springs * moved)
+    np.add.at(k, (numbers, numbers), springs)
+    energy = float((springs * moved**2).sum()) / 2.0
+    for end, joint, stiffness in layout.hinges:
+        turns = numbers[[end, joint], 2]
+        apart = moved[end, 2] - moved[joint, 2]
+        energy += float(stiffness * apart**2) / 2.0
+        np.add.at(g, turns, stiffness * apart * np.array([1.0, -1.0]))
+        np.add.at(k, (turns[:, None], turns), stiffness * np.array([[1.0, -1.0], [-1.0, 1.0]]))
     return energy
 
 
@@ -139,15 +134,11 @@ def _add_offset(part: Part, touch: Touch, sign: float, z: Array, g: Array, k: Ar
     k[touch.arc, touch.angle] += mixed
 
 
-def _apart(layout: Layout, z: Array, part: Part) -> Array:
+def _apart(layout: Layout, z: Array, part: Part, shifts: Array) -> Array:
     """Return ``r_b - r_a - R_b + R_a`` in the beam's frame; it is exactly zero for an undeformed beam."""
     a, b = layout.stations[part.first], layout.stations[part.last]
-    moved = b.place.displacement(z) - a.place.displacement(z)
-    for touch, sign in ((a.touch, -1.0), (b.touch, 1.0)):
-        if touch is not None and touch.angle != NONE:
-            moved = moved - sign * touch.away(float(z[touch.arc])) * normal(float(z[touch.angle]))
-    apart = np.asarray(part.rod.axes.T @ moved)
+    apart = np.asarray(part.rod.axes.T @ (shifts[part.last] - shifts[part.first]))
     if a.touch is None and b.touch is None:
         return apart
-    rest = part.rod.axes.T @ (np.array(b.place.reference) - np.array(a.place.reference))
+    rest = part.rod.axes.T @ (b.reference - a.reference)
     return np.asarray(apart + rest - part.rod.between(*part.ends(z)))

@@ -103,7 +103,7 @@ class Rows(NamedTuple):
 def rows(layout: "Layout", touch: "Touch", z: Array, moment: float) -> Rows:
     """Return the rows of a contact at the unknowns z and the moment before it; the number of the moment is `NONE`."""
     parts = before, behind = layout.beside(touch)
-    turn = layout.stations[before.last].rotation_unknown
+    turn = int(layout.stations[before.last].unknown[2])
     forces = [before.force, before.force + 1, behind.force, behind.force + 1]
     numbers = [turn, *forces, touch.angle, -1, touch.arc]
     given = np.append(z, 0.0)[numbers]

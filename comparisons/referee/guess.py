@@ -139,8 +139,8 @@ def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotati
     for part in layout.parts:
         for number in (part.first, part.last):
             station = layout.stations[number]
-            if station.rotation_unknown != NONE:
-                z[station.rotation_unknown] = turns[part.beam].angle(part.ends(z)[number == part.last])
+            if station.unknown[2] != NONE:
+                z[station.unknown[2]] = turns[part.beam].angle(part.ends(z)[number == part.last])
     return z, turns
 
 
@@ -168,7 +168,7 @@ def _tangents(layout: Layout, answer: AnswerState, number: int) -> Rotations:
 def _aligned(layout: Layout, turns: list[Rotations]) -> list[Rotations]:
     """Add multiples of 2 pi, so that beams agree with prescribed rotations and, at joints, with each other."""
     known: dict[int, float] = {
-        k: item.prescribed_rotation for k, item in enumerate(layout.stations) if item.rotation_unknown == NONE
+        k: float(item.prescribed[2]) for k, item in enumerate(layout.stations) if item.unknown[2] == NONE
     }
     own = [[part for part in layout.parts if part.beam == number] for number in range(len(turns))]
     ends = [((parts[0].first, 0.0), (parts[-1].last, parts[-1].rod.length)) for parts in own]
@@ -190,10 +190,10 @@ def _set_displacements(layout: Layout, answer: AnswerState, turns: list[Rotation
     beams = layout.scene.beams
     origin = np.array(beams[0].start)
     for number, station in enumerate(layout.stations):
-        touch, unknown = station.touch, np.array(station.place.unknown)
+        touch, unknown = station.touch, station.unknown[:2]
         if touch is None:
             seen = (_stated_place(layout, answer, number) - origin) / layout.length
-            moved = seen - np.array(station.place.reference)
+            moved = seen - station.reference
             z[unknown[unknown != NONE]] = moved[unknown != NONE]
         elif touch.angle != NONE:
             beam, arc = [item.name for item in beams].index(touch.spec.beam), float(z[touch.arc])
@@ -223,7 +223,7 @@ def _balance(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Arr
     stated = [
         [
             k not in joined and (k in known or item.touch is not None or free != NONE)
-            for free in item.place.unknown
+            for free in item.unknown[:2]
         ]
         for k, item in enumerate(layout.stations)
     ]
@@ -242,10 +242,8 @@ def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[i
 
     The forces on ends behind a hinge count at the joint.
     """
-    acting = np.array([item.force for item in layout.stations])
-    for k, item in enumerate(layout.stations):
-        if any(item.springs):
-            acting[k] -= np.array(item.springs[:2]) * item.place.displacement(z)
+    _, _, loads, springs = layout.tables
+    acting = (loads - springs * layout.motions(z))[:, :2]
     for hinge in layout.hinges:
         acting[hinge.joint] += acting[hinge.end]
     where = {end: k for k, item in enumerate(layout.stations) for end in item.joint}

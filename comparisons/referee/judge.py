@@ -14,7 +14,7 @@ from comparisons.referee.grip import UnknownFrictionError
 from comparisons.referee.guess import AnswerState, answer_state, idle_at_an_end, pull_allowed
 from comparisons.referee.newton import SearchStatus, Solution
 from comparisons.referee.path import closed_pairs, reach
-from comparisons.referee.rod import face_slope, touching_distance
+from comparisons.referee.rod import angle, cross, face_of
 from comparisons.referee.state import Equilibrium, described, equilibrium
 from comparisons.response import ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
@@ -239,8 +239,8 @@ def _rooms(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> Iterator[tupl
         ):
             continue
         there = exact.shape(spec.beam, np.array([arc]))
-        (x, y), (tx, ty) = node - there.position[0], out * there.tangent[0] / np.hypot(*there.tangent[0])
-        along, across = x * tx + y * ty, abs(y * tx - x * ty)
+        away, tangent = node - there.position[0], out * there.tangent[0] / np.hypot(*there.tangent[0])
+        along, across = float(tangent @ away), abs(float(cross(tangent, away)))
         if along > 0.0:
             yield end, math.hypot(along, max(across - half, 0.0)) - radius
 
@@ -253,10 +253,9 @@ def least_gap(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> tuple[floa
     beam by ``a d - (1/offset - curvature) d^2/2``. Only penetration beyond ``a d``, which means line contact, counts.
     """
     beam, node = scene.beam(spec.beam), exact.place(spec.node)
-    offset, side = touching_distance(scene, spec, 0.0), 1.0 if spec.side == "left" else -1.0
+    side, offset, steep, _ = face_of(scene, spec)
     if offset == 0.0:
         return np.inf, np.nan
-    steep = face_slope(scene, spec)
     arcs, contact, half = np.linspace(0.0, beam.length, _POINTS), exact.contacts.get(spec.pair), 0.0
     if contact is not None:
         arcs = np.sort(np.append(arcs, contact.arc_position))
@@ -267,19 +266,18 @@ def least_gap(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> tuple[floa
     for k in least[away[least] < offset + 2.0 * beam.length / _POINTS]:
         arc = _foot(exact, spec.beam, node, steep, (float(arcs[k - 1]), float(arcs[k + 1])))
         there = exact.shape(spec.beam, np.array([arc]))
-        (out_x, out_y), (x, y) = node - there.position[0], there.tangent[0]
-        gap = math.hypot(out_x, out_y) - offset - steep * arc
+        out = node - there.position[0]
+        gap = math.hypot(*out) - offset - steep * arc
         if contact is not None:
             gap += half * abs(arc - contact.arc_position)
-        if (contact is None or side * (x * out_y - y * out_x) > 0.0) and gap < best:
+        if (contact is None or side * cross(there.tangent[0], out) > 0.0) and gap < best:
             best, place = gap, arc
     return best, place
 
 
 def _kink(exact: Equilibrium, beam: str, arc: float) -> float:
     """Angle between the directions of the axis before and behind a contact."""
-    a, b = exact.shape(beam, arc * np.array([1.0 - _BESIDE, 1.0 + _BESIDE])).tangent
-    return abs(math.atan2(a[0] * b[1] - a[1] * b[0], a @ b))
+    return angle(*exact.shape(beam, arc * np.array([1.0 - _BESIDE, 1.0 + _BESIDE])).tangent)
 
 
 def _foot(exact: Equilibrium, beam: str, node: Array, steep: float, between: tuple[float, float]) -> float:

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 from comparisons.referee.elements import AMPLITUDE, DEGREE, GAUSS, VALUES, Mesh, mesh_of, rotations, shapes
 from comparisons.referee.equations import System, assemble
 from comparisons.referee.guess import SHORTEST, AnswerState, first_guess
-from comparisons.referee.layout import Layout
-from comparisons.referee.numbering import lay_out
+from comparisons.referee.layout import Layout, lay_out
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
@@ -162,8 +161,8 @@ def _reason_not_to_judge(layout: Layout, z: Array) -> str:
     stiffness = [beam.EI / beam.length**2 for beam in layout.scene.beams]
     if max(stiffness) > _STIFFNESS_RATIO * min(stiffness):
         return f"the stiffest beam is {max(stiffness) / min(stiffness):.1g} times as stiff as the most flexible one"
-    for part in layout.parts:
-        if part.extent(z) <= SHORTEST:
+    for part, (begin, end) in zip(layout.parts, layout.extents(z), strict=True):
+        if end - begin <= SHORTEST:
             beam = layout.scene.beams[part.beam].name
             return (
                 f'two contacts on beam "{beam}", or a contact and an end, are at one place or beyond the end'
@@ -174,11 +173,11 @@ def _reason_not_to_judge(layout: Layout, z: Array) -> str:
 def _first_grids(layout: Layout, z: Array) -> list[Array]:
     """About one element for 1.5 of the length sqrt(EI/n) over which the deflection varies, at most 50."""
     grids = []
-    for part in layout.parts:
+    for part, extent in zip(layout.parts, np.diff(layout.extents(z))[:, 0], strict=True):
         n = float(np.hypot(*part.constant(z)))
         EI, stretch, shear = part.rod.greatest
         rate = np.sqrt(n * (1.0 + n * abs(stretch - shear)) / EI)
-        count = int(np.clip(np.ceil(part.extent(z) * rate / 1.5), 1, 50))
+        count = int(np.clip(np.ceil(extent * rate / 1.5), 1, 50))
         grids.append(np.linspace(0.0, 1.0, count + 1))
     return grids
 
@@ -203,8 +202,7 @@ def _newton(guess: Solution, iterations: int) -> Solution:
     most = [part.rod.greatest for part in layout.parts]
     least = _LAST_PLACES / (_ROUND_OFF * min(min(stretch, shear or np.inf) for _, stretch, shear in most))
     forces, turning, moving = layout.forces, np.ones(mesh.unknowns, bool), np.zeros(mesh.unknowns, bool)
-    moving[layout.arcs] = True
-    moving[[k for item in layout.stations for k in item.place.unknown if k >= 0]] = True
+    moving[layout.moving] = True
     turning[forces] = turning[moving] = False
     status, reason, system = SearchStatus.NO_EQUILIBRIUM, SearchStatus.NO_EQUILIBRIUM.value, None
     for iteration in range(1, iterations + 1):  # noqa: B007, the number of the last one is told

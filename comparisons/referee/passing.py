@@ -11,7 +11,7 @@ from comparisons.referee.distance import gap_off, largest_force
 from comparisons.referee.guess import answer_state
 from comparisons.referee.newton import SearchStatus, solve
 from comparisons.referee.path import PASSES, at_rest, changes_of, events_between, on_the_way, reach
-from comparisons.referee.rod import axis_at_rest, face_slope, touching_distance
+from comparisons.referee.rod import axis_at_rest, cross, face_of, left
 from comparisons.referee.state import Equilibrium, described
 from comparisons.response import ContactEvent, ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
@@ -189,18 +189,13 @@ def _at_rest(response: Response, scene: Scene, beam: str, k: int) -> bool:
 def _cuts(line: Array, start: Array, end: Array, scene: Scene, spec: ContactSpec) -> bool:
     """Whether the segment from start to end crosses the curve of touching nodes from the pair's side."""
     near = 1e-6 * scene.beam(spec.beam).length
-    side = 1.0 if spec.side == "left" else -1.0
+    side = left(spec)
     pieces, way, offset = np.diff(line, axis=0), end - start, _reach(line[:-1], scene, spec)
     lengths = np.hypot(*pieces.T)
-    before, after = (side * _cross(pieces, node - line[:-1]) / lengths - offset for node in (start, end))
-    left = np.reshape(side * offset / lengths, (-1, 1)) * np.column_stack([-pieces[:, 1], pieces[:, 0]])
-    first, last = (_cross(way, ends + left - start) > 0.0 for ends in (line[:-1], line[1:]))
+    before, after = (side * cross(pieces, node - line[:-1]) / lengths - offset for node in (start, end))
+    aside = np.reshape(side * offset / lengths, (-1, 1)) * np.column_stack([-pieces[:, 1], pieces[:, 0]])
+    first, last = (cross(way, ends + aside - start) > 0.0 for ends in (line[:-1], line[1:]))
     return bool(((before > near) & (after < -near) & (first != last)).any())
-
-
-def _cross(a: Array, b: Array) -> Array:
-    """Cross product of plane vectors (..., 2)."""
-    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
 
 def _whereabouts(line: Array, node: Array, scene: Scene, spec: ContactSpec) -> str:
@@ -213,19 +208,17 @@ def _whereabouts(line: Array, node: Array, scene: Scene, spec: ContactSpec) -> s
     along = float(tangent @ away)
     if (nearest == 0 and along < -near) or (nearest == len(line) - 1 and along > near):
         return "beyond"
-    distance = float(_cross(tangent, away)) * (1.0 if spec.side == "left" else -1.0)
     reach = np.broadcast_to(_reach(line, scene, spec), len(line))[nearest]
-    gap = distance - float(reach) - face_slope(scene, spec) * along
+    gap = left(spec) * cross(tangent, away) - reach - face_of(scene, spec).slope * along
     return "behind" if gap < -near else "before"
 
 
 def _reach(line: Array, scene: Scene, spec: ContactSpec) -> Array | float:
     """Distances at which a node touches at the points of an axis."""
-    steep = face_slope(scene, spec)
-    if not steep:
-        return scene.offset(spec)
-    arcs = np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))
-    return touching_distance(scene, spec, 0.0) + steep * arcs
+    face = face_of(scene, spec)
+    if not face.slope:
+        return face.start
+    return np.asarray(face.reach(np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))))
 
 
 def misstated(

@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 from comparisons.referee.elements import DEGREE, mesh_for, mesh_of
 from comparisons.referee.grip import Grip
 from comparisons.referee.guess import AnswerState
-from comparisons.referee.layout import NONE
+from comparisons.referee.layout import NONE, lay_out
 from comparisons.referee.newton import SearchStatus, Solution, correct, newton_step, rotation_at, solve
-from comparisons.referee.numbering import lay_out
 from comparisons.referee.stability import index_of, orientation_of
 from comparisons.referee.state import Equilibrium, described
 from comparisons.response import ContactEvent, Response
@@ -88,7 +87,7 @@ def reach(
 ) -> Solution:
     """Return the equilibrium at load parameter t with the same contacts, held by `grips`, by steps from `near`."""
     there = correct(moved(scene, near, t, grips), _ITERATIONS)
-    turning = [k for k in (item.rotation_unknown for item in there.layout.stations) if k != NONE]
+    turning = [k for k in (item.unknown[2] for item in there.layout.stations) if k != NONE]
     turned = float(np.abs(there.z[turning] - near.z[turning]).max(initial=0.0))
     here = near.layout.load_parameter
     if (there.status is SearchStatus.FOUND and turned < _TURN) or not halvings or here == t:
@@ -147,7 +146,7 @@ def on_the_way(
 
     Empty where contacts rub, an event jumps, or no path leads on.
     """
-    if now.layout.rubs or any(event.kind not in _SWITCHED for event in events):
+    if now.layout.grips or any(event.kind not in _SWITCHED for event in events):
         return []
     found: list[Solution] = []
     marks = [(t, None) for t in stops] + [(event.load_parameter, event) for event in events]
@@ -265,7 +264,7 @@ def _unexplained(
 
 def _kind(solution: Solution) -> int:
     """What changes at a critical point: the index, or the sign of the determinant where there is none."""
-    return orientation_of(solution) if solution.layout.rubs else index_of(solution)
+    return orientation_of(solution) if solution.layout.grips else index_of(solution)
 
 
 def _off(now: Solution, rate: Rate, there: Solution) -> float:

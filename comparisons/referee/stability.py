@@ -18,7 +18,7 @@ def index_of(solution: Solution) -> int:
     normal of a contact with offset is normal to the mean of the two tangents, so that the angle phi is not an independent variation.
     With friction the equations have no potential and no index: it is -1.
     """
-    if solution.layout.rubs:
+    if solution.layout.grips:
         return -1
     system = solution.system
     assert system is not None, "an equilibrium has its equations"

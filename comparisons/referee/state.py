@@ -112,7 +112,7 @@ class Equilibrium:
     def joint_rotation(self, end: str) -> float:
         """Return the rotation of the joint to which a beam's end belongs, which differs from the end's behind a hinge."""
         layout = self.solution.layout
-        return layout.stations[layout.joint(end)].rotation(self.solution.z)
+        return float(layout.motions(self.solution.z)[layout.joint(end), 2])
 
 
 def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
@@ -147,7 +147,7 @@ def described(scene: Scene, solution: Solution) -> Equilibrium:
     assert solution.system is not None, "an equilibrium has its equations"
     layout = solution.layout
     contacts = {touch.spec.pair: touching(solution, touch) for touch in layout.touches}
-    origin = np.array(scene.beams[0].start)
+    origin, moved = np.array(scene.beams[0].start), layout.motions(solution.z)
     return Equilibrium(
         status=solution.status,
         message=solution.status.value,
@@ -155,8 +155,8 @@ def described(scene: Scene, solution: Solution) -> Equilibrium:
         contacts=contacts,
         reactions=_reactions(solution, contacts),
         ends={
-            end: origin + layout.length * station.place.position(solution.z)
-            for station in layout.stations
+            end: origin + layout.length * (station.reference + moved[k, :2])
+            for k, station in enumerate(layout.stations)
             for end in station.joint
         },
         strain_energy=solution.system.energy * layout.force * layout.length,
@@ -170,7 +170,7 @@ def described(scene: Scene, solution: Solution) -> Equilibrium:
 def _tangents(solution: Solution, touch: Touch) -> tuple[Array, Array]:
     """Return ``r'_-`` and ``r'_+`` at a contact."""
     parts, z = solution.layout.beside(touch), solution.z
-    s, theta = float(z[touch.arc]), solution.layout.stations[parts[0].last].rotation(z)
+    s, theta = float(z[touch.arc]), float(solution.layout.motions(z)[parts[0].last, 2])
     before, behind = (np.asarray(part.rod.tangent(part.piece, part.constant(z), s, theta)) for part in parts)
     return before, behind
 
@@ -210,14 +210,14 @@ def _held(solution: Solution, number: int) -> Array:
     layout, z, mesh = solution.layout, solution.z, solution.mesh
     assert solution.system is not None, "an equilibrium has its equations"
     station = layout.stations[number]
-    total = -np.array([*station.force, station.moment])
-    total += np.array(station.springs) * [*station.place.displacement(z), station.rotation(z)]
+    moved = layout.motions(z)
+    total = station.springs * moved[number] - station.load
     here = {number}
     for hinge in layout.hinges:
         if hinge.joint == number:
             here.add(hinge.end)
-            total[:2] -= layout.stations[hinge.end].force
-            total[2] += hinge.stiffness * (station.rotation(z) - layout.stations[hinge.end].rotation(z))
+            total[:2] -= layout.stations[hinge.end].load[:2]
+            total[2] += hinge.stiffness * (moved[number, 2] - moved[hinge.end, 2])
     for k, part in enumerate(layout.parts):
         for end, sign in ((part.first, -1.0), (part.last, 1.0)):
             if end in here:
@@ -225,7 +225,7 @@ def _held(solution: Solution, number: int) -> Array:
             if end == number:
                 e = np.flatnonzero(mesh.part == k)[0 if sign < 0.0 else -1]
                 total[2] += solution.system.ends[e, int(sign > 0.0)]
-    return total
+    return np.asarray(total)
 
 
 def _shape(solution: Solution, beam: str, arc: Array) -> Shape:
@@ -239,7 +239,7 @@ def _shape(solution: Solution, beam: str, arc: Array) -> Shape:
     table = np.empty((len(s), 8))
     for k in np.unique(own):
         part, inside, here = layout.parts[k], own == k, mesh.part == k
-        (first, _), extent = part.ends(z), part.extent(z)
+        first, extent = layout.extents(z)[k, 0], np.diff(layout.extents(z)[k])[0]
         start, half, rotation = mesh.start[here], mesh.share[here] * extent / 2.0, coefficients[here]
         points = first + extent * start[:, None] + half[:, None] * (1.0 + GAUSS)
         within = places(layout, mesh.part[here], points, z[mesh.local[here, 2:4]])

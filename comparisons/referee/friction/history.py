@@ -17,7 +17,7 @@ from comparisons.referee.grip import LOOSE, Grip, Hold, UnknownFrictionError
 from comparisons.referee.guess import answer_state
 from comparisons.referee.newton import SearchStatus, Solution, solve
 from comparisons.referee.path import changes_of, closed_pairs, corners, reach
-from comparisons.referee.rod import face_slope, touching_distance
+from comparisons.referee.rod import face_of
 from comparisons.referee.state import touching
 from comparisons.response import ContactEvent, Response
 from comparisons.scene import BeamSpec, ContactSpec, Scene
@@ -308,14 +308,15 @@ def at_rest(scene: Scene, spec: ContactSpec) -> Hold:
     beam = scene.beam(spec.beam)
     x, y = beam.direction
     there = scene.place(spec.node) if "." in spec.node else scene.pin(spec.node).position(0.0)
-    left, steep = 1.0 if spec.side == "left" else -1.0, face_slope(scene, spec)
+    face = face_of(scene, spec)
+    steep = face.slope
     arc = _foot(beam, there)
     for _ in range(_FEET if steep else 0):
         apart = np.array(there) - np.array(beam.place(arc / beam.length))
-        ahead = float(apart @ beam.tangent(arc / beam.length)) + steep * touching_distance(scene, spec, arc)
+        ahead = float(apart @ beam.tangent(arc / beam.length)) + steep * face.reach(arc)
         arc = min(max(arc + ahead, 0.0), beam.length)
-    angle, tilt = math.atan2(y, x), left * math.asin(steep)
-    lever = left * (scene.radius(spec) - touching_distance(scene, spec, arc))
+    angle, tilt = math.atan2(y, x), face.left * math.asin(steep)
+    lever = face.left * (face.radius - face.reach(arc))
     return Hold(
         load_parameter=0.0,
         arc_position=arc,

@@ -30,17 +30,15 @@ def rates(scene: Scene, now: Solution, *, behind: bool = False) -> Array:
 def speed(scene: Scene, now: Solution, rate: Array) -> float:
     """Largest rate of a position per load parameter, in units of `Layout`; rates of slip are measured against it."""
     layout = now.layout
-    moved = [k for item in layout.stations for k in item.place.unknown if k != NONE]
-    moved += [touch.arc for touch in layout.touches]
     ways = [float(np.hypot(*np.diff(pin.points, axis=0).T).sum()) / layout.length for pin in scene.pins]
-    return max([float(np.abs(rate[moved]).max(initial=0.0)), *ways, 1e-300])
+    return max([float(np.abs(rate[layout.moving]).max(initial=0.0)), *ways, 1e-300])
 
 
 def place(solution: Solution, touch: Touch) -> Hold:
     """The place of a contact with friction, at which it may begin to stick."""
     layout, z = solution.layout, solution.z
     before, _ = layout.beside(touch)
-    theta = layout.stations[before.last].rotation(z)
+    theta = float(layout.motions(z)[before.last, 2])
     phi = 0.0 if touch.angle == NONE else float(z[touch.angle])
     assert solution.system is not None, "an equilibrium has its equations"
     moment = float(solution.system.ends[element_before(solution.mesh, touch), 1])
@@ -60,7 +58,7 @@ def slip_rate(solution: Solution, touch: Touch, rate: Array) -> float:
     slipping = place(solution, touch).stretch * float(rate[touch.arc])
     if touch.angle == NONE:
         return slipping
-    theta, phi = float(rate[layout.stations[before.last].rotation_unknown]), float(rate[touch.angle])
+    theta, phi = float(rate[layout.stations[before.last].unknown[2]]), float(rate[touch.angle])
     theta += before.rod.curvature * float(rate[touch.arc])
     lever = float(touch.lever(float(solution.z[touch.arc])))
     return slipping + lever * (phi - theta) + touch.roll * phi
