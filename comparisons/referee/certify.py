@@ -77,7 +77,7 @@ def certify(
     if verdict is Verdict.CERTIFIED:
         verdict, reason = _sound(response, scene, numbers, states)
     if verdict is Verdict.CERTIFIED:
-        for gone in departures(response, scene, found):
+        for gone in departures(response, found):
             verdict, reason = Verdict.UNSTABLE, gone
             break
     if history is not None and history.taken:

@@ -40,31 +40,16 @@ class AnswerState:
         Arc lengths (m,) and deformed positions (m, 2) of every beam's axis.
     reactions : dict of sequence of float
         Force and moment of every support, by the supported end.
-    tips : dict of sequence of float
-        Position of the free or less restrained end of every beam.
     grips : dict of Grip
         How friction holds the closed pairs; pairs without a grip have no friction.
-    gaps : dict of float
-        Gap of the pairs for which one is stated.
-    springs : dict of sequence of float
-        Force and moment of the springs that the answer states, by the end that they hold.
-    sections : dict of (ndarray, ndarray, ndarray, ndarray)
-        Arc lengths and section forces N, V, M of every beam for which they are stated.
-    local : float
-        Distance from contacts, loads and ends, over the height, within which the section forces of a solid are local.
     """
 
     load_parameter: float
     axes: dict[str, tuple[Array, Array]]
     arcs: dict[str, float] = field(default_factory=dict)
     forces: Mapping[str, Sequence[float] | Array] = field(default_factory=dict)
-    reactions: Mapping[str, Sequence[float]] = field(default_factory=dict)
-    tips: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    reactions: Mapping[str, Sequence[float] | Array] = field(default_factory=dict)
     grips: dict[str, Grip] = field(default_factory=dict)
-    gaps: dict[str, float] = field(default_factory=dict)
-    springs: Mapping[str, Sequence[float]] = field(default_factory=dict)
-    sections: dict[str, tuple[Array, ...]] = field(default_factory=dict)
-    local: float = 0.0
 
     def end(self, node: str) -> Array:
         """Return the position of a beam's end such as ``upper.end``."""
@@ -91,7 +76,6 @@ def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
         reactions={
             node: (*item.force[k].tolist(), float(item.moment[k])) for node, item in response.supports.items()
         },
-        tips={beam: tip[k].tolist() for beam, tip in response.tips.items()},
     )
 
 

@@ -13,9 +13,9 @@ from comparisons.referee.distance import Distance, Scales, distance
 from comparisons.referee.grip import UnknownFrictionError
 from comparisons.referee.guess import AnswerState, answer_state, idle_at_an_end, pull_allowed
 from comparisons.referee.newton import SearchStatus, Solution
-from comparisons.referee.path import closed_pairs, reach
+from comparisons.referee.path import reach
 from comparisons.referee.rod import angle, cross, face_of
-from comparisons.referee.state import Equilibrium, described, equilibrium
+from comparisons.referee.state import Equilibrium, equilibrium
 from comparisons.response import ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
 
@@ -30,8 +30,6 @@ ROUGH = 5e-2
 """Least allowance of a difference that is interpolated."""
 CLOSE = 1e-3
 """Largest difference of an answer from an equilibrium that was not sought from the answer itself, so that it is the nearest one."""
-LOCAL = 1.5
-"""Distance from contacts, loads and ends, over the height, within which the section forces of a solid are not compared."""
 LAST_PLACES = 1e-9
 """Largest relative difference between the size of a contact force and the norm of its components."""
 INSIDE = 1e-9
@@ -73,13 +71,13 @@ def judged(
         except UnknownFrictionError as error:
             verdict = Verdict.INADMISSIBLE if error.wrong else Verdict.NOT_JUDGED
             return Judgement(load_parameter=t, verdict=verdict, reason=str(error))
-    exact, differences = _nearest(response, scene, answer, k, given, min(allowed, CLOSE), largest)
+    exact, differences = _nearest(response, k, scene, answer, given, min(allowed, CLOSE), largest)
     if differences is None:
         not_judged = exact.status in (SearchStatus.NOT_JUDGED, SearchStatus.NOT_RESOLVED)
         verdict = Verdict.NOT_JUDGED if not_judged else Verdict.NOT_AN_EQUILIBRIUM
         return Judgement(load_parameter=t, verdict=verdict, reason=exact.message)
     index = -1 if response.index is None else int(response.index[k])
-    verdict, reason = _verdict(scene, index, exact, differences, allowed)
+    verdict, reason = _verdict(index, exact, differences, allowed)
     if verdict is Verdict.CERTIFIED and history is not None:
         violation = next(rubs_wrongly(history, k, exact, allowed), "")
         verdict, reason = (Verdict.INADMISSIBLE, violation) if violation else (verdict, reason)
@@ -94,17 +92,17 @@ def judged(
     )
 
 
-def _verdict(
-    scene: Scene, stated: int, exact: Equilibrium, differences: Distance, allowed: float
-) -> tuple[Verdict, str]:
+def _verdict(stated: int, exact: Equilibrium, differences: Distance, allowed: float) -> tuple[Verdict, str]:
     """Return the verdict on an answer near an exact equilibrium, and its reason; `stated` is the answer's index, -1 without one."""
-    if not differences.place <= PLACE:
-        words = f"supports and contacts are off by {differences.place:.2g} L{differences.at('place')}"
+    if not differences.sizes["place"] <= PLACE:
+        words = (
+            f"supports and contacts are off by {differences.sizes['place']:.2g} L{differences.at('place')}"
+        )
         return Verdict.NOT_AN_EQUILIBRIUM, words
-    for item, limit in ((differences.largest, allowed), (differences.rough(), max(allowed, ROUGH))):
+    for item, limit in ((differences.largest, allowed), (differences.rough, max(allowed, ROUGH))):
         if not item[1] <= limit:
             return Verdict.NOT_AN_EQUILIBRIUM, f"{differences.line(item)}, allowed {100.0 * limit:.3g} %"
-    violation = next(inadmissible(scene, exact), "")
+    violation = next(inadmissible(exact), "")
     if violation:
         return Verdict.INADMISSIBLE, violation
     if exact.index > 0:
@@ -155,9 +153,9 @@ def _impossible_contact(contact: ContactHistory, scene: Scene, spec: ContactSpec
 
 def _nearest(
     response: Response,
+    k: int,
     scene: Scene,
     answer: AnswerState,
-    k: int,
     given: Equilibrium | Solution | None,
     close: float,
     largest: Scales,
@@ -168,49 +166,19 @@ def _nearest(
     friction then, or is sought from the answer.
     """
     exact = given if isinstance(given, Equilibrium) else None
-    if isinstance(given, Solution) and closed_pairs(given).keys() == answer.arcs.keys() and not answer.grips:
-        found = reach(scene, given, answer.load_parameter, {}, halvings=0)
-        if found.status is SearchStatus.FOUND:
-            there = described(scene, found)
-            differences = distance(scene, _complete(answer, response, scene, there, k), there, largest)
-            if max(differences.largest[1], differences.place) <= close:
+    if isinstance(given, Solution) and given.closed.keys() == answer.arcs.keys() and not answer.grips:
+        there = Equilibrium(reach(given, answer.load_parameter, {}, halvings=0))
+        if there.solution.found:
+            differences = distance(response, k, answer, there, largest)
+            if max(differences.largest[1], differences.sizes["place"]) <= close:
                 return there, differences
     exact = exact or equilibrium(scene, answer)
-    if exact.status is not SearchStatus.FOUND:
-        return exact, None
-    return exact, distance(scene, _complete(answer, response, scene, exact, k), exact, largest)
+    return exact, distance(response, k, answer, exact, largest) if exact.solution.found else None
 
 
-def _complete(
-    answer: AnswerState, response: Response, scene: Scene, exact: Equilibrium, k: int
-) -> AnswerState:
-    """Add all that the answer states, and the exact direction of contact forces without direction."""
-    forces = dict(answer.forces)
-    for pair, force in answer.forces.items():
-        if math.isnan(force[0]):
-            # a contact that is open at an end has a force that is round-off
-            x, y = exact.contacts[pair].force if pair in exact.contacts else np.zeros(2)
-            size = float(response.contacts[pair].force[k]) / max(math.hypot(x, y), 1e-300)
-            forces[pair] = (size * float(x), size * float(y))
-    gaps = {pair: float(item.gap[k]) for pair, item in response.contacts.items()}
-    stated = (
-        {}
-        if response.sections is None
-        else {beam.name: response.sections(beam.name, k) for beam in scene.beams}
-    )
-    springs = response.springs.items()
-    return replace(
-        answer,
-        forces=forces,
-        gaps={pair: gap for pair, gap in gaps.items() if pair in exact.contacts or math.isfinite(gap)},
-        springs={end: (*item.force[k].tolist(), float(item.moment[k])) for end, item in springs},
-        sections={name: (at.arc, at.N, at.V, at.M) for name, at in stated.items()},
-        local=LOCAL if response.continuum else 0.0,
-    )
-
-
-def inadmissible(scene: Scene, exact: Equilibrium) -> Iterator[str]:
+def inadmissible(exact: Equilibrium) -> Iterator[str]:
     """Yield a sentence for every violation of unilateral contact; `friction.rubbing` judges friction."""
+    scene = exact.scene
     for spec in scene.contacts:
         beam = scene.beam(spec.beam)
         contact = exact.contacts.get(spec.pair)
@@ -219,18 +187,19 @@ def inadmissible(scene: Scene, exact: Equilibrium) -> Iterator[str]:
                 yield f"the contact force of {spec.pair} pulls, {contact.push:.3g}"
             if not 0.0 <= contact.arc_position <= beam.length:
                 yield f"{spec.pair} is closed beyond the end of its beam"
-        gap, arc = least_gap(scene, exact, spec)
+        gap, arc = least_gap(exact, spec)
         if gap < -INSIDE * beam.length:
             what = "the round pin" if scene.radius(spec) else "the node"
             yield f"{what} of {spec.pair} is {-gap / beam.length:.2g} L inside the beam at arc position {arc:.4g}"
-        for end, room in _rooms(scene, exact, spec):
+        for end, room in _rooms(exact, spec):
             if room < -INSIDE * beam.length:
                 yield f"the round pin of {spec.pair} overlaps the {end} of the beam by {-room / beam.length:.2g} L"
 
 
-def _rooms(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> Iterator[tuple[str, float]]:
+def _rooms(exact: Equilibrium, spec: ContactSpec) -> Iterator[tuple[str, float]]:
     """Distance of a round pin beyond an end from the segment across that end, for the ends that no other beam shares."""
-    beam, radius, node = scene.beam(spec.beam), scene.radius(spec), exact.place(spec.node)
+    scene, node = exact.scene, exact.place(spec.node)
+    beam, radius = scene.beam(spec.beam), scene.radius(spec)
     for end, arc, out in (("start", 0.0, -1.0), ("end", beam.length, 1.0)):
         half = beam.height_at(arc / beam.length) / 2.0 if spec.surface == "face" else 0.0
         if any(
@@ -245,15 +214,15 @@ def _rooms(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> Iterator[tupl
             yield end, math.hypot(along, max(across - half, 0.0)) - radius
 
 
-def least_gap(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> tuple[float, float]:
+def least_gap(exact: Equilibrium, spec: ContactSpec) -> tuple[float, float]:
     """Return the smallest gap of a pair, if it is closed on its side of the beam, and its arc position; infinite without a closest point.
 
     Gaps are evaluated at the local minima of the distance between node and axis, less the radius of the face's circles. At a contact the axis has a kink of the angle 2 a by
     shear, and the contact force is normal to the mean of the two directions. Near it, at the distance d, a round pin penetrates the
     beam by ``a d - (1/offset - curvature) d^2/2``. Only penetration beyond ``a d``, which means line contact, counts.
     """
-    beam, node = scene.beam(spec.beam), exact.place(spec.node)
-    side, offset, steep, _ = face_of(scene, spec)
+    beam, node = exact.scene.beam(spec.beam), exact.place(spec.node)
+    side, offset, steep, _ = face_of(exact.scene, spec)
     if offset == 0.0:
         return np.inf, np.nan
     arcs, contact, half = np.linspace(0.0, beam.length, _POINTS), exact.contacts.get(spec.pair), 0.0

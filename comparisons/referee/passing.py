@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from comparisons.referee.distance import gap_off, largest_force
 from comparisons.referee.guess import answer_state
-from comparisons.referee.newton import SearchStatus, solve
+from comparisons.referee.newton import solve
 from comparisons.referee.path import PASSES, at_rest, changes_of, events_between, on_the_way, reach
 from comparisons.referee.rod import axis_at_rest, cross, face_of, left
-from comparisons.referee.state import Equilibrium, described
+from comparisons.referee.state import Equilibrium
 from comparisons.response import ContactEvent, ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
 
@@ -112,12 +112,12 @@ def _followed(response: Response, scene: Scene, spec: ContactSpec, k: int) -> li
     way, arcs = [_moment(response, scene, spec, k - 1)], response.axis_line(spec.beam, k)[0]
     end = _moment(response, scene, spec, k)
     now = at_rest(scene) if k == 0 else solve(scene, answer_state(response, scene, k - 1))
-    if now.status is not SearchStatus.FOUND:
+    if not now.found:
         return []
     events = events_between(response, way[0].t, end.t)
-    found = on_the_way(scene, now, events, np.linspace(way[0].t, end.t, _STEPS + 1)[1:].tolist())
+    found = on_the_way(now, events, np.linspace(way[0].t, end.t, _STEPS + 1)[1:].tolist())
     for solution in found:
-        exact = described(scene, solution)
+        exact = Equilibrium(solution)
         line = exact.shape(spec.beam, arcs).position
         way.append(_Moment(exact.load_parameter, line, exact.place(spec.node)))
     apart = np.hypot(*(way[-1].line - end.line).T).max()
@@ -246,8 +246,8 @@ def misstated(
         if event.kind == PASSES or any(spec.friction for spec in scene.contacts):
             continue
         for k in (after - 1, after)[: 1 if event.kind in OPENS else 2]:
-            there = _at(scene, found.get(k), t) if _alone(response, event, k) else None
-            wrong = "" if there is None else _wrong(scene, specs[event.pair], event, there, allowed)
+            there = _at(found.get(k), t) if _alone(response, event, k) else None
+            wrong = "" if there is None else _wrong(specs[event.pair], event, there, allowed)
             if wrong:
                 yield f"{event.kind} of {event.pair} at load parameter {t:.6g}: {wrong}"
     for spec in scene.contacts:
@@ -276,26 +276,24 @@ def _disorder(response: Response, spec: ContactSpec) -> Iterator[str]:
         yield f"{spec.pair} is {'open' if closed else 'closed'} at the end, not as its last event says"
 
 
-def _at(scene: Scene, near: Equilibrium | None, t: float) -> Equilibrium | None:
+def _at(near: Equilibrium | None, t: float) -> Equilibrium | None:
     """Return the equilibrium with the same contacts at an event beside a load parameter; None if there is none."""
-    if near is None:
-        return None
-    found = reach(scene, near.solution, t, near.solution.layout.grips, halvings=2)
-    return described(scene, found) if found.status is SearchStatus.FOUND else None
+    found = None if near is None else reach(near.solution, t, near.solution.layout.grips, halvings=2)
+    return Equilibrium(found) if found and found.found else None
 
 
-def _wrong(scene: Scene, spec: ContactSpec, event: ContactEvent, there: Equilibrium, allowed: float) -> str:
+def _wrong(spec: ContactSpec, event: ContactEvent, there: Equilibrium, allowed: float) -> str:
     """Return what an event states otherwise than the equilibrium there; empty if it states the same."""
-    length = scene.beam(spec.beam).length
+    length = there.scene.beam(spec.beam).length
     contact = there.contacts.get(spec.pair)
     if contact is None and event.kind not in CLOSES:
         return ""
     if contact is None:
-        off = gap_off(scene, there, spec, 0.0) / length
+        off = gap_off(there, spec, 0.0) / length
         return "" if off <= allowed else f"the node is {off:.2g} L away"
     off = abs(contact.arc_position - event.arc_position) / length
     if not off <= allowed:
         return f"arc position off by {off:.2g}"
     force = 0.0 if event.kind in CLOSES else float(np.hypot(*contact.force))
-    off = abs(force - event.force) / largest_force(scene, there)
+    off = abs(force - event.force) / largest_force(there)
     return "" if off <= allowed else f"contact force off by {off:.2g}"

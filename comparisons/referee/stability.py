@@ -21,7 +21,6 @@ def index_of(solution: Solution) -> int:
     if solution.layout.grips:
         return -1
     system = solution.system
-    assert system is not None, "an equilibrium has its equations"
     held, reduced = _directions(solution), system.hessian
     if held is not None:
         reduced = held.T @ reduced @ held
@@ -47,7 +46,6 @@ def _negatives(matrix: Array) -> int:
 def orientation_of(solution: Solution) -> int:
     """Return the sign of the determinant of the equations, with friction too; where it changes, a path passes a critical point."""
     system = solution.system
-    assert system is not None, "an equilibrium has its equations"
     signs = [np.linalg.slogdet(system.hessian)[0], *np.linalg.slogdet(system.blocks)[0]]
     return int(np.prod(np.sign(signs)))
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from comparisons.referee.friction.history import History
 from comparisons.referee.friction.slip import rates, slip_rate
 from comparisons.referee.grip import Grip, UnknownFrictionError
-from comparisons.referee.newton import SearchStatus, Solution
+from comparisons.referee.newton import Solution
 from comparisons.referee.path import corners, reach
 from comparisons.referee.state import Equilibrium, touching
 
@@ -58,7 +58,7 @@ def _cuts(history: History, k: int) -> dict[float, Solution | None]:
         for phase in own[before + 1 : history.numbers[pair][k] + 1]:
             if phase.before is not None and phase.slip != phase.before.slip:
                 begin = history.begin(phase)
-                found[begin.layout.load_parameter] = begin
+                found[begin.t] = begin
     return found
 
 
@@ -73,13 +73,13 @@ def _between(
     grips, closed = history.around(middle), history.closed(middle)
     if not any(grip.slip for grip in grips.values()):
         return {}, None
-    if there is None or closed != {touch.spec.pair for touch in there.layout.touches}:
+    if there is None or closed != there.closed.keys():
         there = history.near(middle, closed, grips)
     spent: dict[str, float] = {}
     spans = [(first, last, _DEPTH)]
     while spans:
         low, high, depth = spans.pop()
-        powers, there = _powers(history, low, high, there, grips)
+        powers, there = _powers(low, high, there, grips)
         terms = np.abs([_LEGENDRE @ values for values in powers.values()])
         if depth and np.any(terms[:, -2:].sum(axis=1) > _SMOOTH * terms[:, 0]):
             spans += [(low, (low + high) / 2.0, depth - 1), ((low + high) / 2.0, high, depth - 1)]
@@ -90,16 +90,16 @@ def _between(
 
 
 def _powers(
-    history: History, low: float, high: float, there: Solution, grips: dict[str, Grip]
+    low: float, high: float, there: Solution, grips: dict[str, Grip]
 ) -> tuple[dict[str, Array], Solution]:
     """``F_t v`` of the slipping contacts at the Gauss points between two load parameters, and the equilibrium at the first of them."""
     powers: dict[str, Array] = {}
     for k in reversed(range(len(_POINTS))):
         t = float((low + high) / 2.0 + _POINTS[k] * (high - low) / 2.0)
-        there = reach(history.scene, there, t, grips)
-        if there.status is not SearchStatus.FOUND:
+        there = reach(there, t, grips)
+        if not there.found:
             raise UnknownFrictionError(f"no equilibrium was found at load parameter {t:.6g}")
-        rate = rates(history.scene, there)
+        rate = rates(there)
         for touch in there.layout.touches:
             if touch.grip is not None and touch.grip.slip:
                 power = touching(there, touch).drag * slip_rate(there, touch, rate) * there.layout.length

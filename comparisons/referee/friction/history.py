@@ -15,8 +15,8 @@ from comparisons.referee.friction.rolling import roll
 from comparisons.referee.friction.slip import place, rates, slip_rate, speed
 from comparisons.referee.grip import LOOSE, Grip, Hold, UnknownFrictionError
 from comparisons.referee.guess import answer_state
-from comparisons.referee.newton import SearchStatus, Solution, solve
-from comparisons.referee.path import changes_of, closed_pairs, corners, reach
+from comparisons.referee.newton import Solution, solve
+from comparisons.referee.path import changes_of, corners, reach
 from comparisons.referee.rod import face_of
 from comparisons.referee.state import touching
 from comparisons.response import ContactEvent, Response
@@ -132,11 +132,11 @@ class History:
             return
         closed = self.closed(middle)
         began = [self._begins[item] for item in sticking.values() if item in self._begins]
-        began = [item for item in began if closed_pairs(item).keys() == closed]
+        began = [item for item in began if item.closed.keys() == closed]
         # a stick is followed from its begin: at the load parameters of the answer it may have no equilibrium
-        latest = max(began, key=lambda item: item.layout.load_parameter, default=None)
+        latest = max(began, key=lambda item: item.t, default=None)
         near = self.near(middle, closed, grips) if latest is None else latest
-        rolled = roll(self.scene, near, (begin, last), grips, begins)
+        rolled = roll(near, (begin, last), grips, begins)
         if rolled is None:
             raise UnknownFrictionError(f"no equilibria in stick were found up to load parameter {last:.6g}")
         for pair, item in sticking.items():
@@ -181,8 +181,8 @@ class History:
 
     def _unlike(self, phase: Phase, before: Phase, own: Grip, begin: Solution) -> tuple[bool, float, float]:
         """How unlikely it is that the slip `own` ends where a phase begins: a slip rate of the other sign, and distances from the stated place."""
-        off = abs(closed_pairs(begin)[phase.spec.pair] - self.stated_arc(phase))
-        slipped, t = self._slipped(phase, before, own, begin), begin.layout.load_parameter
+        off = abs(begin.closed[phase.spec.pair] - self.stated_arc(phase))
+        slipped, t = self._slipped(phase, before, own, begin), begin.t
         return not slipped, 0.0 if math.isnan(off) else off, abs(t - phase.begin)
 
     def events_at(self, phase: Phase) -> list[ContactEvent]:
@@ -196,14 +196,14 @@ class History:
 
     def _slipped(self, phase: Phase, before: Phase, own: Grip, begin: Solution) -> bool:
         """Whether the slip rate before the beginning of a phase has the sign of the slip `own`, where the same contacts are closed there."""
-        pair, t = phase.spec.pair, begin.layout.load_parameter
+        pair, t = phase.spec.pair, begin.t
         t = t - _BEFORE * (t - before.begin)
-        if self.closed(t) != closed_pairs(begin).keys():
+        if self.closed(t) != begin.closed.keys():
             return True
-        now = reach(self.scene, begin, t, {**self.around(t, phase.spec), pair: own})
-        if now.status is not SearchStatus.FOUND:
+        now = reach(begin, t, {**self.around(t, phase.spec), pair: own})
+        if not now.found:
             return False
-        return own.slip * slip_rate(now, now.layout.touch(pair), rates(self.scene, now)) > 0.0
+        return own.slip * slip_rate(now, now.layout.touch(pair), rates(now)) > 0.0
 
     def _root(self, phase: Phase, own: Grip) -> Solution:
         """Return the equilibrium at which the state `own` of a contact ends."""
@@ -212,8 +212,8 @@ class History:
 
         def margin(t: float) -> float:
             nonlocal now
-            now = _found_at(reach(self.scene, now, t, state), phase, t)
-            return _margin(self.scene, now, phase, own)
+            now = _found_at(reach(now, t, state), phase, t)
+            return _margin(now, phase, own)
 
         # each way evaluates the margin at the root last
         if self._jumps(phase, phase.begin):
@@ -233,13 +233,13 @@ class History:
         closed = self.closed(t) | {phase.spec.pair}
         later = before is not None and before.before is not None
         try:
-            found = reach(self.scene, self.near(t, closed, state), t, state)
+            found = reach(self.near(t, closed, state), t, state)
         except UnknownFrictionError:
             if not later:
                 raise
-        if before is not None and later and (found is None or found.status is not SearchStatus.FOUND):
+        if before is not None and later and (found is None or not found.found):
             began = self.begin(before)
-            found = reach(self.scene, began, t, state) if closed == closed_pairs(began).keys() else None
+            found = reach(began, t, state) if closed == began.closed.keys() else None
         return _found_at(found, phase, t)
 
     def _jumps(self, phase: Phase, t: float) -> bool:
@@ -285,9 +285,9 @@ class History:
             for first in (state, loose):
                 found = solve(self.scene, replace(answer, arcs=kept, grips=first))
                 for then in (loose, state) if first is loose else ():
-                    if found.status is SearchStatus.FOUND:
-                        found = reach(self.scene, found, t, then)
-                if found.status is SearchStatus.FOUND:
+                    if found.found:
+                        found = reach(found, t, then)
+                if found.found:
                     return found
         raise UnknownFrictionError(
             f"no equilibrium near load parameter {t:.6g} was found in the contacts there"
@@ -296,7 +296,7 @@ class History:
 
 def _found_at(solution: Solution | None, phase: Phase, t: float) -> Solution:
     """Return an equilibrium that was found where a phase begins, or raise `UnknownFrictionError`."""
-    if solution is None or solution.status is not SearchStatus.FOUND:
+    if solution is None or not solution.found:
         raise UnknownFrictionError(
             f"no equilibrium was found where {phase.spec.pair} {phase.does} at {t:.6g}"
         )
@@ -335,12 +335,12 @@ def _foot(beam: BeamSpec, point: tuple[float, float]) -> float:
     return float(np.clip(fraction, 0.0, 1.0)) * beam.length
 
 
-def _margin(scene: Scene, now: Solution, phase: Phase, own: Grip) -> float:
+def _margin(now: Solution, phase: Phase, own: Grip) -> float:
     """A dimensionless number that is zero where a state ends: push at a touch or release, slip rate in slip, distance from the cone in stick."""
     touch, opens = now.layout.touch(phase.spec.pair), phase.slip == OPEN
     if own.friction and own.slip and not opens:
-        rate = rates(scene, now)
-        return own.slip * slip_rate(now, touch, rate) / speed(scene, now, rate)
+        rate = rates(now)
+        return own.slip * slip_rate(now, touch, rate) / speed(now, rate)
     contact = touching(now, touch)
     if opens or not own.friction:
         return contact.push / now.layout.force

@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 
 from comparisons.referee.friction.slip import place
 from comparisons.referee.grip import Grip, Hold
-from comparisons.referee.newton import SearchStatus, Solution
+from comparisons.referee.newton import Solution
 from comparisons.referee.path import reach
-from comparisons.scene import Scene
 
 _PLACES = (1.0 - np.cos(np.pi * np.arange(9) / 8.0)) / 2.0
 """Load parameters in an interval from 0 to 1."""
@@ -35,7 +34,7 @@ Holds = dict[str, Hold]
 
 
 def roll(
-    scene: Scene, near: Solution, span: tuple[float, float], grips: Mapping[str, Grip], begins: Holds
+    near: Solution, span: tuple[float, float], grips: Mapping[str, Grip], begins: Holds
 ) -> tuple[Holds, Holds] | None:
     """Follow contacts that stick between two load parameters without a change.
 
@@ -52,8 +51,8 @@ def roll(
         held = {**grips, **{pair: replace(grips[pair], hold=hold) for pair, hold in own.items()}}
         start = near
         for k in reversed(range(1, len(times))):
-            start = found[k] = reach(scene, start if found[k] is near else found[k], float(times[k]), held)
-            if start.status is not SearchStatus.FOUND:
+            start = found[k] = reach(start if found[k] is near else found[k], float(times[k]), held)
+            if not start.found:
                 return None
         trails = {pair: _trail(hold, begins[pair], found[1:], pair) for pair, hold in holds.items()}
         changes = {pair: _area(times, trail) for pair, trail in trails.items()}
@@ -62,11 +61,11 @@ def roll(
         ]
         if last - first > _LEAST and max(map(abs, rough)) > _APART * length:
             middle = float(times[len(times) // 2])
-            half = roll(scene, found[len(times) // 2], (first, middle), grips, begins)
+            half = roll(found[len(times) // 2], (first, middle), grips, begins)
             if half is None:
                 return None
             grips = {**grips, **{pair: replace(grips[pair], hold=hold) for pair, hold in half[0].items()}}
-            return roll(scene, found[-1], (middle, last), grips, half[1])
+            return roll(found[-1], (middle, last), grips, half[1])
         before, areas = areas, {pair: change + holds[pair].area(first) for pair, change in changes.items()}
         if all(np.abs((areas[pair] - before[pair])(times)).max() <= _SAME * length for pair in holds):
             ends = {pair: found[-1].layout.touch(pair) for pair in holds}

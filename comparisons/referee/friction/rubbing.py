@@ -76,7 +76,7 @@ def rubs_wrongly(history: History, k: int, exact: Equilibrium, allowed: float) -
             yield f"{pair} sticks with an exact force outside its cone, F_t = {contact.drag / contact.push:.6g} F_n"
         if touch.grip.slip == 0:
             yield from _creeps(history, k, touch, exact, allowed)
-        elif _backwards(history.scene, exact, touch) > allowed:
+        elif _backwards(exact, touch) > allowed:
             yield f"{pair} slips against the stated direction"
 
 
@@ -123,16 +123,16 @@ def _law(response: Response, allowed: float) -> float:
     return allowed if response.outside or response.continuum else LAW
 
 
-def _backwards(scene: Scene, exact: Equilibrium, touch: Touch) -> float:
+def _backwards(exact: Equilibrium, touch: Touch) -> float:
     """Slip rate against the sign of the slip, over the speed; at a corner of a pin's path the smaller of those before and behind it."""
     assert touch.grip is not None, "only a contact with friction slips"
     sizes = []
     for behind in (False, True):
-        rate = rates(scene, exact.solution, behind=behind)
-        size = -touch.grip.slip * slip_rate(exact.solution, touch, rate) / speed(scene, exact.solution, rate)
+        rate = rates(exact.solution, behind=behind)
+        size = -touch.grip.slip * slip_rate(exact.solution, touch, rate) / speed(exact.solution, rate)
         sizes.append(size)
         t = exact.load_parameter
-        if size <= 0.0 or not any(abs(t - corner) < 1e-9 for corner in corners(scene)):
+        if size <= 0.0 or not any(abs(t - corner) < 1e-9 for corner in corners(exact.scene)):
             break
     return min(sizes)
 
@@ -230,7 +230,7 @@ def _elsewhere(history: History, spec: ContactSpec, allowed: float) -> Iterator[
         if UNKNOWN in (phase.slip, before.slip):
             continue
         try:
-            begin = history.begin(phase).layout.load_parameter
+            begin = history.begin(phase).t
         except UnknownFrictionError as error:
             if error.wrong:
                 yield str(error)

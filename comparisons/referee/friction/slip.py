@@ -8,7 +8,6 @@ from comparisons.referee.grip import Hold, rows
 from comparisons.referee.layout import NONE, Touch
 from comparisons.referee.newton import Solution
 from comparisons.referee.path import corners, tangent
-from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
 
@@ -18,19 +17,21 @@ _CORNER = 1e-9
 """Distance from a corner, in load parameters, that counts as none."""
 
 
-def rates(scene: Scene, now: Solution, *, behind: bool = False) -> Array:
+def rates(now: Solution, *, behind: bool = False) -> Array:
     """Rates of the unknowns ahead, or behind, up to the next of the `corners`."""
-    t, sign = now.layout.load_parameter, -1.0 if behind else 1.0
+    scene, t, sign = now.layout.scene, now.t, -1.0 if behind else 1.0
     turned = any(change[2] for motion in scene.prescribed_motions.values() for change in motion.increments)
     apart = [sign * (corner - t) for corner in corners(scene)]
     little = [part / 2.0 for part in apart if part > _CORNER]
-    return tangent(scene, now, sign * min([_AHEAD_TURNED if turned else _AHEAD, *little]))[0]
+    return tangent(now, sign * min([_AHEAD_TURNED if turned else _AHEAD, *little]))[0]
 
 
-def speed(scene: Scene, now: Solution, rate: Array) -> float:
+def speed(now: Solution, rate: Array) -> float:
     """Largest rate of a position per load parameter, in units of `Layout`; rates of slip are measured against it."""
     layout = now.layout
-    ways = [float(np.hypot(*np.diff(pin.points, axis=0).T).sum()) / layout.length for pin in scene.pins]
+    ways = [
+        float(np.hypot(*np.diff(pin.points, axis=0).T).sum()) / layout.length for pin in layout.scene.pins
+    ]
     return max([float(np.abs(rate[layout.moving]).max(initial=0.0)), *ways, 1e-300])
 
 
@@ -40,7 +41,6 @@ def place(solution: Solution, touch: Touch) -> Hold:
     before, _ = layout.beside(touch)
     theta = float(layout.motions(z)[before.last, 2])
     phi = 0.0 if touch.angle == NONE else float(z[touch.angle])
-    assert solution.system is not None, "an equilibrium has its equations"
     moment = float(solution.system.ends[element_before(solution.mesh, touch), 1])
     return Hold(
         load_parameter=layout.load_parameter,

@@ -43,11 +43,11 @@ def test_the_error_of_an_answer_is_judged_to_five_digits(scene):
         assert judgement.distance is not None
         assert (judgement.index, judgement.residual < 1e-13) == (0, True)
         force = np.hypot(*(history.vector[k] - rod.force[k + 1])) / size
-        assert judgement.distance.force == pytest.approx(force, rel=1e-5)
+        assert judgement.distance.sizes["force"] == pytest.approx(force, rel=1e-5)
         arc = abs(history.arc_position[k] - rod.arc_position[k + 1])
-        assert judgement.distance.arc_position == pytest.approx(arc, rel=1e-5)
+        assert judgement.distance.sizes["arc_position"] == pytest.approx(arc, rel=1e-5)
         tip = np.hypot(*(response.tips[BEAM][k] - rod.tip[k + 1]))
-        assert judgement.distance.tip == pytest.approx(tip, rel=1e-5)
+        assert judgement.distance.sizes["tip"] == pytest.approx(tip, rel=1e-5)
     assert certify(response, scene, at=[-1], allowance=1e-4).certified
     refused = certify(response, scene, at=[-1], allowance=1e-6)
     assert refused.verdict is Verdict.NOT_AN_EQUILIBRIUM
