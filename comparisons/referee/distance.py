@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.guess import SHORTEST, AnswerState
+from comparisons.referee.guess import SHORTEST
 from comparisons.referee.rod import angle, axis_at_rest, cross, face_of
 from comparisons.referee.state import Equilibrium
 from comparisons.response import Response
@@ -98,16 +98,12 @@ def _size(value: float) -> float:
     return math.inf if math.isnan(value) else value
 
 
-def distance(
-    response: Response, k: int, answer: AnswerState, exact: Equilibrium, largest: Scales
-) -> Distance:
-    """Return the differences between an answer at load parameter number k and the exact equilibrium.
-
-    Forces, moments and displacements are relative to the largest at this load parameter, or to `largest` if that is larger.
-    """
+def distance(response: Response, k: int, exact: Equilibrium, largest: Scales) -> Distance:
+    """Return the differences at load parameter number k; forces, moments and displacements are relative to those here, or to larger ones."""
     scene = exact.scene
-    axes = {beam.name: exact.shape(beam.name, answer.axes[beam.name][0]).position for beam in scene.beams}
-    ways = [axes[beam.name] - axis_at_rest(beam, answer.axes[beam.name][0]) for beam in scene.beams]
+    lines = {beam.name: response.axis_line(beam.name, k) for beam in scene.beams}
+    axes = {name: exact.shape(name, arc).position for name, (arc, _) in lines.items()}
+    ways = [axes[beam.name] - axis_at_rest(beam, lines[beam.name][0]) for beam in scene.beams]
     scales = (*_forces(exact), max(float(np.hypot(*way.T).max()) for way in ways))
     size, moment, moved = map(max, scales, largest)
     length = max(beam.length for beam in scene.beams)
@@ -116,10 +112,9 @@ def distance(
         min(force_round_off(scene, math.inf) * length, UNRESOLVED * moment),
     )
     found: dict[str, dict[str, float]] = {name: {} for name in (*COMPARED, *ROUGH, "place")}
-    for name, pair, off in _contact_differences(response, k, answer, exact):
+    for name, pair, off in _contact_differences(response, k, exact):
         found[name][pair] = off
-    found["reaction"] = dict.fromkeys(answer.reactions.keys() - exact.reactions.keys(), math.inf)
-    for end, total, stated in _holds(response, k, answer, exact):
+    for end, total, stated in _holds(response, k, exact):
         x, y, turn = total - np.array(stated)
         found["reaction"][f"force of {end}"] = _beyond(float(np.hypot(x, y)), size, last)
         found["reaction"][f"moment of {end}"] = _beyond(abs(float(turn)), moment, last_moment)
@@ -127,13 +122,13 @@ def distance(
     for beam in scene.beams:
         there = exact.ends[f"{beam.name}.{scene.tip(beam.name)}"]
         tip = float(np.hypot(*(there - response.tips[beam.name][k])))
-        axis = float(np.hypot(*(axes[beam.name] - answer.axes[beam.name][1]).T).max())
+        axis = float(np.hypot(*(axes[beam.name] - lines[beam.name][1]).T).max())
         found["tip"][beam.name], found["shape"][beam.name] = tip / beam.length, axis / beam.length
         apart[beam.name] = max(_size(tip), _size(axis))
-        for name, off in _section_differences(response, k, answer, exact, beam):
+        for name, off in _section_differences(response, k, exact, beam):
             of = (moment, last_moment) if name == "M" else (size, last)
             found["sections"][f"{name} of {beam.name}"] = _beyond(off, *of)
-    found["place"] = _misplaced(scene, answer)
+    found["place"] = _misplaced(response, k, exact)
     touched = {spec.pair: spec.beam for spec in scene.contacts}
     off_by = {
         name: off * scene.beam(touched.get(name, name.split(".")[0])).length
@@ -152,9 +147,7 @@ def distance(
     return Distance(sizes=sizes, where=where, scales=scales)
 
 
-def _contact_differences(
-    response: Response, k: int, answer: AnswerState, exact: Equilibrium
-) -> Iterator[tuple[str, str, float]]:
+def _contact_differences(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple[str, str, float]]:
     """Yield names, pairs and differences of forces, arc positions and gaps."""
     largest = largest_force(exact)
     for spec in exact.scene.contacts:
@@ -166,20 +159,20 @@ def _contact_differences(
             if stated.vector is not None:
                 off = float(np.hypot(*(contact.force - stated.vector[k])))
             yield "force", pair, _beyond(abs(off), largest, force_round_off(exact.scene, largest))
-            yield "arc_position", pair, abs(contact.arc_position - answer.arcs[pair]) / length
+            yield "arc_position", pair, abs(contact.arc_position - float(stated.arc_position[k])) / length
         if contact is not None or math.isfinite(stated.gap[k]):
             yield "gap", pair, gap_off(exact, spec, float(stated.gap[k])) / length
 
 
-def _holds(
-    response: Response, k: int, answer: AnswerState, exact: Equilibrium
-) -> Iterator[tuple[str, Array, Any]]:
+def _holds(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple[str, Array, Any]]:
     """Yield the supports and the springs that the answer states, with the exact force and moment and the stated ones."""
     for end, total in exact.reactions.items():
-        yield end, total, answer.reactions.get(end, (math.nan,) * 3)
+        own = response.supports[end]
+        yield end, total, (*own.force[k], own.moment[k])
     for spring in exact.scene.springs:
-        node, own = spring.node, response.springs.get(spring.node)
-        if own is not None:
+        node = spring.node
+        if node in response.springs:
+            own = response.springs[node]
             way = np.array(spring.stiffness) * (exact.ends[node] - np.array(exact.scene.place(node)))
             total = -np.append(way, spring.rotation * exact.joint_rotation(node))
             yield f"the spring at {node}", total, (*own.force[k], own.moment[k])
@@ -201,13 +194,10 @@ def gap_off(exact: Equilibrium, spec: ContactSpec, gap: float) -> float:
 
 
 def _section_differences(
-    response: Response, k: int, answer: AnswerState, exact: Equilibrium, beam: BeamSpec
+    response: Response, k: int, exact: Equilibrium, beam: BeamSpec
 ) -> Iterator[tuple[str, float]]:
-    """Yield the largest differences of the section forces that the answer states, at its stations or in the middles between them.
-
-    Elements with one direction for all of N and V state them to second order in the middles alone, and others have few stations: the
-    smaller one counts. Stations on either side of a jump, and of a solid those where the field is local, are left out.
-    """
+    """Yield the largest differences of the stated section forces, at the stations or in the middles between them, away from jumps."""
+    # elements with one direction for all of N and V state them to second order in the middles alone, and others have few stations
     if response.sections is None:
         return
     scene, at, local = exact.scene, response.sections(beam.name, k), LOCAL * response.continuum
@@ -215,7 +205,7 @@ def _section_differences(
     loads = [item.load.at for item in scene.load_histories if item.load.beam == beam.name]
     jumps = [(part * beam.length,) * 2 for part in loads if part is not None]
     jumps += [
-        (exact.contacts[spec.pair].arc_position, answer.arcs[spec.pair])
+        (exact.contacts[spec.pair].arc_position, float(response.contacts[spec.pair].arc_position[k]))
         for spec in scene.contacts
         if spec.beam == beam.name and spec.pair in exact.contacts
     ]
@@ -278,40 +268,38 @@ def _loads(scene: Scene, t: float) -> Iterator[tuple[float, float, float]]:
             yield gravity[0] * mass * beam.length / 2.0, gravity[1] * mass * beam.length / 2.0, 0.0
 
 
-def _misplaced(scene: Scene, answer: AnswerState) -> dict[str, float]:
+def _misplaced(response: Response, k: int, exact: Equilibrium) -> dict[str, float]:
     """Violations of contact and support constraints by the answer's axes, over the beams' lengths, by pair and supported end."""
     distances: dict[str, float] = {}
+    scene = exact.scene
+
+    def end(node: str) -> Array:
+        beam, where = node.split(".")
+        line = response.axis_line(beam, k)[1]
+        return np.asarray(line[0 if where == "start" else -1])
+
     for spec in scene.contacts:
-        if spec.pair not in answer.arcs:
+        if spec.pair not in exact.contacts:
             continue
-        beam = scene.beam(spec.beam)
-        arcs, line = answer.axes[spec.beam]
-        place, cut = _on_axis(arcs, line, answer.arcs[spec.pair])
+        arc = float(response.contacts[spec.pair].arc_position[k])
+        place, cut = _on_axis(*response.axis_line(spec.beam, k), arc)
         pin = "." not in spec.node
-        node = scene.pin(spec.node).position(answer.load_parameter) if pin else answer.end(spec.node)
-        reach = face_of(scene, spec).reach(answer.arcs[spec.pair])
-        apart = abs(float(np.hypot(*(place - node))) - reach)
-        distances[spec.pair] = max(0.0, apart - cut) / beam.length
+        node = scene.pin(spec.node).position(exact.load_parameter) if pin else end(spec.node)
+        apart = abs(float(np.hypot(*(place - node))) - face_of(scene, spec).reach(arc))
+        distances[spec.pair] = max(0.0, apart - cut) / scene.beam(spec.beam).length
     for support in scene.all_supports:
-        here = np.array(scene.place(support.node))
-        way = (answer.end(support.node) - here).tolist()
+        way = end(support.node) - scene.place(support.node)
+        motion = scene.prescribed_motions[support.node].at(exact.load_parameter)[:2]
         off = [
-            abs(x - motion) / scene.beam(support.beam).length
-            for x, motion in zip(
-                way, scene.prescribed_motions[support.node].at(answer.load_parameter)[:2], strict=True
-            )
-            if motion is not None
+            _size(abs(x - given)) for x, given in zip(way.tolist(), motion, strict=True) if given is not None
         ]
         if off:
-            distances[support.node] = max(map(_size, off))
+            distances[support.node] = max(off) / scene.beam(support.beam).length
     return distances
 
 
 def _on_axis(arcs: Array, line: Array, arc: float) -> tuple[Array, float]:
-    """Point of the answer's axis at an arc position, and a bound of the chord's distance from a smooth axis.
-
-    The bound is the height of the triangle between the chord and its neighbours' directions.
-    """
+    """Point of the answer's axis, and a bound of the chord's distance from a smooth axis: the triangle with its neighbours' directions."""
     k = int(np.clip(np.searchsorted(arcs, arc) - 1, 0, len(arcs) - 2))
     part = (arc - arcs[k]) / (arcs[k + 1] - arcs[k])
     first, last = max(k - 1, 0), min(k + 2, len(arcs) - 1)

@@ -23,43 +23,46 @@ from comparisons.referee.grip import rows
 from comparisons.referee.layout import NONE, Layout, Part, Touch, normal
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_DENSE = 300
+"""Number of unknowns up to which matrices are solved as full ones."""
 
 
 class System(NamedTuple):
-    """Gradient (u,) and Hessian (u, u) with condensed bubbles, with the rows of friction, and the recovery of the bubbles.
-
-    If the other unknowns of an element change by x, its bubbles change by ``-(shift + lever x)``. `blocks` are the Hessians of the bubbles.
-    `ends` (e, 2) are the moments at the elements' ends from the gradient, since a derivative of the rotation would lose digits.
-    """
+    """The equations with the rows of friction, the elements' bubbles condensed."""
 
     gradient: Array
     hessian: Array
     shift: Array
     lever: Array
+    """If the other unknowns of an element change by x, its bubbles change by ``-(shift + lever x)``."""
     blocks: Array
+    """Hessians of the bubbles."""
     ends: Array
+    """Moments (e, 2) at the elements' ends from the gradient, since a derivative of the rotation would lose digits."""
     energy: float
 
 
 def assemble(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> System:
     """Return the condensed equations at the unknowns `z` and the `bubbles` (e, p - 1)."""
-    own, local = elements(layout, mesh, z, bubbles), mesh.local
-    blocks, across = own.hessian[:, OUTER:, OUTER:], own.hessian[:, :OUTER, OUTER:]
-    rhs = np.concatenate([own.gradient[:, OUTER:, None], across.swapaxes(1, 2)], axis=2)
+    own_gradient, own_hessian, stored = elements(layout, mesh, z, bubbles)
+    local, blocks, across = mesh.local, own_hessian[:, OUTER:, OUTER:], own_hessian[:, :OUTER, OUTER:]
+    rhs = np.concatenate([own_gradient[:, OUTER:, None], across.swapaxes(1, 2)], axis=2)
     solved = np.linalg.solve(blocks, rhs)
     shift, lever = solved[:, :, 0], solved[:, :, 1:]
-    gradient = own.gradient[:, :OUTER] - np.einsum("eij,ej->ei", across, shift)
-    hessian = own.hessian[:, :OUTER, :OUTER] - across @ lever
+    gradient = own_gradient[:, :OUTER] - np.einsum("eij,ej->ei", across, shift)
+    hessian = own_hessian[:, :OUTER, :OUTER] - across @ lever
     # the last row and column collect prescribed quantities, whose number is `NONE`
     g, k = np.zeros(mesh.unknowns + 1), np.zeros((mesh.unknowns + 1, mesh.unknowns + 1))
     np.add.at(g, local, gradient)
     np.add.at(k, (local[:, :, None], local[:, None, :]), hessian)
     _add_parts(layout, z, g, k)
-    energy = float(own.energy.sum()) + _add_springs_and_loads(layout, z, g, k)
+    energy = float(stored.sum()) + _add_springs_and_loads(layout, z, g, k)
     for touch in layout.touches:
         if touch.grip is not None:
             e = element_before(mesh, touch)
-            found = rows(layout, touch, z, own.gradient[e, 1])
+            found = rows(layout, touch, z, own_gradient[e, 1])
             by = np.zeros((3, len(g)))
             by[:, found.numbers] = found.derivatives[:3]
             np.add.at(by.T, local[e], np.outer(hessian[e, 1], found.derivatives[:3, 6]))
@@ -69,7 +72,7 @@ def assemble(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> System:
             k[turn] -= by[1]
             if touch.angle != NONE:
                 g[touch.angle], k[touch.angle] = found.direction, by[2]
-    return System(g[:-1], k[:-1, :-1], shift, lever, blocks, own.gradient[:, :2], energy)
+    return System(g[:-1], k[:-1, :-1], shift, lever, blocks, own_gradient[:, :2], energy)
 
 
 def element_before(mesh: Mesh, touch: Touch) -> int:
@@ -142,3 +145,96 @@ def _apart(layout: Layout, z: Array, part: Part, shifts: Array) -> Array:
         return apart
     rest = part.rod.axes.T @ (b.reference - a.reference)
     return np.asarray(apart + rest - part.rod.between(*part.ends(z)))
+
+
+def solved(system: System, held: Ints | None = None) -> Array | None:
+    """Newton correction of the unknowns outside the elements, with those `held` fixed; None if singular."""
+    hessian, gradient = system.hessian, system.gradient
+    if held is not None and len(held):
+        hessian, gradient = hessian.copy(), gradient.copy()
+        hessian[held], hessian[:, held], gradient[held] = 0.0, 0.0, 0.0
+        hessian[held, held] = 1.0
+    row, column, entry = _entries(hessian)
+    if not np.all(np.isfinite(entry)) or len(np.unique(row)) < len(hessian):
+        return None
+    # EI, EA and forces differ by orders of magnitude
+    scale = _scales(row, column, entry)
+    right = scale * gradient
+    try:
+        if len(hessian) <= _DENSE:
+            return np.asarray(-scale * np.linalg.solve(scale[:, None] * hessian * scale, right))
+        from scipy.sparse import coo_array
+        from scipy.sparse.linalg import splu
+
+        factors = splu(coo_array((scale[row] * entry * scale[column], (row, column))).tocsc())
+        return np.asarray(-scale * factors.solve(right))
+    except (np.linalg.LinAlgError, RuntimeError):
+        return None
+
+
+def _entries(matrix: Array) -> tuple[Ints, Ints, Array]:
+    """Return rows, columns and values of the entries that are not zero."""
+    # faster than `nonzero` of the matrix itself, which has few such entries
+    number = np.flatnonzero(matrix != 0.0)
+    return *np.divmod(number, len(matrix)), matrix.ravel()[number]
+
+
+def _scales(row: Ints, column: Ints, entry: Array) -> Array:
+    """Return factors of rows and columns with which the largest entry of every row is about one."""
+    scale, size = np.ones(int(row[-1]) + 1), np.abs(entry)
+    for _ in range(3):
+        largest = np.zeros(len(scale))
+        np.maximum.at(largest, row, scale[row] * size * scale[column])
+        scale = scale / np.sqrt(largest)
+    return scale
+
+
+def index_of(layout: Layout, z: Array, system: System) -> int:
+    """Return the index of an equilibrium, the number of negative eigenvalues on the admissible variations; -1 with friction.
+
+    The energy is a maximum in the two force components of every part, whose block of the Hessian is negative definite. By
+    Haynsworth's formula ``index = negatives(K) - 2 parts``, where the negatives of the elements' condensed blocks count too. The
+    normal of a contact with offset is normal to the mean of the two tangents, so that the angle phi is not an independent variation.
+    """
+    if layout.grips:
+        return -1
+    held, reduced = directions(layout, z), system.hessian
+    if held is not None:
+        reduced = held.T @ reduced @ held
+    scale = _scales(*_entries(reduced))
+    inside = np.linalg.eigvalsh(system.blocks)
+    negatives = _negatives(scale[:, None] * reduced * scale) + int((inside < 0.0).sum())
+    return negatives - 2 * len(layout.parts)
+
+
+def _negatives(matrix: Array) -> int:
+    """Number of negative eigenvalues; of large matrices by Sylvester's law of inertia from ``L D L^T``."""
+    if len(matrix) <= _DENSE:
+        return int((np.linalg.eigvalsh(matrix) < 0.0).sum())
+    from scipy.linalg import ldl
+
+    pivots = ldl(matrix)[1]
+    # a block of two pivots has one eigenvalue of either sign
+    blocks = np.diag(pivots, 1) != 0.0
+    single = ~(np.append(blocks, False) | np.append(False, blocks))
+    return int((np.diag(pivots)[single] < 0.0).sum() + blocks.sum())
+
+
+def orientation_of(system: System) -> int:
+    """Return the sign of the determinant, with friction too; where it changes, a path passes a critical point."""
+    signs = [np.linalg.slogdet(system.hessian)[0], *np.linalg.slogdet(system.blocks)[0]]
+    return int(np.prod(np.sign(signs)))
+
+
+def directions(layout: Layout, z: Array) -> Array | None:
+    """Admissible variations as columns, None if all are; the angles phi follow with the directions of the faces."""
+    turned = [touch for touch in layout.touches if touch.angle != NONE]
+    if not turned:
+        return None
+    free = np.eye(len(z))
+    for touch in turned:
+        numbers, *_, derivatives = rows(layout, touch, z, 0.0)
+        change = np.zeros(len(free) + 1)
+        np.add.at(change, numbers, derivatives[2])
+        free[touch.angle] = -change[:-1] / change[touch.angle]
+    return np.delete(free, [touch.angle for touch in turned], axis=1)

@@ -58,10 +58,7 @@ class AnswerState:
 
 
 def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
-    """Return the state of `response` at its load parameter number k.
-
-    A contact whose force is round-off is open at an end of its beam, where no rod lies beside it; its force counts in the balance.
-    """
+    """Return the state at load parameter number k; a contact whose force is round-off is open at an end of its beam, but its force counts."""
     pushing = {pair: item for pair, item in response.contacts.items() if item.force[k] != 0.0}
     specs = [spec for spec in scene.contacts if spec.pair in pushing]
     idle = {spec.pair for spec in specs if idle_at_an_end(pushing[spec.pair], scene, spec, k)}
@@ -91,7 +88,7 @@ def idle_at_an_end(contact: ContactHistory, scene: Scene, spec: ContactSpec, k: 
     return abs(float(contact.force[k])) <= pull_allowed(beam) and abs(inside) <= SHORTEST
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Rotations:
     """Rotation of a beam's sections along the arc length, in units of `Layout`."""
 
@@ -111,15 +108,12 @@ class Rotations:
 def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotations]]:
     """Return the unknowns of the layout and the beams' rotations from an answer."""
     scene, z = layout.scene, np.zeros(layout.unknowns)
-    turns = [_tangents(layout, answer, number) for number in range(len(scene.beams))]
-    turns = _aligned(layout, turns)
+    turns = _aligned(layout, [_rotations(layout, answer, number) for number in range(len(scene.beams))])
     for touch in layout.touches:
         z[touch.arc] = answer.arcs[touch.spec.pair] / layout.length
     _set_displacements(layout, answer, turns, z)
     _balance(layout, answer, turns, z)
-    turns = _aligned(
-        layout, [_less_shear(layout, answer, turn, number, z) for number, turn in enumerate(turns)]
-    )
+    turns = _aligned(layout, [_rotations(layout, answer, number, z) for number in range(len(scene.beams))])
     for part in layout.parts:
         for number in (part.first, part.last):
             station = layout.stations[number]
@@ -128,25 +122,34 @@ def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotati
     return z, turns
 
 
-def _chords(layout: Layout, answer: AnswerState, number: int) -> tuple[Array, NDArray[np.complex128]]:
-    """Arc positions of the middles of the axis' chords, and the chords over their arc lengths as complex numbers.
+def _rotations(layout: Layout, answer: AnswerState, number: int, z: Array | None = None) -> Rotations:
+    """Angles of the axis' chords from the undeformed direction, less the shear of the forces in z.
 
-    The real axis is the undeformed tangent at the middle.
+    ``r' = d1 + (N/EA) d1 + (Q/GA) d2`` gives ``r' - n/GA = (1 + N/EA - N/GA) d1``. In strong shear the factor of d1 is negative; its
+    sign is the one that agrees with N.
     """
     beam, rod = layout.scene.beams[number], layout.rod(number)
     arc, line = answer.axes[beam.name]
     pieces, extents = np.diff(line, axis=0) @ (1.0, 1.0j) / complex(*beam.direction), np.diff(arc)
     long = (np.abs(pieces) > 0.0) & (extents > 0.0)
-    middle, way = (arc[:-1] + arc[1:])[long] / (2.0 * layout.length), pieces[long] / extents[long]
-    return middle, way * np.exp(-1.0j * rod.angle(middle)) if rod.turn else way
-
-
-def _tangents(layout: Layout, answer: AnswerState, number: int) -> Rotations:
-    """Angles of the axis' chords from the undeformed direction, without jumps by 2 pi."""
-    middle, way = _chords(layout, answer, number)
-    if not len(middle):
-        return Rotations(arc=np.array([0.0]), theta=np.array([0.0]))
-    return Rotations(arc=middle, theta=np.unwrap(np.angle(way)))
+    if not long.any():
+        return Rotations(np.zeros(1), np.zeros(1))
+    s, way = (arc[:-1] + arc[1:])[long] / (2.0 * layout.length), pieces[long] / extents[long]
+    way = way * np.exp(-1.0j * rod.angle(s)) if rod.turn else way
+    theta = np.angle(way)
+    for part in layout.parts:
+        if part.beam == number and z is not None and np.any(rod.greatest.shear):
+            _, stretch, shear = rod.flexibility(s)
+            first, last = part.ends(z)
+            x, y = rod.force(part.piece, part.constant(z), s)
+            n = (x + 1.0j * y) * np.exp(-1.0j * rod.angle(s))
+            along = way - shear * n
+            size = np.abs(along)
+            d1 = along / np.where(size > 0.0, size, 1.0)
+            factor = (stretch - shear) * (d1 * n.conjugate()).real
+            d1 = np.where(np.abs(1.0 + factor - size) <= np.abs(1.0 - factor + size), d1, -d1)
+            theta = np.where((s >= first) & (s <= last) & (size > 0.0), np.angle(d1), theta)
+    return Rotations(s, np.unwrap(theta))
 
 
 def _aligned(layout: Layout, turns: list[Rotations]) -> list[Rotations]:
@@ -162,7 +165,7 @@ def _aligned(layout: Layout, turns: list[Rotations]) -> list[Rotations]:
         left.remove(number)
         arc, theta = turns[number].arc, turns[number].theta
         shifts = (known[k] - float(turns[number].angle(s)) for k, s in ends[number] if k in known)
-        turn = Rotations(arc=arc, theta=theta + 2.0 * math.pi * round(next(shifts, 0.0) / (2.0 * math.pi)))
+        turn = Rotations(arc, theta + 2.0 * math.pi * round(next(shifts, 0.0) / (2.0 * math.pi)))
         aligned[number] = turn
         for k, s in ends[number]:
             known.setdefault(k, float(turn.angle(s)))
@@ -222,10 +225,7 @@ def _balance(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Arr
 
 
 def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[int]]:
-    """External forces (stations, 2) on the stations, and the stations whose reactions the answer has.
-
-    The forces on ends behind a hinge count at the joint.
-    """
+    """External forces (stations, 2), of ends behind a hinge at the joint, and the stations whose reactions the answer has."""
     _, _, loads, springs = layout.tables
     acting = (loads - springs * layout.motions(z))[:, :2]
     for hinge in layout.hinges:
@@ -264,30 +264,3 @@ def _moments(
     x, y = part.rod.axes.T @ way
     p, q = part.rod.force(part.piece, (0.0, 0.0), (s[:-1] + s[1:]) / 2.0)
     return lever, m_a - m_b + float(y @ p - x @ q)
-
-
-def _less_shear(layout: Layout, answer: AnswerState, turn: Rotations, number: int, z: Array) -> Rotations:
-    """Rotations of the sections from the directions of the axis.
-
-    ``r' = d1 + (N/EA) d1 + (Q/GA) d2`` gives ``r' - n/GA = (1 + N/EA - N/GA) d1``. In strong shear the factor of d1 is negative; its
-    sign is the one that agrees with N.
-    """
-    _, way = _chords(layout, answer, number)
-    theta = turn.theta
-    if not len(way):
-        return turn
-    for part in layout.parts:
-        if part.beam != number or not np.any(part.rod.greatest.shear):
-            continue
-        _, stretch, shear = part.rod.flexibility(turn.arc)
-        first, last = part.ends(z)
-        inside = (turn.arc >= first) & (turn.arc <= last)
-        x, y = part.rod.force(part.piece, part.constant(z), turn.arc)
-        n = (x + 1.0j * y) * np.exp(-1.0j * part.rod.angle(turn.arc))
-        along = way - shear * n
-        size = np.abs(along)
-        d1 = along / np.where(size > 0.0, size, 1.0)
-        factor = (stretch - shear) * (d1 * n.conjugate()).real
-        d1 = np.where(np.abs(1.0 + factor - size) <= np.abs(1.0 - factor + size), d1, -d1)
-        theta = np.where(inside & (size > 0.0), np.angle(d1), theta)
-    return Rotations(arc=turn.arc, theta=np.unwrap(theta))

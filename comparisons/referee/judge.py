@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from comparisons.referee.certificate import Judgement, Verdict
 from comparisons.referee.distance import Distance, Scales, distance
 from comparisons.referee.grip import UnknownFrictionError
-from comparisons.referee.guess import AnswerState, answer_state, idle_at_an_end, pull_allowed
-from comparisons.referee.newton import SearchStatus, Solution
+from comparisons.referee.guess import answer_state, idle_at_an_end, pull_allowed
+from comparisons.referee.newton import SearchStatus
 from comparisons.referee.path import reach
 from comparisons.referee.rod import angle, cross, face_of
 from comparisons.referee.state import Equilibrium, equilibrium
@@ -45,23 +45,17 @@ def judged(
     scene: Scene,
     k: int,
     allowed: float,
-    *,
-    history: "History | None" = None,
-    given: Equilibrium | Solution | None = None,
-    largest: Scales = (0.0, 0.0, 0.0),
+    history: "History | None",
+    before: Equilibrium | None,
 ) -> Judgement:
-    """Judge one load parameter.
-
-    The equilibrium near the answer may be `given`, or the solution at the load parameter before, from which it is sought first.
-    Differences are relative to the largest force, moment and displacement, here or those of other load parameters in `largest`.
-    """
+    """Judge one load parameter; the equilibrium near it is sought first from the one `before`."""
     t = float(response.load_parameter[k])
     contradiction = next(impossible(response, scene, k), "") or next(_not_finite(response, scene, k), "")
     if contradiction:
         return Judgement(load_parameter=t, verdict=Verdict.NOT_AN_EQUILIBRIUM, reason=contradiction)
     answer = answer_state(response, scene, k)
     if history is not None:
-        from comparisons.referee.friction import rubs_wrongly, unlawful, wanders
+        from comparisons.referee.friction import unlawful, wanders
 
         misstated = next(unlawful(response, scene, k, allowed), "") or next(wanders(history, k, allowed), "")
         if misstated:
@@ -71,33 +65,52 @@ def judged(
         except UnknownFrictionError as error:
             verdict = Verdict.INADMISSIBLE if error.wrong else Verdict.NOT_JUDGED
             return Judgement(load_parameter=t, verdict=verdict, reason=str(error))
-    exact, differences = _nearest(response, k, scene, answer, given, min(allowed, CLOSE), largest)
-    if differences is None:
+    if before is not None and not answer.grips and before.contacts.keys() == answer.arcs.keys():
+        # it is the nearest one if it is close, though it was not sought from the answer
+        found = reach(before.solution, t, {}, halvings=0)
+        item = compared(response, k, Equilibrium(found), allowed, history) if found.found else None
+        if (
+            item
+            and item.distance
+            and max(item.distance.largest[1], item.distance.sizes["place"]) <= min(allowed, CLOSE)
+        ):
+            return item
+    exact = equilibrium(scene, answer)
+    if not exact.solution.found:
         not_judged = exact.status in (SearchStatus.NOT_JUDGED, SearchStatus.NOT_RESOLVED)
         verdict = Verdict.NOT_JUDGED if not_judged else Verdict.NOT_AN_EQUILIBRIUM
         return Judgement(load_parameter=t, verdict=verdict, reason=exact.message)
-    index = -1 if response.index is None else int(response.index[k])
-    verdict, reason = _verdict(index, exact, differences, allowed)
+    return compared(response, k, exact, allowed, history)
+
+
+def compared(
+    response: Response,
+    k: int,
+    exact: Equilibrium,
+    allowed: float,
+    history: "History | None",
+    largest: Scales = (0.0, 0.0, 0.0),
+) -> Judgement:
+    """Judge an answer beside an equilibrium, by differences relative to the largest force, moment and displacement, here or in `largest`."""
+    differences = distance(response, k, exact, largest)
+    stated = -1 if response.index is None else int(response.index[k])
+    verdict, reason = _verdict(stated, exact, differences, allowed)
     if verdict is Verdict.CERTIFIED and history is not None:
+        from comparisons.referee.friction import rubs_wrongly
+
         violation = next(rubs_wrongly(history, k, exact, allowed), "")
         verdict, reason = (Verdict.INADMISSIBLE, violation) if violation else (verdict, reason)
     return Judgement(
-        load_parameter=t,
-        verdict=verdict,
-        reason=reason,
-        distance=differences,
-        index=exact.index,
-        residual=exact.error,
-        exact=exact,
-    )
+        load_parameter=exact.load_parameter, verdict=verdict, reason=reason, distance=differences, index=exact.index,
+        residual=exact.error, exact=exact,
+    )  # fmt: skip
 
 
 def _verdict(stated: int, exact: Equilibrium, differences: Distance, allowed: float) -> tuple[Verdict, str]:
     """Return the verdict on an answer near an exact equilibrium, and its reason; `stated` is the answer's index, -1 without one."""
-    if not differences.sizes["place"] <= PLACE:
-        words = (
-            f"supports and contacts are off by {differences.sizes['place']:.2g} L{differences.at('place')}"
-        )
+    place = differences.sizes["place"]
+    if not place <= PLACE:
+        words = f"supports and contacts are off by {place:.2g} L{differences.at('place')}"
         return Verdict.NOT_AN_EQUILIBRIUM, words
     for item, limit in ((differences.largest, allowed), (differences.rough, max(allowed, ROUGH))):
         if not item[1] <= limit:
@@ -151,31 +164,6 @@ def _impossible_contact(contact: ContactHistory, scene: Scene, spec: ContactSpec
             yield f"the force of {spec.pair} and its components differ"
 
 
-def _nearest(
-    response: Response,
-    k: int,
-    scene: Scene,
-    answer: AnswerState,
-    given: Equilibrium | Solution | None,
-    close: float,
-    largest: Scales,
-) -> tuple[Equilibrium, Distance | None]:
-    """Return the equilibrium nearest to an answer, and the differences; None without an equilibrium.
-
-    It is the given one, or follows from the given solution at another load parameter if it is `close` to the answer, which has no
-    friction then, or is sought from the answer.
-    """
-    exact = given if isinstance(given, Equilibrium) else None
-    if isinstance(given, Solution) and given.closed.keys() == answer.arcs.keys() and not answer.grips:
-        there = Equilibrium(reach(given, answer.load_parameter, {}, halvings=0))
-        if there.solution.found:
-            differences = distance(response, k, answer, there, largest)
-            if max(differences.largest[1], differences.sizes["place"]) <= close:
-                return there, differences
-    exact = exact or equilibrium(scene, answer)
-    return exact, distance(response, k, answer, exact, largest) if exact.solution.found else None
-
-
 def inadmissible(exact: Equilibrium) -> Iterator[str]:
     """Yield a sentence for every violation of unilateral contact; `friction.rubbing` judges friction."""
     scene = exact.scene
@@ -215,12 +203,9 @@ def _rooms(exact: Equilibrium, spec: ContactSpec) -> Iterator[tuple[str, float]]
 
 
 def least_gap(exact: Equilibrium, spec: ContactSpec) -> tuple[float, float]:
-    """Return the smallest gap of a pair, if it is closed on its side of the beam, and its arc position; infinite without a closest point.
-
-    Gaps are evaluated at the local minima of the distance between node and axis, less the radius of the face's circles. At a contact the axis has a kink of the angle 2 a by
-    shear, and the contact force is normal to the mean of the two directions. Near it, at the distance d, a round pin penetrates the
-    beam by ``a d - (1/offset - curvature) d^2/2``. Only penetration beyond ``a d``, which means line contact, counts.
-    """
+    """Return the smallest gap of a pair on its side of the beam, and its arc position; infinite without a closest point."""
+    # at a contact the axis has a kink 2 a by shear; at the distance d a round pin penetrates by a d - (1/offset - curvature) d^2/2,
+    # and only penetration beyond a d, which means line contact, counts
     beam, node = exact.scene.beam(spec.beam), exact.place(spec.node)
     side, offset, steep, _ = face_of(exact.scene, spec)
     if offset == 0.0:

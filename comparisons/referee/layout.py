@@ -33,11 +33,10 @@ _NOTHING = np.zeros(3)
 
 @dataclass(frozen=True, kw_only=True)
 class Touch:
-    """A closed contact between a touching point x and the axis point ``r = x - offset(s) nu(phi)``.
+    """A closed contact between a touching point x and the axis point ``r = x - offset(s) nu(phi)``, nu the left normal of the direction phi.
 
-    nu is the left normal of the direction phi. With an offset the angle phi is an unknown; since the energy is stationary in phi, the
-    contact force acts along nu. Stationarity in s, ``nu . (r'_- + r'_+)/2 = -offset'``, makes nu normal to the face. With friction phi is
-    the direction of the face by a row of its own.
+    The energy is stationary in phi, so that the contact force acts along nu, and in s: ``nu . (r'_- + r'_+)/2 = -offset'`` makes nu normal
+    to the face. With friction phi is the direction of the face by a row of its own.
     """
 
     spec: ContactSpec

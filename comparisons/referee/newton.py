@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.elements import AMPLITUDE, DEGREE, GAUSS, VALUES, Mesh, mesh_of, rotations, shapes
-from comparisons.referee.equations import System, assemble
+from comparisons.referee.equations import System, assemble, index_of, solved
 from comparisons.referee.guess import SHORTEST, AnswerState, first_guess
 from comparisons.referee.layout import Layout, lay_out
 from comparisons.scene import Scene
@@ -32,8 +32,6 @@ _ROUND_OFF = 1e-10
 _LAST_PLACES = 10.0 * float(np.finfo(float).eps)
 """Round-off of a force over EA, since forces follow from stretches."""
 _AT_ONE_PLACE = "two contacts on a beam, or a contact and an end, come to one place"
-DENSE = 300
-"""Number of unknowns up to which matrices are solved as full ones."""
 _MOST_ELEMENTS = 400
 """Largest number of elements of a part."""
 _FIT = np.asarray(np.linalg.pinv(VALUES[:, 2:]), dtype=np.float64)
@@ -89,6 +87,11 @@ class Solution:
     def system(self) -> System:
         """The equations."""
         return assemble(self.layout, self.mesh, self.z, self.bubbles)
+
+    @cached_property
+    def index(self) -> int:
+        """The index."""
+        return index_of(self.layout, self.z, self.system)
 
     def plus(self, change: Change, part: float = 1.0) -> "Solution":
         """Return the guess with a part of a change."""
@@ -249,47 +252,11 @@ def _newton(now: Solution, iterations: int) -> Solution:
 def newton_step(guess: Solution, held: Ints | None = None) -> Change | None:
     """Newton correction with the unknowns `held` fixed; None if singular."""
     system = guess.system
-    hessian, gradient = system.hessian, system.gradient
-    if held is not None and len(held):
-        hessian, gradient = hessian.copy(), gradient.copy()
-        hessian[held], hessian[:, held], gradient[held] = 0.0, 0.0, 0.0
-        hessian[held, held] = 1.0
-    row, column, entry = entries(hessian)
-    if not np.all(np.isfinite(entry)) or len(np.unique(row)) < len(hessian):
-        return None
-    # EI, EA and forces differ by orders of magnitude
-    scale = scales(row, column, entry)
-    right = scale * gradient
-    try:
-        if len(hessian) <= DENSE:
-            change = -scale * np.linalg.solve(scale[:, None] * hessian * scale, right)
-        else:
-            from scipy.sparse import coo_array
-            from scipy.sparse.linalg import splu
-
-            factors = splu(coo_array((scale[row] * entry * scale[column], (row, column))).tocsc())
-            change = -scale * factors.solve(right)
-    except (np.linalg.LinAlgError, RuntimeError):
+    change = solved(system, held)
+    if change is None:
         return None
     moved = np.append(change, 0.0)[guess.mesh.local]
     return change, np.asarray(-(system.shift + np.einsum("eij,ej->ei", system.lever, moved)))
-
-
-def entries(matrix: Array) -> tuple[Ints, Ints, Array]:
-    """Return rows, columns and values of the entries that are not zero."""
-    # faster than `nonzero` of the matrix itself, which has few such entries
-    number = np.flatnonzero(matrix != 0.0)
-    return *np.divmod(number, len(matrix)), matrix.ravel()[number]
-
-
-def scales(row: Ints, column: Ints, entry: Array) -> Array:
-    """Return factors of rows and columns with which the largest entry of every row is about one."""
-    scale, size = np.ones(int(row[-1]) + 1), np.abs(entry)
-    for _ in range(3):
-        largest = np.zeros(len(scale))
-        np.maximum.at(largest, row, scale[row] * size * scale[column])
-        scale = scale / np.sqrt(largest)
-    return scale
 
 
 def _damping(layout: Layout, z: Array, change: Array) -> float:

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.elements import DEGREE, mesh_for, mesh_of
+from comparisons.referee.equations import orientation_of
 from comparisons.referee.grip import Grip
 from comparisons.referee.guess import AnswerState
 from comparisons.referee.layout import NONE, lay_out
 from comparisons.referee.newton import Change, Solution, correct, newton_step, rotation_at, solve
-from comparisons.referee.stability import index_of, orientation_of
 from comparisons.referee.state import Equilibrium
 from comparisons.response import ContactEvent, Response
 from comparisons.scene import Scene
@@ -92,12 +92,8 @@ def tangent(now: Solution, little: float) -> Change:
 
 
 def departures(response: Response, states: Mapping[int, Equilibrium]) -> Iterator[str]:
-    """Yield reasons why the equilibria at load parameters of an answer, by number, are not on the path from the undeformed state.
-
-    The path is followed to every equilibrium from the one before, the first one from rest, with the contacts that the events close and
-    open in between. It is not followed where a contact slips off, where friction changes its direction, or where two contacts pass
-    each other on a beam.
-    """
+    """Yield reasons why equilibria, by number, are not on the path from rest, which is followed from each to the next through the events."""
+    # not where a contact slips off, friction changes its direction, or two contacts pass each other on a beam
     closed = [
         {pair for pair, item in response.contacts.items() if item.force[k] != 0.0}
         for k in range(len(response.load_parameter))
@@ -186,16 +182,14 @@ def departs(first: Solution, last: Solution) -> str:
     back, stopped = _followed(last, first.t)
     if stopped and abs(back.t - there.t) < _MEET * (last.t - first.t) and _apart(there, back) < _MEETING:
         return ""
-    index = index_of(first)
-    kind = "" if index < 0 else f" of index {index}"
+    kind = "" if first.index < 0 else f" of index {first.index}"
     return f"no continuous path{kind} leads on beyond load parameter {there.t:.6g}"
 
 
 def _followed(first: Solution, end: float, last: Solution | None = None) -> tuple[Solution, bool]:
-    """Follow the path from `first` to a load parameter, and to the equilibrium `last` there if it is on the path; say if it stopped.
+    """Follow the path to a load parameter, and to the equilibrium `last` there if it is on the path; say if it stopped.
 
-    A step is accepted if the tangents at both its ends explain it, and the index is unchanged; with friction, the sign of the
-    determinant. Displacements and rotations along all parts are compared, so that nothing depends on the elements.
+    A step is accepted if the tangents at both its ends explain it, and the index, or with friction the sign of the determinant, is unchanged.
     """
     index, ways, sign = _kind(first), abs(end - first.t), 1.0 if end > first.t else -1.0
     stops = sorted(
@@ -236,7 +230,7 @@ def _unexplained(now: Solution, rate: Change, there: Solution, index: int) -> tu
 
 def _kind(solution: Solution) -> int:
     """What changes at a critical point: the index, or the sign of the determinant where there is none."""
-    return orientation_of(solution) if solution.layout.grips else index_of(solution)
+    return orientation_of(solution.system) if solution.layout.grips else solution.index
 
 
 def _off(now: Solution, rate: Change, there: Solution) -> float:

@@ -155,10 +155,7 @@ def _linear(given: float | tuple[float, float] | None, extent: float) -> Array:
 def _resultants(
     length: float, densities: list[tuple[float, float, Array]], breaks: set[float]
 ) -> tuple[Array, Array]:
-    """Return the arc positions between which loads are one polynomial, and the coefficients of W there.
-
-    `densities` are loads from one arc position to another, each with the coefficients (k, 2) of q.
-    """
+    """Return the arc positions between which loads (from, to, coefficients (k, 2) of q) are one polynomial, and W's coefficients there."""
     places = np.array(sorted({0.0, length, *breaks, *(s for a, b, _ in densities for s in (a, b))}))
     if not densities:
         return places, np.zeros((len(places) - 1, 1, 2))

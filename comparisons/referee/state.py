@@ -10,7 +10,6 @@ from comparisons.referee.elements import GAUSS, VALUES, WEIGHTS, fields, places,
 from comparisons.referee.guess import AnswerState
 from comparisons.referee.layout import Touch
 from comparisons.referee.newton import SearchStatus, Solution, solve, tails
-from comparisons.referee.stability import index_of
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
@@ -130,10 +129,10 @@ class Equilibrium:
         """Energy of all rods, springs and hinges."""
         return self.solution.system.energy * self.solution.layout.force * self.solution.layout.length
 
-    @cached_property
+    @property
     def index(self) -> int:
         """Number of negative eigenvalues of the energy's Hessian on the admissible variations; -1 with friction."""
-        return index_of(self.solution)
+        return self.solution.index
 
     @property
     def error(self) -> float:

@@ -8,7 +8,7 @@ from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 
 from comparisons.referee.friction.history import History
-from comparisons.referee.friction.slip import rates, slip_rate
+from comparisons.referee.friction.slip import slip_rate
 from comparisons.referee.grip import Grip, UnknownFrictionError
 from comparisons.referee.newton import Solution
 from comparisons.referee.path import corners, reach
@@ -28,10 +28,7 @@ _LEAST = 1e-12
 
 
 def dissipated(history: History, k: int, exact: Equilibrium) -> dict[str, float]:
-    """Return the energy that every contact with friction dissipates from the load parameter before number k up to it.
-
-    The interval is cut where contacts begin to slip, stick, touch or open. The energy is nan if one of these places is not found.
-    """
+    """Return what every contact with friction dissipates since the load parameter before number k; nan where a change is not found."""
     times = history.response.load_parameter
     begin, end = (float(times[k - 1]) if k else 0.0), float(times[k])
     pairs = [spec.pair for spec in history.scene.contacts if spec.friction]
@@ -65,10 +62,7 @@ def _cuts(history: History, k: int) -> dict[float, Solution | None]:
 def _between(
     history: History, first: float, last: float, there: Solution | None
 ) -> tuple[dict[str, float], Solution | None]:
-    """Dissipation between two load parameters without a change, and the equilibrium nearest to the first one.
-
-    `there` is an equilibrium at the last one, in any state, or None. Where the integrand is not smooth the interval is halved.
-    """
+    """Dissipation between two load parameters without a change, and the equilibrium at the first; `there` is one at the last, in any state."""
     middle = (first + last) / 2.0
     grips, closed = history.around(middle), history.closed(middle)
     if not any(grip.slip for grip in grips.values()):
@@ -99,9 +93,8 @@ def _powers(
         there = reach(there, t, grips)
         if not there.found:
             raise UnknownFrictionError(f"no equilibrium was found at load parameter {t:.6g}")
-        rate = rates(there)
         for touch in there.layout.touches:
             if touch.grip is not None and touch.grip.slip:
-                power = touching(there, touch).drag * slip_rate(there, touch, rate) * there.layout.length
+                power = touching(there, touch).drag * slip_rate(there, touch) * there.layout.length
                 powers.setdefault(touch.spec.pair, np.zeros(len(_POINTS)))[k] = power
     return powers, there

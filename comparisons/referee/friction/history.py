@@ -11,8 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from comparisons.referee.friction.phases import OPEN, SAME, UNKNOWN, Phase, phases, states
-from comparisons.referee.friction.rolling import roll
-from comparisons.referee.friction.slip import place, rates, slip_rate, speed
+from comparisons.referee.friction.slip import place, relative_slip_rate, roll, slip_rate
 from comparisons.referee.grip import LOOSE, Grip, Hold, UnknownFrictionError
 from comparisons.referee.guess import answer_state
 from comparisons.referee.newton import Solution, solve
@@ -38,15 +37,7 @@ _ZERO = 1e-12
 
 
 class History:
-    """The phases of the contacts of an answer, and where they begin.
-
-    Attributes
-    ----------
-    response, scene
-        The answer and its scene.
-    taken : str
-        What was taken for the states of friction if the answer does not state them; empty if it does.
-    """
+    """The phases of the contacts of an answer, and where they begin; `taken` says what its states of friction were taken from."""
 
     def __init__(self, response: Response, scene: Scene) -> None:
         self.response, self.scene = response, scene
@@ -73,13 +64,7 @@ class History:
         return self.phases[pair][self.numbers[pair][k]]
 
     def grips(self, k: int) -> dict[str, Grip]:
-        """Return how friction holds the closed contacts at load parameter number k.
-
-        Raises
-        ------
-        UnknownFrictionError
-            If no equilibrium is found where a stick begins; so do the following methods.
-        """
+        """Return how friction holds the closed contacts at load parameter number k; raises `UnknownFrictionError`, as the following."""
         t = float(self.response.load_parameter[k])
         now = {spec.pair: self.phase(spec.pair, k) for spec in self.scene.contacts if spec.friction}
         return {pair: self.grip(phase, t) for pair, phase in now.items() if phase.slip != OPEN}
@@ -203,7 +188,7 @@ class History:
         now = reach(begin, t, {**self.around(t, phase.spec), pair: own})
         if not now.found:
             return False
-        return own.slip * slip_rate(now, now.layout.touch(pair), rates(now)) > 0.0
+        return own.slip * slip_rate(now, now.layout.touch(pair)) > 0.0
 
     def _root(self, phase: Phase, own: Grip) -> Solution:
         """Return the equilibrium at which the state `own` of a contact ends."""
@@ -257,10 +242,7 @@ class History:
     def around(
         self, t: float, spec: ContactSpec | None = None, until: float | None = None
     ) -> dict[str, Grip]:
-        """Return how friction holds the closed contacts but one at load parameter t; those that change there, as before.
-
-        A contact that touches there is `LOOSE`. Sticks are followed `until` a load parameter, by default t.
-        """
+        """Return how friction holds the closed contacts but one at t, before a change there; sticks are followed `until` a load parameter."""
         held, until = {}, t if until is None else until
         for other in self.scene.contacts:
             now = self._phase_at(other.pair, t)
@@ -339,8 +321,7 @@ def _margin(now: Solution, phase: Phase, own: Grip) -> float:
     """A dimensionless number that is zero where a state ends: push at a touch or release, slip rate in slip, distance from the cone in stick."""
     touch, opens = now.layout.touch(phase.spec.pair), phase.slip == OPEN
     if own.friction and own.slip and not opens:
-        rate = rates(now)
-        return own.slip * slip_rate(now, touch, rate) / speed(now, rate)
+        return relative_slip_rate(now, touch)
     contact = touching(now, touch)
     if opens or not own.friction:
         return contact.push / now.layout.force

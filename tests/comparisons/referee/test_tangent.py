@@ -8,11 +8,10 @@ import pytest
 
 # the equations off equilibrium are no answer of `equilibrium`, and an error of their tangent shows there as a few more iterations only
 from comparisons.referee.elements import DEGREE, mesh_of
-from comparisons.referee.equations import System, assemble
+from comparisons.referee.equations import System, assemble, directions
 from comparisons.referee.grip import Grip, Hold
 from comparisons.referee.layout import Layout, lay_out
 from comparisons.referee.path import tangent
-from comparisons.referee.stability import _directions
 from comparisons.referee.state import _tangents
 from comparisons.scene import ContactSpec, HingeSpec, LoadSpec, PinSpec, Scene, StageSpec
 from tests.comparisons.referee.forged import seen
@@ -100,14 +99,14 @@ def test_the_direction_of_a_face_follows_the_variations_of_the_axis():
         return math.atan2(y, x) + math.asin(touch.slope / math.hypot(x, y))
 
     assert phi(z) == pytest.approx(z[touch.angle], abs=1e-12)
-    directions = _directions(solution)
+    free = directions(layout, z)
     before, behind = layout.beside(touch)
     forces = [part.force + k for part in (before, behind) for k in range(2)]
     kept = [k for k in range(len(z)) if k != touch.angle]
     for k in [layout.stations[before.last].unknown[2], *forces, touch.arc]:
         e = 1e-6 * np.eye(len(z))[k]
         difference = (phi(z + e) - phi(z - e)) / 2e-6
-        assert directions[touch.angle, kept.index(k)] == pytest.approx(difference, rel=1e-6, abs=1e-9)
+        assert free[touch.angle, kept.index(k)] == pytest.approx(difference, rel=1e-6, abs=1e-9)
 
 
 def test_nothing_moves_in_a_stage_that_changes_nothing():
