@@ -13,13 +13,14 @@ at the Gauss points ``s = s_a + (s_b - s_a) x``, x the fraction of the part betw
 share (s_b - s_a)/2``. The derivatives by s_a and s_b include those of EI, 1/EA, 1/GA and n by s where rods are not uniform.
 """
 
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 
-from comparisons.referee.layout import NONE, Layout
+from comparisons.referee.layout import Layout
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -62,16 +63,11 @@ class Mesh(NamedTuple):
     """Elements of all parts, in order."""
 
     part: Ints
-    first: Ints
-    """Number (e,) of the vertex at the start; that at the end is the next one."""
     start: Array
     share: Array
     """Start and length (e,) as fractions of the part."""
-    vertices: Ints
-    """Number (v,) of the unknown rotation at each vertex; `NONE` if it is prescribed."""
-    prescribed: Array
     local: Ints
-    """Numbers (e, 6) of the unknowns outside the bubbles; `unknowns` for prescribed ones."""
+    """Numbers (e, 6) of `theta_a, theta_b, c_x, c_y, s_a, s_b`."""
     unknowns: int
     """Number of unknowns including the vertices inside the parts, without the bubbles."""
 
@@ -79,29 +75,19 @@ class Mesh(NamedTuple):
 def mesh_of(layout: Layout, grids: list[Array]) -> Mesh:
     """Return the elements between the fractions `grids` of every part, each from 0 to 1."""
     part: list[int] = []
-    first: list[int] = []
-    vertices: list[int] = []
-    turned: list[float] = []
+    local: list[tuple[int, ...]] = []
     count = layout.unknowns
     for number, (item, grid) in enumerate(zip(layout.parts, grids, strict=True)):
-        inner = len(grid) - 2
-        part += [number] * (inner + 1)
-        first += list(range(len(vertices), len(vertices) + inner + 1))
-        ends = [layout.stations[k] for k in (item.first, item.last)]
-        vertices += [ends[0].unknown[2], *range(count, count + inner), ends[1].unknown[2]]
-        turned += [ends[0].prescribed[2], *[0.0] * inner, ends[1].prescribed[2]]
-        count += inner
-    numbers, at = np.array(vertices), np.array(first)
-    own = np.array([(item.force, item.force + 1, *item.arcs) for item in layout.parts])[part]
-    local = np.column_stack([numbers[at], numbers[at + 1], own])
+        inner = range(count, count + len(grid) - 2)
+        begin, end = (int(layout.stations[k].numbers[2]) for k in (item.first, item.last))
+        part += [number] * (len(grid) - 1)
+        local += [(*ends, item.force, item.force + 1, *item.arcs) for ends in pairwise([begin, *inner, end])]
+        count += len(inner)
     return Mesh(
         part=np.array(part),
-        first=at,
         start=np.concatenate([grid[:-1] for grid in grids]),
         share=np.concatenate([np.diff(grid) for grid in grids]),
-        vertices=numbers,
-        prescribed=np.array(turned),
-        local=np.where(local == NONE, count, local),
+        local=np.array(local),
         unknowns=count,
     )
 
@@ -111,10 +97,9 @@ def mesh_for(layout: Layout, mesh: Mesh) -> Mesh:
     return mesh_of(layout, [np.append(mesh.start[mesh.part == k], 1.0) for k in range(len(layout.parts))])
 
 
-def rotations(mesh: Mesh, z: Array, bubbles: Array) -> Array:
+def rotations(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> Array:
     """Coefficients (e, p + 1) of the rotation in the shape functions."""
-    there = np.where(mesh.vertices == NONE, mesh.prescribed, z[mesh.vertices])
-    return np.column_stack([there[mesh.first], there[mesh.first + 1], bubbles])
+    return np.column_stack([layout.full(z)[mesh.local[:, :2]], bubbles])
 
 
 class Places(NamedTuple):
@@ -202,7 +187,7 @@ def elements(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> tuple[Arra
     x = mesh.start[:, None] + mesh.share[:, None] * (1.0 + GAUSS) / 2.0
     half, grows = mesh.share[:, None] * extent / 2.0, mesh.share[:, None] / 2.0
     there = places(layout, mesh.part, ends[:, :1] + extent * x, z[mesh.local[:, 2:4]])
-    coefficients = rotations(mesh, z, bubbles)
+    coefficients = rotations(layout, mesh, z, bubbles)
     by_theta, by_theta2, by_bent, by_y, by_yy, by_theta_y, by_bent_y, stored = _at_points(
         there, half, coefficients @ VALUES.T, coefficients @ SLOPES.T
     )

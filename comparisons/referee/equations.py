@@ -34,6 +34,8 @@ class System(NamedTuple):
 
     gradient: Array
     hessian: Array
+    held: Array
+    """Gradient by the prescribed quantities: the forces and moments that hold them."""
     shift: Array
     lever: Array
     """If the other unknowns of an element change by x, its bubbles change by ``-(shift + lever x)``."""
@@ -51,14 +53,15 @@ def assemble(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> System:
     rhs = np.concatenate([own_gradient[:, OUTER:, None], across.swapaxes(1, 2)], axis=2)
     solved = np.linalg.solve(blocks, rhs)
     shift, lever = solved[:, :, 0], solved[:, :, 1:]
-    gradient = own_gradient[:, :OUTER] - np.einsum("eij,ej->ei", across, shift)
     hessian = own_hessian[:, :OUTER, :OUTER] - across @ lever
-    # the last row and column collect prescribed quantities, whose number is `NONE`
-    g, k = np.zeros(mesh.unknowns + 1), np.zeros((mesh.unknowns + 1, mesh.unknowns + 1))
-    np.add.at(g, local, gradient)
+    size, free = mesh.unknowns + len(layout.given), slice(mesh.unknowns)
+    g, k = np.zeros(size), np.zeros((size, size))
+    np.add.at(g, local, own_gradient[:, :OUTER])
     np.add.at(k, (local[:, :, None], local[:, None, :]), hessian)
     _add_parts(layout, z, g, k)
     energy = float(stored.sum()) + _add_springs_and_loads(layout, z, g, k)
+    held = g[mesh.unknowns :].copy()
+    np.add.at(g, local, -np.einsum("eij,ej->ei", across, shift))
     for touch in layout.touches:
         if touch.grip is not None:
             e = element_before(mesh, touch)
@@ -72,7 +75,7 @@ def assemble(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> System:
             k[turn] -= by[1]
             if touch.angle != NONE:
                 g[touch.angle], k[touch.angle] = found.direction, by[2]
-    return System(g[:-1], k[:-1, :-1], shift, lever, blocks, own_gradient[:, :2], energy)
+    return System(g[free], k[free, free], held, shift, lever, blocks, own_gradient[:, :2], energy)
 
 
 def element_before(mesh: Mesh, touch: Touch) -> int:
@@ -83,13 +86,13 @@ def element_before(mesh: Mesh, touch: Touch) -> int:
 def _add_parts(layout: Layout, z: Array, g: Array, k: Array) -> None:
     """Add ``c.(r_b - r_a - R_b + R_a)`` of the parts."""
     shifts = layout.shifts(z)
-    for part in layout.parts:
+    for part, (begin, end) in zip(layout.parts, layout.extents(z), strict=True):
         own, axes = slice(part.force, part.force + 2), part.rod.axes
         n = z[own]
-        g[own] += _apart(layout, z, part, shifts)
+        g[own] += _apart(layout, part, shifts, part.rod.between(begin, end))
         for number, sign in ((part.first, -1.0), (part.last, 1.0)):
             there = layout.stations[number]
-            for component, unknown in enumerate(there.unknown[:2]):
+            for component, unknown in enumerate(there.numbers[:2]):
                 g[unknown] += sign * axes[component] @ n
                 k[own, unknown] += sign * axes[component]
                 k[unknown, own] += sign * axes[component]
@@ -107,7 +110,7 @@ def _add_parts(layout: Layout, z: Array, g: Array, k: Array) -> None:
 
 def _add_springs_and_loads(layout: Layout, z: Array, g: Array, k: Array) -> float:
     """Add dead loads, springs to the ground, ``k u^2/2``, and those of hinges; return the energy of the springs."""
-    numbers, _, loads, springs = layout.tables
+    numbers, loads, springs = layout.tables
     moved = layout.motions(z)
     np.add.at(g, numbers, -loads)
     np.add.at(g, numbers, springs * moved)
@@ -137,14 +140,14 @@ def _add_offset(part: Part, touch: Touch, sign: float, z: Array, g: Array, k: Ar
     k[touch.arc, touch.angle] += mixed
 
 
-def _apart(layout: Layout, z: Array, part: Part, shifts: Array) -> Array:
+def _apart(layout: Layout, part: Part, shifts: Array, between: Array) -> Array:
     """Return ``r_b - r_a - R_b + R_a`` in the beam's frame; it is exactly zero for an undeformed beam."""
     a, b = layout.stations[part.first], layout.stations[part.last]
     apart = np.asarray(part.rod.axes.T @ (shifts[part.last] - shifts[part.first]))
     if a.touch is None and b.touch is None:
         return apart
     rest = part.rod.axes.T @ (b.reference - a.reference)
-    return np.asarray(apart + rest - part.rod.between(*part.ends(z)))
+    return np.asarray(apart + rest - between)
 
 
 def solved(system: System, held: Ints | None = None) -> Array | None:

@@ -91,12 +91,12 @@ class Rows(NamedTuple):
 
 
 def rows(layout: "Layout", touch: "Touch", z: Array, moment: float) -> Rows:
-    """Return the rows of a contact at the unknowns z and the moment before it; the number of the moment is `NONE`."""
+    """Return the rows of a contact at the unknowns z and the moment before it, which has no number."""
     parts = before, behind = layout.beside(touch)
-    turn = int(layout.stations[before.last].unknown[2])
+    turn = int(layout.stations[before.last].numbers[2])
     forces = [before.force, before.force + 1, behind.force, behind.force + 1]
     numbers = [turn, *forces, touch.angle, -1, touch.arc]
-    given = np.append(z, 0.0)[numbers]
+    given = layout.full(z)[numbers]
     given[6] = moment
     found = np.array(_rows(layout, touch, parts, given[:, None] + 1j * _STEP * np.eye(len(given))))
     row, couple, direction, stretch = np.real(found[:, 0]).tolist()

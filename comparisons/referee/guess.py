@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.grip import Grip
-from comparisons.referee.layout import NONE, Layout, Part
+from comparisons.referee.layout import NONE, Layout
 from comparisons.response import ContactHistory, Response
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 
@@ -114,11 +114,11 @@ def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotati
     _set_displacements(layout, answer, turns, z)
     _balance(layout, answer, turns, z)
     turns = _aligned(layout, [_rotations(layout, answer, number, z) for number in range(len(scene.beams))])
-    for part in layout.parts:
-        for number in (part.first, part.last):
-            station = layout.stations[number]
-            if station.unknown[2] != NONE:
-                z[station.unknown[2]] = turns[part.beam].angle(part.ends(z)[number == part.last])
+    for part, arcs in zip(layout.parts, layout.extents(z), strict=True):
+        for number, arc in zip((part.first, part.last), arcs, strict=True):
+            unknown = layout.stations[number].numbers[2]
+            if unknown >= 0:
+                z[unknown] = turns[part.beam].angle(arc)
     return z, turns
 
 
@@ -137,16 +137,16 @@ def _rotations(layout: Layout, answer: AnswerState, number: int, z: Array | None
     s, way = (arc[:-1] + arc[1:])[long] / (2.0 * layout.length), pieces[long] / extents[long]
     way = way * np.exp(-1.0j * rod.angle(s)) if rod.turn else way
     theta = np.angle(way)
-    for part in layout.parts:
+    for n, part in enumerate(layout.parts):
         if part.beam == number and z is not None and np.any(rod.greatest.shear):
             _, stretch, shear = rod.flexibility(s)
-            first, last = part.ends(z)
+            first, last = layout.extents(z)[n]
             x, y = rod.force(part.piece, part.constant(z), s)
-            n = (x + 1.0j * y) * np.exp(-1.0j * rod.angle(s))
-            along = way - shear * n
+            force = (x + 1.0j * y) * np.exp(-1.0j * rod.angle(s))
+            along = way - shear * force
             size = np.abs(along)
             d1 = along / np.where(size > 0.0, size, 1.0)
-            factor = (stretch - shear) * (d1 * n.conjugate()).real
+            factor = (stretch - shear) * (d1 * force.conjugate()).real
             d1 = np.where(np.abs(1.0 + factor - size) <= np.abs(1.0 - factor + size), d1, -d1)
             theta = np.where((s >= first) & (s <= last) & (size > 0.0), np.angle(d1), theta)
     return Rotations(s, np.unwrap(theta))
@@ -155,7 +155,9 @@ def _rotations(layout: Layout, answer: AnswerState, number: int, z: Array | None
 def _aligned(layout: Layout, turns: list[Rotations]) -> list[Rotations]:
     """Add multiples of 2 pi, so that beams agree with prescribed rotations and, at joints, with each other."""
     known: dict[int, float] = {
-        k: float(item.prescribed[2]) for k, item in enumerate(layout.stations) if item.unknown[2] == NONE
+        k: float(layout.given[item.numbers[2]])
+        for k, item in enumerate(layout.stations)
+        if item.numbers[2] < 0
     }
     own = [[part for part in layout.parts if part.beam == number] for number in range(len(turns))]
     ends = [((parts[0].first, 0.0), (parts[-1].last, parts[-1].rod.length)) for parts in own]
@@ -177,11 +179,11 @@ def _set_displacements(layout: Layout, answer: AnswerState, turns: list[Rotation
     beams = layout.scene.beams
     origin = np.array(beams[0].start)
     for number, station in enumerate(layout.stations):
-        touch, unknown = station.touch, station.unknown[:2]
+        touch, unknown = station.touch, station.numbers[:2]
         if touch is None:
             seen = (_stated_place(layout, answer, number) - origin) / layout.length
             moved = seen - station.reference
-            z[unknown[unknown != NONE]] = moved[unknown != NONE]
+            z[unknown[unknown >= 0]] = moved[unknown >= 0]
         elif touch.angle != NONE:
             beam, arc = [item.name for item in beams].index(touch.spec.beam), float(z[touch.arc])
             x, y = beams[beam].direction
@@ -208,15 +210,12 @@ def _balance(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Arr
         for number, sign in ((part.first, -1.0), (part.last, 1.0)):
             balance[joined.get(number, number), :, n] += sign * part.rod.axes
     stated = [
-        [
-            k not in joined and (k in known or item.touch is not None or free != NONE)
-            for free in item.unknown[:2]
-        ]
+        [k not in joined and (k in known or item.touch is not None or free >= 0) for free in item.numbers[:2]]
         for k, item in enumerate(layout.stations)
     ]
     moments, values = np.zeros((len(layout.parts), len(layout.parts), 2)), np.zeros(len(layout.parts))
-    for n, part in enumerate(layout.parts):
-        moments[n, n], values[n] = _moments(layout, part, answer, turns, z)
+    for n in range(len(layout.parts)):
+        moments[n, n], values[n] = _moments(layout, n, answer, turns, z)
     rows = np.concatenate([balance[np.array(stated)], _CLOSED_LOOP * moments]).reshape(
         -1, 2 * len(layout.parts)
     )
@@ -226,7 +225,7 @@ def _balance(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Arr
 
 def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[int]]:
     """External forces (stations, 2), of ends behind a hinge at the joint, and the stations whose reactions the answer has."""
-    _, _, loads, springs = layout.tables
+    _, loads, springs = layout.tables
     acting = (loads - springs * layout.motions(z))[:, :2]
     for hinge in layout.hinges:
         acting[hinge.joint] += acting[hinge.end]
@@ -245,10 +244,10 @@ def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[i
 
 
 def _moments(
-    layout: Layout, part: Part, answer: AnswerState, turns: list[Rotations], z: Array
+    layout: Layout, n: int, answer: AnswerState, turns: list[Rotations], z: Array
 ) -> tuple[Array, float]:
     """Coefficients and right side of ``(r_b - r_a) x c = m_a - m_b + int r' x W ds`` in the beam's frame."""
-    a, b = part.ends(z)
+    part, (a, b) = layout.parts[n], layout.extents(z)[n]
     chord = part.rod.axes.T @ (layout.position(z, part.last) - layout.position(z, part.first))
     turn, step = turns[part.beam], (b - a) / 8.0
     m_a, m_b = (

@@ -3,8 +3,8 @@
 Stations are the contacts, the ends of the beams, and the places inside a beam where a force acts or a load begins or ends. Joined ends
 are one station; an end behind a hinge is a station of its own with the place of the joint. A part is a rod between neighbouring stations
 of a beam; its force is ``n = c - W(s)`` with an unknown constant c. Lengths are in units of the longest beam and forces in units of
-``EI/L^2`` with the largest EI, so that all quantities are dimensionless. The number of a prescribed quantity is `NONE`, the place of a
-zero that is appended to the unknowns.
+``EI/L^2`` with the largest EI, so that all quantities are dimensionless. Prescribed quantities have negative numbers, their places in
+`Layout.given` behind the unknowns.
 """
 
 import math
@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 NONE = -1
-"""Number of a quantity that is prescribed and not unknown."""
+"""Number of a quantity that is zero."""
 _FREE: Mapping[str, Grip] = MappingProxyType({})
 _NOTHING = np.zeros(3)
 
@@ -73,10 +73,8 @@ class Station:
 
     reference: Array
     """Undeformed position (2,), which may be far larger than the displacement."""
-    unknown: Ints
+    numbers: Ints
     """Numbers (3,) of the displacement and the rotation."""
-    prescribed: Array = field(default_factory=lambda: np.zeros(3))
-    """What they are (3,) where they are prescribed."""
     load: Array = field(default_factory=lambda: np.zeros(3))
     """Dead force and moment (3,); at the end of a beam with the resultant of the load along it, since the part has c = n + W there."""
     springs: Array = field(default_factory=lambda: np.zeros(3))
@@ -91,8 +89,7 @@ class Station:
 
     def turning(self, rotation: int, **more: Any) -> "Station":
         """Return a station at the same place with a rotation of its own."""
-        unknown, prescribed = np.append(self.unknown[:2], rotation), self.prescribed * (1.0, 1.0, 0.0)
-        return Station(reference=self.reference, unknown=unknown, prescribed=prescribed, **more)
+        return Station(reference=self.reference, numbers=np.append(self.numbers[:2], rotation), **more)
 
 
 class Hinge(NamedTuple):
@@ -112,18 +109,11 @@ class Part:
     last: int
     arcs: tuple[int, int]
     """Numbers of the arc positions of both stations."""
-    fixed: tuple[float, float]
-    """Arc positions that are not unknown; 0 for a contact."""
     force: int
     """Number of the first of the two components of c, along the chord of the undeformed beam and to its left."""
     rod: Rod
     piece: int
     """Number of the piece of the load."""
-
-    def ends(self, z: Array) -> tuple[float, float]:
-        """Arc positions at the start and the end."""
-        a, b = (g if k == NONE else float(z[k]) for g, k in zip(self.fixed, self.arcs, strict=True))
-        return a, b
 
     def constant(self, z: Array) -> Array:
         """Return c (2,)."""
@@ -141,6 +131,8 @@ class Layout:
     stations: tuple[Station, ...]
     parts: tuple[Part, ...]
     hinges: tuple[Hinge, ...]
+    given: Array
+    """Prescribed quantities."""
     unknowns: int
     """Number of unknowns without the rotations inside the parts."""
 
@@ -162,15 +154,17 @@ class Layout:
     @cached_property
     def moving(self) -> Ints:
         """Numbers of the displacements and arc positions."""
-        moved = [k for item in self.stations for k in item.unknown[:2] if k != NONE]
+        moved = [k for item in self.stations for k in item.numbers[:2] if k >= 0]
         return np.array([*moved, *self.arcs], dtype=np.int64)
 
     @cached_property
-    def tables(self) -> tuple[Ints, Array, Array, Array]:
-        """Numbers, prescribed motions, loads and springs (stations, 3) of the stations."""
-        rows = [(item.unknown, item.prescribed, item.load, item.springs) for item in self.stations]
-        numbers, *others = (np.array(column) for column in zip(*rows, strict=True))
-        return numbers, *others  # type: ignore[return-value]
+    def tables(self) -> tuple[Ints, Array, Array]:
+        """Numbers, loads and springs (stations, 3) of the stations."""
+        return (
+            np.array([item.numbers for item in self.stations]),
+            np.array([item.load for item in self.stations]),
+            np.array([item.springs for item in self.stations]),
+        )
 
     @cached_property
     def uniform(self) -> bool:
@@ -199,10 +193,13 @@ class Layout:
         before = next(part for part in self.parts if part.arcs[1] == touch.arc)
         return before, next(part for part in self.parts if part.arcs[0] == touch.arc)
 
+    def full(self, z: Array) -> Array:
+        """Unknowns and prescribed quantities."""
+        return np.append(z, self.given)
+
     def motions(self, z: Array) -> Array:
         """Displacements and rotations (stations, 3)."""
-        numbers, given, _, _ = self.tables
-        return np.where(numbers == NONE, given, z[numbers])
+        return self.full(z)[self.tables[0]]
 
     def shifts(self, z: Array) -> Array:
         """Ways (stations, 2) of the axis from the references."""
@@ -219,12 +216,11 @@ class Layout:
 
     def extents(self, z: Array) -> Array:
         """Arc positions (parts, 2) at the starts and the ends of all parts."""
-        numbers, fixed = self._ends
-        return np.where(numbers == NONE, fixed, z[numbers])
+        return self.full(z)[self._ends]
 
     @cached_property
-    def _ends(self) -> tuple[Ints, Array]:
-        return np.array([part.arcs for part in self.parts]), np.array([part.fixed for part in self.parts])
+    def _ends(self) -> Ints:
+        return np.array([part.arcs for part in self.parts])
 
 
 def normal(angle: float) -> Array:
@@ -239,8 +235,9 @@ def lay_out(
     length, force = units_of(scene)
     unit = np.array([force, force, force * length])
     rods = [rod_of(scene, beam, load_parameter, (length, force)) for beam in scene.beams]
-    stations, hinges = _joints(scene, load_parameter, rods, length, unit)
-    count = 1 + max(int(item.unknown.max()) for item in stations)
+    given = [0.0]
+    stations, hinges = _joints(scene, load_parameter, rods, length, unit, given)
+    count = 1 + max(int(item.numbers.max()) for item in stations)
     at = {end: station for station in stations for end in station.joint}
     on_beam: dict[str, list[tuple[float, int, int]]] = {beam.name: [] for beam in scene.beams}
     for spec in scene.contacts:
@@ -253,7 +250,7 @@ def lay_out(
         )  # fmt: skip
         node = at.get(spec.node) or Station(
             reference=_place(scene, scene.pin(spec.node).position(load_parameter), length),
-            unknown=np.full(3, NONE),
+            numbers=np.full(3, NONE),
         )
         on_beam[spec.beam].append((closed[spec.pair], len(stations), touch.arc))
         stations.append(node.turning(count, touch=touch))
@@ -264,11 +261,11 @@ def lay_out(
             loads = _total(
                 item.at(load_parameter) for item in inside if (item.load.at or 0.0) * rod.length == arc
             )
-            on_beam[beam.name].append((arc * length, len(stations), NONE))
+            on_beam[beam.name].append((arc * length, len(stations), _fixed(given, arc)))
             stations.append(
                 Station(
                     reference=_place(scene, beam.place(arc / rod.length), length),
-                    unknown=np.arange(count, count + 3),
+                    numbers=np.arange(count, count + 3),
                     load=loads / unit,
                     arc=arc,
                 )
@@ -278,17 +275,19 @@ def lay_out(
     parts: list[Part] = []
     for number, (beam, rod) in enumerate(zip(scene.beams, rods, strict=True)):
         first, last = ends[f"{beam.name}.start"], ends[f"{beam.name}.end"]
-        chain = [(0.0, first, NONE), *sorted(on_beam[beam.name]), (beam.length, last, NONE)]
+        chain = [
+            (0.0, first, NONE),
+            *sorted(on_beam[beam.name]),
+            (beam.length, last, _fixed(given, rod.length)),
+        ]
         piece = 0
         for (_, first, arc), (_, last, arc_after) in pairwise(chain):
             piece += stations[first].arc is not None
-            begin, end = (stations[k].arc or 0.0 for k in (first, last))
-            fixed = begin, rod.length if last == chain[-1][1] else end
-            parts.append(Part(number, first, last, (arc, arc_after), fixed, count, rod, piece))
+            parts.append(Part(number, first, last, (arc, arc_after), count, rod, piece))
             count += 2
     return Layout(
         scene=scene, load_parameter=load_parameter, length=length, force=force, stations=tuple(stations),
-        parts=tuple(parts), hinges=tuple(hinges), unknowns=count,
+        parts=tuple(parts), hinges=tuple(hinges), given=np.array(given[::-1]), unknowns=count,
     )  # fmt: skip
 
 
@@ -297,13 +296,19 @@ def _place(scene: Scene, point: tuple[float, float], length: float) -> Array:
     return np.asarray((np.array(point) - scene.beams[0].start) / length)
 
 
+def _fixed(given: list[float], value: float) -> int:
+    """Return the number of a prescribed quantity, which is added in front of the others."""
+    given.append(value)
+    return -len(given)
+
+
 def _total(amounts: Iterable[Any]) -> Array:
     """Sum of triples."""
     return np.asarray(np.sum([_NOTHING, *amounts], axis=0))
 
 
 def _joints(
-    scene: Scene, t: float, rods: list[Rod], length: float, unit: Array
+    scene: Scene, t: float, rods: list[Rod], length: float, unit: Array, given: list[float]
 ) -> tuple[list[Station], list[Hinge]]:
     """Return the stations of joints and ends with the numbers of their free components, those behind hinges last, and the hinges."""
     names: dict[tuple[float, float], list[str]] = {}
@@ -331,8 +336,12 @@ def _joints(
         stations.append(
             Station(
                 reference=_place(scene, point, length),
-                unknown=np.where(free, count + np.cumsum(free) - 1, NONE),
-                prescribed=np.array([value or 0.0 for value in motion]) / (length, length, 1.0),
+                numbers=np.array(
+                    [
+                        count + sum(free[:k]) if free[k] else _fixed(given, (motion[k] or 0.0) / size)
+                        for k, size in enumerate((length, length, 1.0))
+                    ]
+                ),
                 load=loads / unit + along,
                 springs=springs * (length, length, 1.0) / unit,
                 ends=own,

@@ -103,7 +103,9 @@ def rotation_at(solution: Solution, part: Ints, x: Array) -> Array:
     mesh, inside = solution.mesh, np.minimum(x, _INSIDE)
     e = np.searchsorted(mesh.part + mesh.start, part + inside, side="right") - 1
     values = shapes(2.0 * (x - mesh.start[e]) / mesh.share[e] - 1.0)[0]
-    return np.asarray((values * rotations(mesh, solution.z, solution.bubbles)[e]).sum(axis=-1))
+    return np.asarray(
+        (values * rotations(solution.layout, mesh, solution.z, solution.bubbles)[e]).sum(axis=-1)
+    )
 
 
 def solve(scene: Scene, answer: AnswerState) -> Solution:
@@ -209,7 +211,7 @@ def _places(mesh: Mesh) -> Array:
 
 def _fitted(layout: Layout, mesh: Mesh, z: Array, rotation: Array, fit: Array) -> Solution:
     """Return the guess with rotations at `_places`; z are the unknowns without the rotations inside the parts."""
-    whole, at = np.append(z, np.zeros(mesh.unknowns - len(z))), mesh.vertices[mesh.first]
+    whole, at = np.append(z, np.zeros(mesh.unknowns - len(z))), mesh.local[:, 0]
     whole[at[at >= len(z)]] = rotation[at >= len(z), -2]
     bubbles: Array = (rotation[:, :-2] - rotation[:, -2:] @ VALUES[:, :2].T) @ fit.T
     return Solution(layout=layout, mesh=mesh, z=whole, bubbles=bubbles)
@@ -255,7 +257,7 @@ def newton_step(guess: Solution, held: Ints | None = None) -> Change | None:
     change = solved(system, held)
     if change is None:
         return None
-    moved = np.append(change, 0.0)[guess.mesh.local]
+    moved = np.append(change, 0.0 * guess.layout.given)[guess.mesh.local]
     return change, np.asarray(-(system.shift + np.einsum("eij,ej->ei", system.lever, moved)))
 
 

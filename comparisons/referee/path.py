@@ -11,7 +11,7 @@ from comparisons.referee.elements import DEGREE, mesh_for, mesh_of
 from comparisons.referee.equations import orientation_of
 from comparisons.referee.grip import Grip
 from comparisons.referee.guess import AnswerState
-from comparisons.referee.layout import NONE, lay_out
+from comparisons.referee.layout import lay_out
 from comparisons.referee.newton import Change, Solution, correct, newton_step, rotation_at, solve
 from comparisons.referee.state import Equilibrium
 from comparisons.response import ContactEvent, Response
@@ -72,7 +72,7 @@ def moved(now: Solution, t: float, grips: Mapping[str, Grip]) -> Solution:
 def reach(near: Solution, t: float, grips: Mapping[str, Grip], halvings: int = _HALVINGS) -> Solution:
     """Return the equilibrium at load parameter t with the same contacts, held by `grips`, by steps from `near`."""
     there = correct(moved(near, t, grips), _ITERATIONS)
-    turning = [k for k in (item.unknown[2] for item in there.layout.stations) if k != NONE]
+    turning = [k for k in (item.numbers[2] for item in there.layout.stations) if k >= 0]
     turned = float(np.abs(there.z[turning] - near.z[turning]).max(initial=0.0))
     if (there.found and turned < _TURN) or not halvings or near.t == t:
         return there

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from comparisons.referee.elements import GAUSS, VALUES, WEIGHTS, fields, places, rotations, shapes, up_to
 from comparisons.referee.guess import AnswerState
-from comparisons.referee.layout import Touch
+from comparisons.referee.layout import NONE, Touch
 from comparisons.referee.newton import SearchStatus, Solution, solve, tails
 from comparisons.scene import Scene
 
@@ -104,14 +104,12 @@ class Equilibrium:
     @cached_property
     def reactions(self) -> dict[str, Array]:
         """Force and moment (3,) of every support, by the supported end; zero in free components."""
-        layout, found = self.solution.layout, dict[str, Array]()
+        layout, held = self.solution.layout, self.solution.system.held
+        unit, found = layout.force * np.array([1.0, 1.0, layout.length]), dict[str, Array]()
         for support in self.scene.all_supports:
-            number = layout.joint(support.node)
-            total = _held(self.solution, number) * layout.force * np.array([1.0, 1.0, layout.length])
-            for pair, contact in self.contacts.items():
-                if layout.touch(pair).spec.node in layout.stations[number].joint:
-                    total[:2] += contact.force
-            found[support.node] = np.where([value is not None for value in support.motion], total, 0.0)
+            numbers = layout.stations[layout.joint(support.node)].numbers
+            given = [value is not None for value in support.motion]
+            found[support.node] = np.where(given, unit * held[np.minimum(numbers, NONE)], 0.0)
         return found
 
     @cached_property
@@ -198,32 +196,10 @@ def touching(solution: Solution, touch: Touch) -> Contact:
     )
 
 
-def _held(solution: Solution, number: int) -> Array:
-    """Force and moment (3,) of parts, springs and hinges less the loads at a joint, in units of the layout."""
-    layout, z, mesh = solution.layout, solution.z, solution.mesh
-    station = layout.stations[number]
-    moved = layout.motions(z)
-    total = station.springs * moved[number] - station.load
-    here = {number}
-    for hinge in layout.hinges:
-        if hinge.joint == number:
-            here.add(hinge.end)
-            total[:2] -= layout.stations[hinge.end].load[:2]
-            total[2] += hinge.stiffness * (moved[number, 2] - moved[hinge.end, 2])
-    for k, part in enumerate(layout.parts):
-        for end, sign in ((part.first, -1.0), (part.last, 1.0)):
-            if end in here:
-                total[:2] += sign * part.rod.axes @ part.constant(z)
-            if end == number:
-                e = np.flatnonzero(mesh.part == k)[0 if sign < 0.0 else -1]
-                total[2] += solution.system.ends[e, int(sign > 0.0)]
-    return np.asarray(total)
-
-
 def _shape(solution: Solution, beam: str, arc: Array) -> Shape:
     """Evaluate the shape of a beam at arc lengths (m,)."""
     layout, z, mesh = solution.layout, solution.z, solution.mesh
-    coefficients, s = rotations(mesh, z, solution.bubbles), arc / layout.length
+    coefficients, s = rotations(layout, mesh, z, solution.bubbles), arc / layout.length
     number = [item.name for item in layout.scene.beams].index(beam)
     numbers = np.array([k for k, part in enumerate(layout.parts) if part.beam == number])
     begins = layout.extents(z)[numbers, 0]

@@ -56,7 +56,7 @@ def slip_rate(now: Solution, touch: Touch, *, behind: bool = False) -> float:
     slipping = place(now, touch).stretch * float(rate[touch.arc])
     if touch.angle == NONE:
         return slipping
-    theta, phi = float(rate[layout.stations[before.last].unknown[2]]), float(rate[touch.angle])
+    theta, phi = float(rate[layout.stations[before.last].numbers[2]]), float(rate[touch.angle])
     theta += before.rod.curvature * float(rate[touch.arc])
     return slipping + float(touch.lever(float(now.z[touch.arc]))) * (phi - theta) + touch.roll * phi
 
