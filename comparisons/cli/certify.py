@@ -120,7 +120,7 @@ def _row(item: "Judgement") -> str:
     if item.distance is None:
         return f"{text}{item.verdict.name}, {item.reason}"
     text += f"{item.verdict.name}, " * (item.verdict.name != "CERTIFIED")
-    apart = {name: size for name, size in item.distance.sizes().items() if name in item.distance.where}
+    apart = {name: size for name, size in item.distance.sizes.items() if name in item.distance.where}
     sizes = ", ".join(f"{name.replace('_', ' ')} {size:.2g}" for name, size in apart.items())
     stable = "stability not judged (friction)" if item.index < 0 else f"index {item.index}"
     return f"{text}off by: {sizes}; {stable}, residual {item.residual:.1g}"

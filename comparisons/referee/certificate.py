@@ -6,7 +6,6 @@ from enum import Enum
 from typing import Any
 
 from comparisons.referee.distance import Distance
-from comparisons.referee.newton import SearchStatus
 from comparisons.referee.state import Equilibrium
 
 
@@ -107,11 +106,11 @@ def _as_dict(item: Judgement) -> dict[str, Any]:
         "load_parameter": item.load_parameter,
         "verdict": item.verdict.name,
         "reason": item.reason,
-        "distance": None if item.distance is None else item.distance.sizes(),
+        "distance": None if item.distance is None else dict(item.distance.sizes),
         "index": item.index,
         "residual": item.residual,
     }
-    if exact is not None and exact.status is SearchStatus.FOUND:
+    if exact is not None and exact.solution.found:
         values["exact"] = {
             "contacts": {
                 pair: {"force": list(map(float, here.force)), "arc_position": here.arc_position}

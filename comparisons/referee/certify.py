@@ -10,7 +10,7 @@ import numpy as np
 
 from comparisons.referee.balance import BALANCE, balance_failures, unpaid
 from comparisons.referee.certificate import Certificate, Judgement, Verdict
-from comparisons.referee.judge import impossible, judged
+from comparisons.referee.judge import compared, impossible, judged
 from comparisons.referee.passing import changes, misstated, passages
 from comparisons.referee.path import changes_of, departures
 from comparisons.referee.state import Equilibrium
@@ -59,15 +59,21 @@ def certify(
     if not isinstance(response.axis_line, SampledAxes):
         response = replace(response, axis_line=cache(response.axis_line))
     allowed = default_allowance(response, scene) if allowance is None else allowance
-    numbers = _chosen(response, scene)
-    if at is not None:
-        steps = len(response.load_parameter)
-        numbers = sorted({k % steps for k in at if -steps <= k < steps})
-    history = _history(response, scene)
+    steps = len(response.load_parameter)
+    numbers = (
+        _chosen(response, scene) if at is None else sorted({k % steps for k in at if -steps <= k < steps})
+    )
+    contradictions = [sentence for k in range(steps) for sentence in impossible(response, scene, k)]
+    history = None
+    if any(spec.friction for spec in scene.contacts) and not contradictions:
+        from comparisons.referee.friction import History
+
+        history = History(response, scene)
     states = _judged(response, scene, numbers, allowed, history)
     found = {k: item.exact for k, item in zip(numbers, states, strict=True) if item.exact is not None}
-    energies = {k: exact.strain_energy for k, exact in found.items()}
-    unsound = [*_unsound(response, scene, allowed)] or [*unpaid(response, scene, energies, allowed)]
+    unsound = [*_unsound(response, scene, allowed, contradictions)] or [
+        *unpaid(response, scene, found, allowed)
+    ]
     path = [] if unsound else [*_path(response, scene, found, allowed)]
     if history is not None:
         from comparisons.referee.friction import rubs_wrongly_on_the_way
@@ -76,10 +82,8 @@ def certify(
     verdict, reason = _worst(states, unsound, path)
     if verdict is Verdict.CERTIFIED:
         verdict, reason = _sound(response, scene, numbers, states)
-    if verdict is Verdict.CERTIFIED:
-        for gone in departures(response, scene, found):
-            verdict, reason = Verdict.UNSTABLE, gone
-            break
+    gone = next(departures(response, found), "") if verdict is Verdict.CERTIFIED else ""
+    verdict, reason = (Verdict.UNSTABLE, gone) if gone else (verdict, reason)
     if history is not None and history.taken:
         reason = f"{reason}; {history.taken}"
     return Certificate(
@@ -91,26 +95,19 @@ def certify(
 def _judged(
     response: Response, scene: Scene, numbers: Sequence[int], allowed: float, history: "History | None"
 ) -> list[Judgement]:
-    """Return the judgements; an equilibrium is sought from the one at the load parameter before, where that was judged.
-
-    A moment that changes its sign is small at one load parameter, and a difference relative to it alone is large: a refused state is
-    judged again with the largest sizes of all judged load parameters.
-    """
+    """Return the judgements; an equilibrium is sought from the one at the load parameter before, where that was judged."""
     states: list[Judgement] = []
     for n, k in enumerate(numbers):
         before = states[-1].exact if n and numbers[n - 1] == k - 1 else None
-        near = None if before is None else before.solution
-        states.append(judged(response, scene, k, allowed, history=history, given=near))
+        states.append(judged(response, scene, k, allowed, history, before))
     sizes = [item.distance.scales for item in states if item.distance is not None]
-    if not sizes:
-        return states
-    force, moment, moved = (max(column) for column in zip(*sizes, strict=True))
-    return [
-        judged(response, scene, k, allowed, history=history, given=item.exact, largest=(force, moment, moved))
-        if item.verdict is Verdict.NOT_AN_EQUILIBRIUM and item.exact is not None
-        else item
-        for k, item in zip(numbers, states, strict=True)
-    ]
+    for n, k in enumerate(numbers):
+        item = states[n]
+        if item.verdict is Verdict.NOT_AN_EQUILIBRIUM and item.exact is not None:
+            # a moment that changes its sign is small, and a difference relative to it alone is large
+            force, moment, moved = (max(column) for column in zip(*sizes, strict=True))
+            states[n] = compared(response, k, item.exact, allowed, history, (force, moment, moved))
+    return states
 
 
 _GRAVITY = (
@@ -183,23 +180,13 @@ def _sound(
     return Verdict.CERTIFIED, f"{worst.line()}, admissible, {stable}; judged at {count}{loaded}"
 
 
-def _history(response: Response, scene: Scene) -> "History | None":
-    """Return the states of friction in an answer; None without friction, and for an answer that is not one to the scene."""
-    if not any(spec.friction for spec in scene.contacts):
-        return None
-    if any(next(impossible(response, scene, k), "") for k in range(len(response.load_parameter))):
-        return None
-    from comparisons.referee.friction import History
-
-    return History(response, scene)
-
-
-def _unsound(response: Response, scene: Scene, allowed: float) -> Iterator[str]:
+def _unsound(
+    response: Response, scene: Scene, allowed: float, contradictions: Sequence[str]
+) -> Iterator[str]:
     """Yield what is wrong with an answer at any load parameter, by its own numbers alone."""
     steps = range(len(response.load_parameter))
     if response.completed and len(steps) < len(scene.times):
         yield f"{len(steps)} of {len(scene.times)} load parameters, and the status is {response.status}"
-    contradictions = [sentence for k in steps for sentence in impossible(response, scene, k)]
     yield from contradictions
     if not steps or contradictions:
         return

@@ -1,15 +1,17 @@
 """Differences between an answer and the exact equilibrium near it."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.guess import SHORTEST, AnswerState
-from comparisons.referee.rod import axis_at_rest, face_slope, touching_distance
+from comparisons.referee.guess import SHORTEST
+from comparisons.referee.rod import angle, axis_at_rest, cross, face_of
 from comparisons.referee.state import Equilibrium
+from comparisons.response import Response
 from comparisons.response.round_off import (
     LAST_PLACES,
     LEAST,
@@ -32,6 +34,8 @@ NONE = 1e-9
 """Difference below which only its bound is told."""
 _POINTS = 401
 """Points of an axis between which the feet of an open contact's node are sought."""
+LOCAL = 1.5
+"""Distance from contacts, loads and ends, over the height, within which the section forces of a solid are not compared."""
 _PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 _SHARPEST = 1.4
 """Largest angle between neighbouring chords in the bound of the chords' error [rad]; beyond it the tangent grows without limit."""
@@ -39,75 +43,54 @@ _SHARPEST = 1.4
 
 @dataclass(frozen=True, kw_only=True)
 class Distance:
-    """Largest differences between an answer and the exact equilibrium; infinite for missing or unknown items.
+    """Largest differences between an answer and the exact equilibrium.
 
     Attributes
     ----------
-    force : float
-        Difference of a contact force as a vector, over the largest contact force.
-    arc_position : float
-        Difference of an arc position, over the beam's length.
-    gap : float
-        Difference of a gap, over the beam's length.
-    reaction : float
-        Difference of the force or moment of a support or spring, over the largest force or moment of supports, contacts and loads.
-    sections : float
-        Difference of a section force N, V or M, over the same; zero where the answer states none.
-    tip : float
-        Distance of a beam's free or less restrained end, over the beam's length.
-    shape : float
-        Distance of an axis, over the beam's length.
-    displacement : float
-        The largest distance of a tip or an axis, over the largest exact displacement. Distances that are round-off are zero.
-    constraint : float
-        The largest violation `place`, over the largest exact displacement.
-    place : float
-        Violation of the constraints by the answer itself: distance of its axis from the touching points of the contacts and from the
-        prescribed positions of the supports, over the beam's length, less the error of the chords between the points of the axis.
+    sizes : dict of float
+        By name, infinite for missing or unknown items, zero where there is nothing to compare:
+        `force` of a contact as a vector, over the largest contact force;
+        `arc_position`, `tip`, the distance of a beam's free or less restrained end, `shape`, that of an axis, and `gap`, over the beam's length;
+        `reaction`, of the force or moment of a support or spring, over the largest force or moment of supports, contacts and loads;
+        `sections`, of a section force N, V or M, over the same;
+        `displacement`, the largest distance of a tip or an axis over the largest exact displacement;
+        `place`, the violation of the constraints by the answer itself: distance of its axis from the touching points of the contacts and
+        from the prescribed positions of the supports, over the beam's length, less the error of the chords between the points of the axis;
+        `constraint`, the largest of these over the largest exact displacement.
     where : dict of str
-        The pair, supported end or beam that has the largest difference, by the names above; none where there is nothing to compare.
+        The pair, supported end or beam that has the largest difference, by the same names; none where there is nothing to compare.
     scales : (float, float, float)
         Largest force, moment and displacement of the exact equilibrium.
     """
 
-    force: float
-    arc_position: float
-    gap: float
-    reaction: float
-    sections: float
-    tip: float
-    shape: float
-    displacement: float
-    constraint: float
-    place: float
-    where: Mapping[str, str] = field(default_factory=dict, repr=False)
-    scales: Scales = (0.0, 0.0, 0.0)
+    sizes: Mapping[str, float]
+    where: Mapping[str, str] = field(repr=False)
+    scales: Scales
 
     @property
     def largest(self) -> tuple[str, float]:
         """Name and size of the largest difference that measures the accuracy."""
-        name = max(COMPARED, key=lambda name: _size(getattr(self, name)))
-        return name.replace("_", " "), float(getattr(self, name))
+        return self._largest(COMPARED)
+
+    @property
+    def rough(self) -> tuple[str, float]:
+        """Name and size of the largest difference that is interpolated."""
+        return self._largest(ROUGH)
+
+    def _largest(self, names: Sequence[str]) -> tuple[str, float]:
+        name = max(names, key=lambda name: self.sizes[name])
+        return name, self.sizes[name]
 
     def line(self, of: tuple[str, float] | None = None) -> str:
         """Return a difference, the largest one if none is given, in words, as ``force off by 20 % (pin->strip)``."""
         name, size = of or self.largest
         if size <= NONE:
             return f"off by less than {100.0 * NONE:g} %"
-        return f"{name} off by {100.0 * size:.2g} %{self.at(name.replace(' ', '_'))}"
-
-    def rough(self) -> tuple[str, float]:
-        """Name and size of the largest difference that is interpolated."""
-        name = max(ROUGH, key=lambda name: _size(getattr(self, name)))
-        return name, float(getattr(self, name))
+        return f"{name.replace('_', ' ')} off by {100.0 * size:.2g} %{self.at(name)}"
 
     def at(self, name: str) -> str:
         """Return where a difference is largest in brackets, as `` (pin->strip)``; nothing where there is nothing to compare."""
         return f" ({self.where[name]})" if name in self.where else ""
-
-    def sizes(self) -> dict[str, float]:
-        """Return the differences by name."""
-        return {name: getattr(self, name) for name in (*COMPARED, *ROUGH, "place")}
 
 
 def _size(value: float) -> float:
@@ -115,55 +98,37 @@ def _size(value: float) -> float:
     return math.inf if math.isnan(value) else value
 
 
-def distance(
-    scene: Scene, answer: AnswerState, exact: Equilibrium, largest: Scales = (0.0, 0.0, 0.0)
-) -> Distance:
-    """Return the differences between an answer and the exact equilibrium.
-
-    Forces, moments and displacements are relative to the largest at this load parameter, or to `largest` if that is larger.
-    """
-    axes = {beam.name: exact.shape(beam.name, answer.axes[beam.name][0]).position for beam in scene.beams}
-    ways = [axes[beam.name] - axis_at_rest(beam, answer.axes[beam.name][0]) for beam in scene.beams]
-    scales = (*_forces(scene, exact), max(float(np.hypot(*way.T).max()) for way in ways))
+def distance(response: Response, k: int, exact: Equilibrium, largest: Scales) -> Distance:
+    """Return the differences at load parameter number k; forces, moments and displacements are relative to those here, or to larger ones."""
+    scene = exact.scene
+    lines = {beam.name: response.axis_line(beam.name, k) for beam in scene.beams}
+    axes = {name: exact.shape(name, arc).position for name, (arc, _) in lines.items()}
+    ways = [axes[beam.name] - axis_at_rest(beam, lines[beam.name][0]) for beam in scene.beams]
+    scales = (*_forces(exact), max(float(np.hypot(*way.T).max()) for way in ways))
     size, moment, moved = map(max, scales, largest)
     length = max(beam.length for beam in scene.beams)
     last, last_moment = (
         force_round_off(scene, size),
         min(force_round_off(scene, math.inf) * length, UNRESOLVED * moment),
     )
-    found: dict[str, dict[str, float]] = {name: {} for name in (*COMPARED, *ROUGH)}
-    largest_contact = largest_force(scene, exact)
-    for spec in scene.contacts:
-        pair, own = spec.pair, scene.beam(spec.beam).length
-        contact = exact.contacts.get(pair)
-        if contact is not None:
-            off = float(np.hypot(*(contact.force - answer.forces[pair])))
-            found["force"][pair] = _beyond(off, largest_contact, force_round_off(scene, largest_contact))
-            found["arc_position"][pair] = abs(contact.arc_position - answer.arcs[pair]) / own
-        if pair in answer.gaps:
-            found["gap"][pair] = gap_off(scene, exact, spec, answer.gaps[pair]) / own
-    found["reaction"] = dict.fromkeys(answer.reactions.keys() - exact.reactions.keys(), math.inf)
-    held = [(end, total, answer.reactions.get(end)) for end, total in exact.reactions.items()]
-    for spring in scene.springs:
-        if spring.node in answer.springs:
-            way = np.array(spring.stiffness) * (exact.ends[spring.node] - np.array(scene.place(spring.node)))
-            total = -np.append(way, spring.rotation * exact.joint_rotation(spring.node))
-            held.append((f"the spring at {spring.node}", total, answer.springs[spring.node]))
-    for end, total, stated in held:
-        x, y, turn = total - np.array(stated or (math.nan,) * 3)
+    found: dict[str, dict[str, float]] = {name: {} for name in (*COMPARED, *ROUGH, "place")}
+    for name, pair, off in _contact_differences(response, k, exact):
+        found[name][pair] = off
+    for end, total, stated in _holds(response, k, exact):
+        x, y, turn = total - np.array(stated)
         found["reaction"][f"force of {end}"] = _beyond(float(np.hypot(x, y)), size, last)
         found["reaction"][f"moment of {end}"] = _beyond(abs(float(turn)), moment, last_moment)
     apart: dict[str, float] = {}
     for beam in scene.beams:
         there = exact.ends[f"{beam.name}.{scene.tip(beam.name)}"]
-        tip = float(np.hypot(*(there - answer.tips.get(beam.name, (math.inf,) * 2))))
-        axis = float(np.hypot(*(axes[beam.name] - answer.axes[beam.name][1]).T).max())
+        tip = float(np.hypot(*(there - response.tips[beam.name][k])))
+        axis = float(np.hypot(*(axes[beam.name] - lines[beam.name][1]).T).max())
         found["tip"][beam.name], found["shape"][beam.name] = tip / beam.length, axis / beam.length
         apart[beam.name] = max(_size(tip), _size(axis))
-        for name, off in _section_differences(scene, answer, exact, beam):
+        for name, off in _section_differences(response, k, exact, beam):
             of = (moment, last_moment) if name == "M" else (size, last)
             found["sections"][f"{name} of {beam.name}"] = _beyond(off, *of)
-    found["place"] = _misplaced(scene, answer)
+    found["place"] = _misplaced(response, k, exact)
     touched = {spec.pair: spec.beam for spec in scene.contacts}
     off_by = {
         name: off * scene.beam(touched.get(name, name.split(".")[0])).length
@@ -179,62 +144,88 @@ def distance(
         }
     where = {name: max(sizes, key=lambda key: _size(sizes[key])) for name, sizes in found.items() if sizes}
     sizes = {name: _size(found[name][where[name]]) if name in where else 0.0 for name in found}
-    return Distance(**sizes, where=where, scales=scales)
+    return Distance(sizes=sizes, where=where, scales=scales)
 
 
-def gap_off(scene: Scene, exact: Equilibrium, spec: ContactSpec, gap: float) -> float:
+def _contact_differences(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple[str, str, float]]:
+    """Yield names, pairs and differences of forces, arc positions and gaps."""
+    largest = largest_force(exact)
+    for spec in exact.scene.contacts:
+        pair, length = spec.pair, exact.scene.beam(spec.beam).length
+        contact, stated = exact.contacts.get(pair), response.contacts[pair]
+        if contact is not None:
+            # without its direction, a force has the exact one
+            off = float(np.hypot(*contact.force)) - float(stated.force[k])
+            if stated.vector is not None:
+                off = float(np.hypot(*(contact.force - stated.vector[k])))
+            yield "force", pair, _beyond(abs(off), largest, force_round_off(exact.scene, largest))
+            yield "arc_position", pair, abs(contact.arc_position - float(stated.arc_position[k])) / length
+        if contact is not None or math.isfinite(stated.gap[k]):
+            yield "gap", pair, gap_off(exact, spec, float(stated.gap[k])) / length
+
+
+def _holds(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple[str, Array, Any]]:
+    """Yield the supports and the springs that the answer states, with the exact force and moment and the stated ones."""
+    for end, total in exact.reactions.items():
+        own = response.supports[end]
+        yield end, total, (*own.force[k], own.moment[k])
+    for spring in exact.scene.springs:
+        node = spring.node
+        if node in response.springs:
+            own = response.springs[node]
+            way = np.array(spring.stiffness) * (exact.ends[node] - np.array(exact.scene.place(node)))
+            total = -np.append(way, spring.rotation * exact.joint_rotation(node))
+            yield f"the spring at {node}", total, (*own.force[k], own.moment[k])
+
+
+def gap_off(exact: Equilibrium, spec: ContactSpec, gap: float) -> float:
     """Difference of a stated gap from the exact one; an open pair may be stated at any foot of its node, or at none."""
     if spec.pair in exact.contacts:
         return _size(abs(gap))
-    arcs = np.linspace(0.0, scene.beam(spec.beam).length, _POINTS)
+    arcs = np.linspace(0.0, exact.scene.beam(spec.beam).length, _POINTS)
     there = exact.shape(spec.beam, arcs)
     away = exact.place(spec.node) - there.position
     ahead = np.einsum("mi,mi->m", away, there.tangent)
     feet = np.flatnonzero((ahead[:-1] >= 0.0) & (ahead[1:] <= 0.0))
-    across = (there.tangent[:, 0] * away[:, 1] - there.tangent[:, 1] * away[:, 0]) / np.hypot(
-        *there.tangent.T
-    )
-    true = (
-        (across if spec.side == "left" else -across)
-        - touching_distance(scene, spec, 0.0)
-        - face_slope(scene, spec) * arcs
-    )
+    face = face_of(exact.scene, spec)
+    across = cross(there.tangent, away) / np.hypot(*there.tangent.T)
+    true = face.left * across - face.reach(arcs)
     return float(np.min(np.abs(gap - true[feet]), initial=math.inf)) if len(feet) else 0.0
 
 
 def _section_differences(
-    scene: Scene, answer: AnswerState, exact: Equilibrium, beam: BeamSpec
+    response: Response, k: int, exact: Equilibrium, beam: BeamSpec
 ) -> Iterator[tuple[str, float]]:
-    """Yield the largest differences of the section forces that the answer states, at its stations or in the middles between them.
-
-    Elements with one direction for all of N and V state them to second order in the middles alone, and others have few stations: the
-    smaller one counts. Stations on either side of a jump, and of a solid those where the field is local, are left out.
-    """
-    if beam.name not in answer.sections:
+    """Yield the largest differences of the stated section forces, at the stations or in the middles between them, away from jumps."""
+    # elements with one direction for all of N and V state them to second order in the middles alone, and others have few stations
+    if response.sections is None:
         return
-    arc, *stated = answer.sections[beam.name]
-    near = answer.local * beam.rectangle_height + SHORTEST * beam.length
+    scene, at, local = exact.scene, response.sections(beam.name, k), LOCAL * response.continuum
+    arc, near = at.arc, local * beam.rectangle_height + SHORTEST * beam.length
     loads = [item.load.at for item in scene.load_histories if item.load.beam == beam.name]
-    jumps = [(at * beam.length,) * 2 for at in loads if at is not None]
+    jumps = [(part * beam.length,) * 2 for part in loads if part is not None]
     jumps += [
-        (exact.contacts[spec.pair].arc_position, answer.arcs[spec.pair])
+        (exact.contacts[spec.pair].arc_position, float(response.contacts[spec.pair].arc_position[k]))
         for spec in scene.contacts
         if spec.beam == beam.name and spec.pair in exact.contacts
     ]
-    jumps += [(0.0, 0.0), (beam.length, beam.length)] if answer.local else []
+    jumps += [(0.0, 0.0), (beam.length, beam.length)] if local else []
     kept = np.diff(arc) > SHORTEST * beam.length
     for jump in jumps:
         kept &= (arc[1:] < min(jump) - near) | (arc[:-1] > max(jump) + near)
-    at, station = np.flatnonzero(kept), exact.shape(beam.name, arc)
+    begins, station = np.flatnonzero(kept), exact.shape(beam.name, arc)
     middle = exact.shape(beam.name, ((arc[1:] + arc[:-1]) / 2.0)[kept])
     for name, values, ends, middles in zip(
         "NVM",
-        stated,
+        (at.N, at.V, at.M),
         (station.N, station.Q, station.moment),
         (middle.N, middle.Q, middle.moment),
         strict=True,
     ):
-        offs = (values - ends)[np.unique([at, at + 1])], ((values[1:] + values[:-1]) / 2.0)[kept] - middles
+        offs = (
+            (values - ends)[np.unique([begins, begins + 1])],
+            ((values[1:] + values[:-1]) / 2.0)[kept] - middles,
+        )
         yield name, min(float(np.max(np.nan_to_num(np.abs(off), nan=np.inf), initial=0.0)) for off in offs)
 
 
@@ -243,18 +234,20 @@ def _beyond(off: float, size: float, last: float) -> float:
     return 0.0 if off <= last else _size(off / size)
 
 
-def largest_force(scene: Scene, exact: Equilibrium) -> float:
+def largest_force(exact: Equilibrium) -> float:
     """Return the largest contact force, at least the force below which nothing acts."""
-    return max([least_force(scene), *(float(np.hypot(*item.force)) for item in exact.contacts.values())])
+    return max(
+        [least_force(exact.scene), *(float(np.hypot(*item.force)) for item in exact.contacts.values())]
+    )
 
 
-def _forces(scene: Scene, exact: Equilibrium) -> tuple[float, float]:
+def _forces(exact: Equilibrium) -> tuple[float, float]:
     """Return the largest force and the largest moment; without a considerable moment the force times the longest beam."""
-    acting = np.array([*exact.reactions.values(), *_loads(scene, exact.load_parameter)]).reshape(-1, 3)
+    acting = np.array([*exact.reactions.values(), *_loads(exact.scene, exact.load_parameter)]).reshape(-1, 3)
     moments = np.abs(acting[:, 2]).tolist()
-    length = max(beam.length for beam in scene.beams)
+    length = max(beam.length for beam in exact.scene.beams)
     forces = [*np.hypot(*acting[:, :2].T).tolist(), *(moment / length for moment in moments)]
-    size = max(largest_force(scene, exact), *forces)
+    size = max(largest_force(exact), *forces)
     considerable = max(moments, default=0.0) > 1e-3 * size * length
     return size, max(size * length * LEAST, *moments) if considerable else size * length
 
@@ -275,41 +268,38 @@ def _loads(scene: Scene, t: float) -> Iterator[tuple[float, float, float]]:
             yield gravity[0] * mass * beam.length / 2.0, gravity[1] * mass * beam.length / 2.0, 0.0
 
 
-def _misplaced(scene: Scene, answer: AnswerState) -> dict[str, float]:
+def _misplaced(response: Response, k: int, exact: Equilibrium) -> dict[str, float]:
     """Violations of contact and support constraints by the answer's axes, over the beams' lengths, by pair and supported end."""
     distances: dict[str, float] = {}
+    scene = exact.scene
+
+    def end(node: str) -> Array:
+        beam, where = node.split(".")
+        line = response.axis_line(beam, k)[1]
+        return np.asarray(line[0 if where == "start" else -1])
+
     for spec in scene.contacts:
-        if spec.pair not in answer.arcs:
+        if spec.pair not in exact.contacts:
             continue
-        beam = scene.beam(spec.beam)
-        arcs, line = answer.axes[spec.beam]
-        place, cut = _on_axis(arcs, line, answer.arcs[spec.pair])
+        arc = float(response.contacts[spec.pair].arc_position[k])
+        place, cut = _on_axis(*response.axis_line(spec.beam, k), arc)
         pin = "." not in spec.node
-        node = scene.pin(spec.node).position(answer.load_parameter) if pin else answer.end(spec.node)
-        apart = float(np.hypot(*(place - node)))
-        distances[spec.pair] = (
-            max(0.0, abs(apart - touching_distance(scene, spec, answer.arcs[spec.pair])) - cut) / beam.length
-        )
+        node = scene.pin(spec.node).position(exact.load_parameter) if pin else end(spec.node)
+        apart = abs(float(np.hypot(*(place - node))) - face_of(scene, spec).reach(arc))
+        distances[spec.pair] = max(0.0, apart - cut) / scene.beam(spec.beam).length
     for support in scene.all_supports:
-        here = np.array(scene.place(support.node))
-        way = (answer.end(support.node) - here).tolist()
+        way = end(support.node) - scene.place(support.node)
+        motion = scene.prescribed_motions[support.node].at(exact.load_parameter)[:2]
         off = [
-            abs(x - motion) / scene.beam(support.beam).length
-            for x, motion in zip(
-                way, scene.prescribed_motions[support.node].at(answer.load_parameter)[:2], strict=True
-            )
-            if motion is not None
+            _size(abs(x - given)) for x, given in zip(way.tolist(), motion, strict=True) if given is not None
         ]
         if off:
-            distances[support.node] = max(map(_size, off))
+            distances[support.node] = max(off) / scene.beam(support.beam).length
     return distances
 
 
 def _on_axis(arcs: Array, line: Array, arc: float) -> tuple[Array, float]:
-    """Point of the answer's axis at an arc position, and a bound of the chord's distance from a smooth axis.
-
-    The bound is the height of the triangle between the chord and its neighbours' directions.
-    """
+    """Point of the answer's axis, and a bound of the chord's distance from a smooth axis: the triangle with its neighbours' directions."""
     k = int(np.clip(np.searchsorted(arcs, arc) - 1, 0, len(arcs) - 2))
     part = (arc - arcs[k]) / (arcs[k + 1] - arcs[k])
     first, last = max(k - 1, 0), min(k + 2, len(arcs) - 1)
@@ -318,11 +308,6 @@ def _on_axis(arcs: Array, line: Array, arc: float) -> tuple[Array, float]:
         line[k] - line[first] if first < k else way,
         line[last] - line[k + 1] if last > k + 1 else way,
     )
-    turn = min(max(_angle(before, way), _angle(way, behind)), _SHARPEST)
+    turn = min(max(angle(before, way), angle(way, behind)), _SHARPEST)
     cut = 0.5 * float(np.hypot(*way)) * math.tan(turn)
     return (1.0 - part) * line[k] + part * line[k + 1], cut
-
-
-def _angle(a: Array, b: Array) -> float:
-    """Angle between two vectors."""
-    return abs(math.atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]))

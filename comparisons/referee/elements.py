@@ -13,13 +13,14 @@ at the Gauss points ``s = s_a + (s_b - s_a) x``, x the fraction of the part betw
 share (s_b - s_a)/2``. The derivatives by s_a and s_b include those of EI, 1/EA, 1/GA and n by s where rods are not uniform.
 """
 
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 
-from comparisons.referee.layout import NONE, Layout
+from comparisons.referee.layout import Layout
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -59,52 +60,34 @@ def up_to(xi: Array) -> Array:
 
 
 class Mesh(NamedTuple):
-    """Elements of all parts, in order.
-
-    part, first (e,): indices of the part and of the vertex at the start; the vertex at the end is the next one.
-    start, share (e,): start and length of the element as fractions of the part.
-    vertices (v,): number of the unknown rotation at each vertex; `NONE` if it is prescribed.
-    prescribed (v,): prescribed rotations.
-    local (e, 6): numbers of the elements' unknowns outside the bubbles; `unknowns` for prescribed ones.
-    unknowns: number of unknowns including the vertices inside the parts, without the bubbles.
-    """
+    """Elements of all parts, in order."""
 
     part: Ints
-    first: Ints
     start: Array
     share: Array
-    vertices: Ints
-    prescribed: Array
+    """Start and length (e,) as fractions of the part."""
     local: Ints
+    """Numbers (e, 6) of `theta_a, theta_b, c_x, c_y, s_a, s_b`."""
     unknowns: int
+    """Number of unknowns including the vertices inside the parts, without the bubbles."""
 
 
 def mesh_of(layout: Layout, grids: list[Array]) -> Mesh:
     """Return the elements between the fractions `grids` of every part, each from 0 to 1."""
     part: list[int] = []
-    first: list[int] = []
-    vertices: list[int] = []
-    turned: list[float] = []
+    local: list[tuple[int, ...]] = []
     count = layout.unknowns
     for number, (item, grid) in enumerate(zip(layout.parts, grids, strict=True)):
-        inner = len(grid) - 2
-        part += [number] * (inner + 1)
-        first += list(range(len(vertices), len(vertices) + inner + 1))
-        ends = [layout.stations[k] for k in (item.first, item.last)]
-        vertices += [ends[0].rotation_unknown, *range(count, count + inner), ends[1].rotation_unknown]
-        turned += [ends[0].prescribed_rotation, *[0.0] * inner, ends[1].prescribed_rotation]
-        count += inner
-    numbers, at = np.array(vertices), np.array(first)
-    own = np.array([(item.force, item.force + 1, *item.arcs) for item in layout.parts])[part]
-    local = np.column_stack([numbers[at], numbers[at + 1], own])
+        inner = range(count, count + len(grid) - 2)
+        begin, end = (int(layout.stations[k].numbers[2]) for k in (item.first, item.last))
+        part += [number] * (len(grid) - 1)
+        local += [(*ends, item.force, item.force + 1, *item.arcs) for ends in pairwise([begin, *inner, end])]
+        count += len(inner)
     return Mesh(
         part=np.array(part),
-        first=at,
         start=np.concatenate([grid[:-1] for grid in grids]),
         share=np.concatenate([np.diff(grid) for grid in grids]),
-        vertices=numbers,
-        prescribed=np.array(turned),
-        local=np.where(local == NONE, count, local),
+        local=np.array(local),
         unknowns=count,
     )
 
@@ -114,10 +97,9 @@ def mesh_for(layout: Layout, mesh: Mesh) -> Mesh:
     return mesh_of(layout, [np.append(mesh.start[mesh.part == k], 1.0) for k in range(len(layout.parts))])
 
 
-def rotations(mesh: Mesh, z: Array, bubbles: Array) -> Array:
+def rotations(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> Array:
     """Coefficients (e, p + 1) of the rotation in the shape functions."""
-    there = np.where(mesh.vertices == NONE, mesh.prescribed, z[mesh.vertices])
-    return np.column_stack([there[mesh.first], there[mesh.first + 1], bubbles])
+    return np.column_stack([layout.full(z)[mesh.local[:, :2]], bubbles])
 
 
 class Places(NamedTuple):
@@ -198,26 +180,17 @@ def fields(theta: Array, there: Places) -> tuple[Array, Array, Array]:
     return N, Q, np.stack([x, s + there.stretch * N * s + there.shear * Q * c], axis=-1)
 
 
-class Elements(NamedTuple):
-    """Gradient (e, p + 5) and Hessian of the elements' energy in `theta_a, theta_b, c_x, c_y, s_a, s_b` and the bubbles; strain energy (e,)."""
-
-    gradient: Array
-    hessian: Array
-    energy: Array
-
-
-def elements(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> Elements:
-    """Evaluate the elements.
-
-    The energy at a Gauss point is a function of theta, theta_xi and ``y = (c_x, c_y, half, s)``, which are linear in the unknowns.
-    """
+def elements(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> tuple[Array, Array, Array]:
+    """Gradient (e, p + 5) and Hessian of the energy in `theta_a, theta_b, c_x, c_y, s_a, s_b` and the bubbles; strain energy (e,)."""
     ends = layout.extents(z)[mesh.part]
     extent = (ends[:, 1] - ends[:, 0])[:, None]
     x = mesh.start[:, None] + mesh.share[:, None] * (1.0 + GAUSS) / 2.0
     half, grows = mesh.share[:, None] * extent / 2.0, mesh.share[:, None] / 2.0
     there = places(layout, mesh.part, ends[:, :1] + extent * x, z[mesh.local[:, 2:4]])
-    coefficients = rotations(mesh, z, bubbles)
-    at = _at_points(there, half, coefficients @ VALUES.T, coefficients @ SLOPES.T)
+    coefficients = rotations(layout, mesh, z, bubbles)
+    by_theta, by_theta2, by_bent, by_y, by_yy, by_theta_y, by_bent_y, stored = _at_points(
+        there, half, coefficients @ VALUES.T, coefficients @ SLOPES.T
+    )
     # from (c_x, c_y, s_a, s_b) to y
     to = np.zeros((*x.shape, 4, 4))
     to[..., 0, 0] = to[..., 1, 1] = 1.0
@@ -226,32 +199,19 @@ def elements(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> Elements:
     size = coefficients.shape[1] + 4
     turn = np.r_[0, 1, OUTER:size]
     gradient, hessian = np.zeros((len(x), size)), np.zeros((len(x), size, size))
-    gradient[:, turn] = (at.moment * WEIGHTS) @ SLOPES + (at.theta * WEIGHTS) @ VALUES
-    gradient[:, 2:OUTER] = (at.y[..., None, :] @ to_y).sum(axis=1)[:, 0]
-    bending, straining = (there.EI / half * WEIGHTS)[:, None, :], (at.theta2 * WEIGHTS)[:, None, :]
+    gradient[:, turn] = (by_bent * WEIGHTS) @ SLOPES + (by_theta * WEIGHTS) @ VALUES
+    gradient[:, 2:OUTER] = (by_y[..., None, :] @ to_y).sum(axis=1)[:, 0]
+    bending, straining = (there.EI / half * WEIGHTS)[:, None, :], (by_theta2 * WEIGHTS)[:, None, :]
     hessian[:, turn[:, None], turn] = (SLOPES.T * bending) @ SLOPES + (VALUES.T * straining) @ VALUES
-    mixed = VALUES.T @ (at.theta_y[..., None, :] @ to_y)[..., 0, :]
-    mixed += SLOPES.T @ (at.bent_y[..., None, :] @ to_y)[..., 0, :]
+    mixed = VALUES.T @ (by_theta_y[..., None, :] @ to_y)[..., 0, :]
+    mixed += SLOPES.T @ (by_bent_y[..., None, :] @ to_y)[..., 0, :]
     hessian[:, turn, 2:OUTER], hessian[:, 2:OUTER, turn] = mixed, mixed.swapaxes(1, 2)
-    hessian[:, 2:OUTER, 2:OUTER] = (to.swapaxes(-1, -2) @ at.yy @ to_y).sum(axis=1)
-    return Elements(gradient, hessian, at.stored @ WEIGHTS)
+    hessian[:, 2:OUTER, 2:OUTER] = (to.swapaxes(-1, -2) @ by_yy @ to_y).sum(axis=1)
+    return gradient, hessian, stored @ WEIGHTS
 
 
-class _AtPoints(NamedTuple):
-    """Derivatives of the energy at the Gauss points by theta, theta_xi and y, and the strain energy."""
-
-    theta: Array
-    theta2: Array
-    moment: Array
-    y: Array
-    yy: Array
-    theta_y: Array
-    bent_y: Array
-    stored: Array
-
-
-def _at_points(there: Places, half: Array, theta: Array, bent: Array) -> _AtPoints:
-    """Evaluate the energy at rotations and their derivatives by xi (e, g)."""
+def _at_points(there: Places, half: Array, theta: Array, bent: Array) -> tuple[Array, ...]:
+    """Energy by theta, twice, by theta_xi, by ``y = (c_x, c_y, half, s)``, twice, by theta and y, by theta_xi and y, and what is stored."""
     a, b, n = there.stretch, there.shear, there.n
     N, Q, tangent = fields(theta, there)
     cos, sin = np.cos(theta), np.sin(theta)
@@ -289,4 +249,4 @@ def _at_points(there: Places, half: Array, theta: Array, bent: Array) -> _AtPoin
         theta_y[..., 3] = -half * ((turned * one.n).sum(axis=-1) + (one.stretch - one.shear) * N * Q)
         bent_y[..., 3] = one.EI * bent / half
     theta2 = half * (N * stretched - Q**2 * (a - b))
-    return _AtPoints(-half * Q * stretched, theta2, moment, y, yy, theta_y, bent_y, energy + half * stored)
+    return -half * Q * stretched, theta2, moment, y, yy, theta_y, bent_y, energy + half * stored

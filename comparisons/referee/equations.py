@@ -23,43 +23,49 @@ from comparisons.referee.grip import rows
 from comparisons.referee.layout import NONE, Layout, Part, Touch, normal
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_DENSE = 300
+"""Number of unknowns up to which matrices are solved as full ones."""
 
 
 class System(NamedTuple):
-    """Gradient (u,) and Hessian (u, u) with condensed bubbles, with the rows of friction, and the recovery of the bubbles.
-
-    If the other unknowns of an element change by x, its bubbles change by ``-(shift + lever x)``. `blocks` are the Hessians of the bubbles.
-    `ends` (e, 2) are the moments at the elements' ends from the gradient, since a derivative of the rotation would lose digits.
-    """
+    """The equations with the rows of friction, the elements' bubbles condensed."""
 
     gradient: Array
     hessian: Array
+    held: Array
+    """Gradient by the prescribed quantities: the forces and moments that hold them."""
     shift: Array
     lever: Array
+    """If the other unknowns of an element change by x, its bubbles change by ``-(shift + lever x)``."""
     blocks: Array
+    """Hessians of the bubbles."""
     ends: Array
+    """Moments (e, 2) at the elements' ends from the gradient, since a derivative of the rotation would lose digits."""
     energy: float
 
 
 def assemble(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> System:
     """Return the condensed equations at the unknowns `z` and the `bubbles` (e, p - 1)."""
-    own, local = elements(layout, mesh, z, bubbles), mesh.local
-    blocks, across = own.hessian[:, OUTER:, OUTER:], own.hessian[:, :OUTER, OUTER:]
-    rhs = np.concatenate([own.gradient[:, OUTER:, None], across.swapaxes(1, 2)], axis=2)
+    own_gradient, own_hessian, stored = elements(layout, mesh, z, bubbles)
+    local, blocks, across = mesh.local, own_hessian[:, OUTER:, OUTER:], own_hessian[:, :OUTER, OUTER:]
+    rhs = np.concatenate([own_gradient[:, OUTER:, None], across.swapaxes(1, 2)], axis=2)
     solved = np.linalg.solve(blocks, rhs)
     shift, lever = solved[:, :, 0], solved[:, :, 1:]
-    gradient = own.gradient[:, :OUTER] - np.einsum("eij,ej->ei", across, shift)
-    hessian = own.hessian[:, :OUTER, :OUTER] - across @ lever
-    # the last row and column collect prescribed quantities, whose number is `NONE`
-    g, k = np.zeros(mesh.unknowns + 1), np.zeros((mesh.unknowns + 1, mesh.unknowns + 1))
-    np.add.at(g, local, gradient)
+    hessian = own_hessian[:, :OUTER, :OUTER] - across @ lever
+    size, free = mesh.unknowns + len(layout.given), slice(mesh.unknowns)
+    g, k = np.zeros(size), np.zeros((size, size))
+    np.add.at(g, local, own_gradient[:, :OUTER])
     np.add.at(k, (local[:, :, None], local[:, None, :]), hessian)
     _add_parts(layout, z, g, k)
-    energy = float(own.energy.sum()) + _add_springs_and_loads(layout, z, g, k)
+    energy = float(stored.sum()) + _add_springs_and_loads(layout, z, g, k)
+    held = g[mesh.unknowns :].copy()
+    np.add.at(g, local, -np.einsum("eij,ej->ei", across, shift))
     for touch in layout.touches:
         if touch.grip is not None:
             e = element_before(mesh, touch)
-            found = rows(layout, touch, z, own.gradient[e, 1])
+            found = rows(layout, touch, z, own_gradient[e, 1])
             by = np.zeros((3, len(g)))
             by[:, found.numbers] = found.derivatives[:3]
             np.add.at(by.T, local[e], np.outer(hessian[e, 1], found.derivatives[:3, 6]))
@@ -69,7 +75,7 @@ def assemble(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> System:
             k[turn] -= by[1]
             if touch.angle != NONE:
                 g[touch.angle], k[touch.angle] = found.direction, by[2]
-    return System(g[:-1], k[:-1, :-1], shift, lever, blocks, own.gradient[:, :2], energy)
+    return System(g[free], k[free, free], held, shift, lever, blocks, own_gradient[:, :2], energy)
 
 
 def element_before(mesh: Mesh, touch: Touch) -> int:
@@ -79,13 +85,14 @@ def element_before(mesh: Mesh, touch: Touch) -> int:
 
 def _add_parts(layout: Layout, z: Array, g: Array, k: Array) -> None:
     """Add ``c.(r_b - r_a - R_b + R_a)`` of the parts."""
-    for part in layout.parts:
+    shifts = layout.shifts(z)
+    for part, (begin, end) in zip(layout.parts, layout.extents(z), strict=True):
         own, axes = slice(part.force, part.force + 2), part.rod.axes
         n = z[own]
-        g[own] += _apart(layout, z, part)
+        g[own] += _apart(layout, part, shifts, part.rod.between(begin, end))
         for number, sign in ((part.first, -1.0), (part.last, 1.0)):
             there = layout.stations[number]
-            for component, unknown in enumerate(there.place.unknown):
+            for component, unknown in enumerate(there.numbers[:2]):
                 g[unknown] += sign * axes[component] @ n
                 k[own, unknown] += sign * axes[component]
                 k[unknown, own] += sign * axes[component]
@@ -103,24 +110,18 @@ def _add_parts(layout: Layout, z: Array, g: Array, k: Array) -> None:
 
 def _add_springs_and_loads(layout: Layout, z: Array, g: Array, k: Array) -> float:
     """Add dead loads, springs to the ground, ``k u^2/2``, and those of hinges; return the energy of the springs."""
-    energy = 0.0
-    for there in layout.stations:
-        if there.touch is None:
-            for unknown, load in zip(there.unknown, (*there.force, there.moment), strict=True):
-                g[unknown] -= load
-        if any(there.springs):
-            moved = (*there.place.displacement(z), there.rotation(z))
-            for unknown, stiffness, way in zip(there.unknown, there.springs, moved, strict=True):
-                g[unknown] += stiffness * way
-                k[unknown, unknown] += stiffness
-                energy += float(stiffness * way**2 / 2.0)
-    for hinge in layout.hinges:
-        ends = [layout.stations[number] for number in (hinge.end, hinge.joint)]
-        turns = np.array([there.rotation_unknown for there in ends])
-        moment = hinge.stiffness * (ends[0].rotation(z) - ends[1].rotation(z))
-        energy += moment * (ends[0].rotation(z) - ends[1].rotation(z)) / 2.0
-        np.add.at(g, turns, moment * np.array([1.0, -1.0]))
-        np.add.at(k, (turns[:, None], turns), hinge.stiffness * np.array([[1.0, -1.0], [-1.0, 1.0]]))
+    numbers, loads, springs = layout.tables
+    moved = layout.motions(z)
+    np.add.at(g, numbers, -loads)
+    np.add.at(g, numbers, springs * moved)
+    np.add.at(k, (numbers, numbers), springs)
+    energy = float((springs * moved**2).sum()) / 2.0
+    for end, joint, stiffness in layout.hinges:
+        turns = numbers[[end, joint], 2]
+        apart = moved[end, 2] - moved[joint, 2]
+        energy += float(stiffness * apart**2) / 2.0
+        np.add.at(g, turns, stiffness * apart * np.array([1.0, -1.0]))
+        np.add.at(k, (turns[:, None], turns), stiffness * np.array([[1.0, -1.0], [-1.0, 1.0]]))
     return energy
 
 
@@ -139,15 +140,104 @@ def _add_offset(part: Part, touch: Touch, sign: float, z: Array, g: Array, k: Ar
     k[touch.arc, touch.angle] += mixed
 
 
-def _apart(layout: Layout, z: Array, part: Part) -> Array:
+def _apart(layout: Layout, part: Part, shifts: Array, between: Array) -> Array:
     """Return ``r_b - r_a - R_b + R_a`` in the beam's frame; it is exactly zero for an undeformed beam."""
     a, b = layout.stations[part.first], layout.stations[part.last]
-    moved = b.place.displacement(z) - a.place.displacement(z)
-    for touch, sign in ((a.touch, -1.0), (b.touch, 1.0)):
-        if touch is not None and touch.angle != NONE:
-            moved = moved - sign * touch.away(float(z[touch.arc])) * normal(float(z[touch.angle]))
-    apart = np.asarray(part.rod.axes.T @ moved)
+    apart = np.asarray(part.rod.axes.T @ (shifts[part.last] - shifts[part.first]))
     if a.touch is None and b.touch is None:
         return apart
-    rest = part.rod.axes.T @ (np.array(b.place.reference) - np.array(a.place.reference))
-    return np.asarray(apart + rest - part.rod.between(*part.ends(z)))
+    rest = part.rod.axes.T @ (b.reference - a.reference)
+    return np.asarray(apart + rest - between)
+
+
+def solved(system: System, held: Ints | None = None) -> Array | None:
+    """Newton correction of the unknowns outside the elements, with those `held` fixed; None if singular."""
+    hessian, gradient = system.hessian, system.gradient
+    if held is not None and len(held):
+        hessian, gradient = hessian.copy(), gradient.copy()
+        hessian[held], hessian[:, held], gradient[held] = 0.0, 0.0, 0.0
+        hessian[held, held] = 1.0
+    row, column, entry = _entries(hessian)
+    if not np.all(np.isfinite(entry)) or len(np.unique(row)) < len(hessian):
+        return None
+    # EI, EA and forces differ by orders of magnitude
+    scale = _scales(row, column, entry)
+    right = scale * gradient
+    try:
+        if len(hessian) <= _DENSE:
+            return np.asarray(-scale * np.linalg.solve(scale[:, None] * hessian * scale, right))
+        from scipy.sparse import coo_array
+        from scipy.sparse.linalg import splu
+
+        factors = splu(coo_array((scale[row] * entry * scale[column], (row, column))).tocsc())
+        return np.asarray(-scale * factors.solve(right))
+    except (np.linalg.LinAlgError, RuntimeError):
+        return None
+
+
+def _entries(matrix: Array) -> tuple[Ints, Ints, Array]:
+    """Return rows, columns and values of the entries that are not zero."""
+    # faster than `nonzero` of the matrix itself, which has few such entries
+    number = np.flatnonzero(matrix != 0.0)
+    return *np.divmod(number, len(matrix)), matrix.ravel()[number]
+
+
+def _scales(row: Ints, column: Ints, entry: Array) -> Array:
+    """Return factors of rows and columns with which the largest entry of every row is about one."""
+    scale, size = np.ones(int(row[-1]) + 1), np.abs(entry)
+    for _ in range(3):
+        largest = np.zeros(len(scale))
+        np.maximum.at(largest, row, scale[row] * size * scale[column])
+        scale = scale / np.sqrt(largest)
+    return scale
+
+
+def index_of(layout: Layout, z: Array, system: System) -> int:
+    """Return the index of an equilibrium, the number of negative eigenvalues on the admissible variations; -1 with friction.
+
+    The energy is a maximum in the two force components of every part, whose block of the Hessian is negative definite. By
+    Haynsworth's formula ``index = negatives(K) - 2 parts``, where the negatives of the elements' condensed blocks count too. The
+    normal of a contact with offset is normal to the mean of the two tangents, so that the angle phi is not an independent variation.
+    """
+    if layout.grips:
+        return -1
+    held, reduced = directions(layout, z), system.hessian
+    if held is not None:
+        reduced = held.T @ reduced @ held
+    scale = _scales(*_entries(reduced))
+    inside = np.linalg.eigvalsh(system.blocks)
+    negatives = _negatives(scale[:, None] * reduced * scale) + int((inside < 0.0).sum())
+    return negatives - 2 * len(layout.parts)
+
+
+def _negatives(matrix: Array) -> int:
+    """Number of negative eigenvalues; of large matrices by Sylvester's law of inertia from ``L D L^T``."""
+    if len(matrix) <= _DENSE:
+        return int((np.linalg.eigvalsh(matrix) < 0.0).sum())
+    from scipy.linalg import ldl
+
+    pivots = ldl(matrix)[1]
+    # a block of two pivots has one eigenvalue of either sign
+    blocks = np.diag(pivots, 1) != 0.0
+    single = ~(np.append(blocks, False) | np.append(False, blocks))
+    return int((np.diag(pivots)[single] < 0.0).sum() + blocks.sum())
+
+
+def orientation_of(system: System) -> int:
+    """Return the sign of the determinant, with friction too; where it changes, a path passes a critical point."""
+    signs = [np.linalg.slogdet(system.hessian)[0], *np.linalg.slogdet(system.blocks)[0]]
+    return int(np.prod(np.sign(signs)))
+
+
+def directions(layout: Layout, z: Array) -> Array | None:
+    """Admissible variations as columns, None if all are; the angles phi follow with the directions of the faces."""
+    turned = [touch for touch in layout.touches if touch.angle != NONE]
+    if not turned:
+        return None
+    free = np.eye(len(z))
+    for touch in turned:
+        numbers, *_, derivatives = rows(layout, touch, z, 0.0)
+        change = np.zeros(len(free) + 1)
+        np.add.at(change, numbers, derivatives[2])
+        free[touch.angle] = -change[:-1] / change[touch.angle]
+    return np.delete(free, [touch.angle for touch in turned], axis=1)

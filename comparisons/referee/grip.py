@@ -12,7 +12,7 @@ section's rotation theta from its undeformed direction, the natural curvature ka
     stick:  v = 0,  or (A + A*)/2 (s - s*) + lever (psi - psi*) + roll (phi - phi*) = c
 
 The power of the node is the rate of the strain energy and ``F_t v``. Starred values are those where the stick began, and c is the error of the
-trapezium of v, which `friction.rolling` finds along the path; where the height tapers the lever in stick is the mean of the two. Without a
+trapezium of v, which `friction.slip` finds along the path; where the height tapers the lever in stick is the mean of the two. Without a
 taper t is along the mean tangent. The couple and the row of phi take the place of the two conditions of stationarity in arc position and
 phi, which hold without friction only.
 """
@@ -65,21 +65,14 @@ class Hold:
 
 @dataclass(frozen=True, kw_only=True)
 class Grip:
-    """How a contact with friction is held.
-
-    Attributes
-    ----------
-    friction : float
-        Coefficient of friction.
-    slip : int
-        The sign sigma of the slip rate; 0 in stick.
-    hold : Hold or None
-        Where the stick began; None in slip.
-    """
+    """How a contact with friction is held."""
 
     friction: float
+    """Coefficient of friction."""
     slip: int
+    """The sign sigma of the slip rate; 0 in stick."""
     hold: Hold | None = None
+    """Where the stick began; None in slip."""
 
 
 LOOSE = Grip(friction=0.0, slip=1)
@@ -87,10 +80,7 @@ LOOSE = Grip(friction=0.0, slip=1)
 
 
 class Rows(NamedTuple):
-    """Values of the row of slip or stick, the couple, the row of the direction, and A, with the derivatives (4, 8) by `numbers`.
-
-    These are theta, the two components of c before the contact and those behind it, phi, m before the contact, and s.
-    """
+    """Values of the rows, with the derivatives (4, 8) by `numbers`: theta, c before the contact and behind it, phi, m before, and s."""
 
     numbers: list[int]
     row: float
@@ -101,12 +91,12 @@ class Rows(NamedTuple):
 
 
 def rows(layout: "Layout", touch: "Touch", z: Array, moment: float) -> Rows:
-    """Return the rows of a contact at the unknowns z and the moment before it; the number of the moment is `NONE`."""
+    """Return the rows of a contact at the unknowns z and the moment before it, which has no number."""
     parts = before, behind = layout.beside(touch)
-    turn = layout.stations[before.last].rotation_unknown
+    turn = int(layout.stations[before.last].numbers[2])
     forces = [before.force, before.force + 1, behind.force, behind.force + 1]
     numbers = [turn, *forces, touch.angle, -1, touch.arc]
-    given = np.append(z, 0.0)[numbers]
+    given = layout.full(z)[numbers]
     given[6] = moment
     found = np.array(_rows(layout, touch, parts, given[:, None] + 1j * _STEP * np.eye(len(given))))
     row, couple, direction, stretch = np.real(found[:, 0]).tolist()

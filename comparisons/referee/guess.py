@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.grip import Grip
-from comparisons.referee.layout import NONE, Layout, Part
+from comparisons.referee.layout import NONE, Layout
 from comparisons.response import ContactHistory, Response
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 
@@ -40,31 +40,16 @@ class AnswerState:
         Arc lengths (m,) and deformed positions (m, 2) of every beam's axis.
     reactions : dict of sequence of float
         Force and moment of every support, by the supported end.
-    tips : dict of sequence of float
-        Position of the free or less restrained end of every beam.
     grips : dict of Grip
         How friction holds the closed pairs; pairs without a grip have no friction.
-    gaps : dict of float
-        Gap of the pairs for which one is stated.
-    springs : dict of sequence of float
-        Force and moment of the springs that the answer states, by the end that they hold.
-    sections : dict of (ndarray, ndarray, ndarray, ndarray)
-        Arc lengths and section forces N, V, M of every beam for which they are stated.
-    local : float
-        Distance from contacts, loads and ends, over the height, within which the section forces of a solid are local.
     """
 
     load_parameter: float
     axes: dict[str, tuple[Array, Array]]
     arcs: dict[str, float] = field(default_factory=dict)
     forces: Mapping[str, Sequence[float] | Array] = field(default_factory=dict)
-    reactions: Mapping[str, Sequence[float]] = field(default_factory=dict)
-    tips: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    reactions: Mapping[str, Sequence[float] | Array] = field(default_factory=dict)
     grips: dict[str, Grip] = field(default_factory=dict)
-    gaps: dict[str, float] = field(default_factory=dict)
-    springs: Mapping[str, Sequence[float]] = field(default_factory=dict)
-    sections: dict[str, tuple[Array, ...]] = field(default_factory=dict)
-    local: float = 0.0
 
     def end(self, node: str) -> Array:
         """Return the position of a beam's end such as ``upper.end``."""
@@ -73,10 +58,7 @@ class AnswerState:
 
 
 def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
-    """Return the state of `response` at its load parameter number k.
-
-    A contact whose force is round-off is open at an end of its beam, where no rod lies beside it; its force counts in the balance.
-    """
+    """Return the state at load parameter number k; a contact whose force is round-off is open at an end of its beam, but its force counts."""
     pushing = {pair: item for pair, item in response.contacts.items() if item.force[k] != 0.0}
     specs = [spec for spec in scene.contacts if spec.pair in pushing]
     idle = {spec.pair for spec in specs if idle_at_an_end(pushing[spec.pair], scene, spec, k)}
@@ -91,7 +73,6 @@ def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
         reactions={
             node: (*item.force[k].tolist(), float(item.moment[k])) for node, item in response.supports.items()
         },
-        tips={beam: tip[k].tolist() for beam, tip in response.tips.items()},
     )
 
 
@@ -107,7 +88,7 @@ def idle_at_an_end(contact: ContactHistory, scene: Scene, spec: ContactSpec, k: 
     return abs(float(contact.force[k])) <= pull_allowed(beam) and abs(inside) <= SHORTEST
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Rotations:
     """Rotation of a beam's sections along the arc length, in units of `Layout`."""
 
@@ -127,48 +108,56 @@ class Rotations:
 def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotations]]:
     """Return the unknowns of the layout and the beams' rotations from an answer."""
     scene, z = layout.scene, np.zeros(layout.unknowns)
-    turns = [_tangents(layout, answer, number) for number in range(len(scene.beams))]
-    turns = _aligned(layout, turns)
+    turns = _aligned(layout, [_rotations(layout, answer, number) for number in range(len(scene.beams))])
     for touch in layout.touches:
         z[touch.arc] = answer.arcs[touch.spec.pair] / layout.length
     _set_displacements(layout, answer, turns, z)
     _balance(layout, answer, turns, z)
-    turns = _aligned(
-        layout, [_less_shear(layout, answer, turn, number, z) for number, turn in enumerate(turns)]
-    )
-    for part in layout.parts:
-        for number in (part.first, part.last):
-            station = layout.stations[number]
-            if station.rotation_unknown != NONE:
-                z[station.rotation_unknown] = turns[part.beam].angle(part.ends(z)[number == part.last])
+    turns = _aligned(layout, [_rotations(layout, answer, number, z) for number in range(len(scene.beams))])
+    for part, arcs in zip(layout.parts, layout.extents(z), strict=True):
+        for number, arc in zip((part.first, part.last), arcs, strict=True):
+            unknown = layout.stations[number].numbers[2]
+            if unknown >= 0:
+                z[unknown] = turns[part.beam].angle(arc)
     return z, turns
 
 
-def _chords(layout: Layout, answer: AnswerState, number: int) -> tuple[Array, NDArray[np.complex128]]:
-    """Arc positions of the middles of the axis' chords, and the chords over their arc lengths as complex numbers.
+def _rotations(layout: Layout, answer: AnswerState, number: int, z: Array | None = None) -> Rotations:
+    """Angles of the axis' chords from the undeformed direction, less the shear of the forces in z.
 
-    The real axis is the undeformed tangent at the middle.
+    ``r' = d1 + (N/EA) d1 + (Q/GA) d2`` gives ``r' - n/GA = (1 + N/EA - N/GA) d1``. In strong shear the factor of d1 is negative; its
+    sign is the one that agrees with N.
     """
     beam, rod = layout.scene.beams[number], layout.rod(number)
     arc, line = answer.axes[beam.name]
     pieces, extents = np.diff(line, axis=0) @ (1.0, 1.0j) / complex(*beam.direction), np.diff(arc)
     long = (np.abs(pieces) > 0.0) & (extents > 0.0)
-    middle, way = (arc[:-1] + arc[1:])[long] / (2.0 * layout.length), pieces[long] / extents[long]
-    return middle, way * np.exp(-1.0j * rod.angle(middle)) if rod.turn else way
-
-
-def _tangents(layout: Layout, answer: AnswerState, number: int) -> Rotations:
-    """Angles of the axis' chords from the undeformed direction, without jumps by 2 pi."""
-    middle, way = _chords(layout, answer, number)
-    if not len(middle):
-        return Rotations(arc=np.array([0.0]), theta=np.array([0.0]))
-    return Rotations(arc=middle, theta=np.unwrap(np.angle(way)))
+    if not long.any():
+        return Rotations(np.zeros(1), np.zeros(1))
+    s, way = (arc[:-1] + arc[1:])[long] / (2.0 * layout.length), pieces[long] / extents[long]
+    way = way * np.exp(-1.0j * rod.angle(s)) if rod.turn else way
+    theta = np.angle(way)
+    for n, part in enumerate(layout.parts):
+        if part.beam == number and z is not None and np.any(rod.greatest.shear):
+            _, stretch, shear = rod.flexibility(s)
+            first, last = layout.extents(z)[n]
+            x, y = rod.force(part.piece, part.constant(z), s)
+            force = (x + 1.0j * y) * np.exp(-1.0j * rod.angle(s))
+            along = way - shear * force
+            size = np.abs(along)
+            d1 = along / np.where(size > 0.0, size, 1.0)
+            factor = (stretch - shear) * (d1 * force.conjugate()).real
+            d1 = np.where(np.abs(1.0 + factor - size) <= np.abs(1.0 - factor + size), d1, -d1)
+            theta = np.where((s >= first) & (s <= last) & (size > 0.0), np.angle(d1), theta)
+    return Rotations(s, np.unwrap(theta))
 
 
 def _aligned(layout: Layout, turns: list[Rotations]) -> list[Rotations]:
     """Add multiples of 2 pi, so that beams agree with prescribed rotations and, at joints, with each other."""
     known: dict[int, float] = {
-        k: item.prescribed_rotation for k, item in enumerate(layout.stations) if item.rotation_unknown == NONE
+        k: float(layout.given[item.numbers[2]])
+        for k, item in enumerate(layout.stations)
+        if item.numbers[2] < 0
     }
     own = [[part for part in layout.parts if part.beam == number] for number in range(len(turns))]
     ends = [((parts[0].first, 0.0), (parts[-1].last, parts[-1].rod.length)) for parts in own]
@@ -178,7 +167,7 @@ def _aligned(layout: Layout, turns: list[Rotations]) -> list[Rotations]:
         left.remove(number)
         arc, theta = turns[number].arc, turns[number].theta
         shifts = (known[k] - float(turns[number].angle(s)) for k, s in ends[number] if k in known)
-        turn = Rotations(arc=arc, theta=theta + 2.0 * math.pi * round(next(shifts, 0.0) / (2.0 * math.pi)))
+        turn = Rotations(arc, theta + 2.0 * math.pi * round(next(shifts, 0.0) / (2.0 * math.pi)))
         aligned[number] = turn
         for k, s in ends[number]:
             known.setdefault(k, float(turn.angle(s)))
@@ -190,11 +179,11 @@ def _set_displacements(layout: Layout, answer: AnswerState, turns: list[Rotation
     beams = layout.scene.beams
     origin = np.array(beams[0].start)
     for number, station in enumerate(layout.stations):
-        touch, unknown = station.touch, np.array(station.place.unknown)
+        touch, unknown = station.touch, station.numbers[:2]
         if touch is None:
             seen = (_stated_place(layout, answer, number) - origin) / layout.length
-            moved = seen - np.array(station.place.reference)
-            z[unknown[unknown != NONE]] = moved[unknown != NONE]
+            moved = seen - station.reference
+            z[unknown[unknown >= 0]] = moved[unknown >= 0]
         elif touch.angle != NONE:
             beam, arc = [item.name for item in beams].index(touch.spec.beam), float(z[touch.arc])
             x, y = beams[beam].direction
@@ -221,15 +210,12 @@ def _balance(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Arr
         for number, sign in ((part.first, -1.0), (part.last, 1.0)):
             balance[joined.get(number, number), :, n] += sign * part.rod.axes
     stated = [
-        [
-            k not in joined and (k in known or item.touch is not None or free != NONE)
-            for free in item.place.unknown
-        ]
+        [k not in joined and (k in known or item.touch is not None or free >= 0) for free in item.numbers[:2]]
         for k, item in enumerate(layout.stations)
     ]
     moments, values = np.zeros((len(layout.parts), len(layout.parts), 2)), np.zeros(len(layout.parts))
-    for n, part in enumerate(layout.parts):
-        moments[n, n], values[n] = _moments(layout, part, answer, turns, z)
+    for n in range(len(layout.parts)):
+        moments[n, n], values[n] = _moments(layout, n, answer, turns, z)
     rows = np.concatenate([balance[np.array(stated)], _CLOSED_LOOP * moments]).reshape(
         -1, 2 * len(layout.parts)
     )
@@ -238,14 +224,9 @@ def _balance(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Arr
 
 
 def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[int]]:
-    """External forces (stations, 2) on the stations, and the stations whose reactions the answer has.
-
-    The forces on ends behind a hinge count at the joint.
-    """
-    acting = np.array([item.force for item in layout.stations])
-    for k, item in enumerate(layout.stations):
-        if any(item.springs):
-            acting[k] -= np.array(item.springs[:2]) * item.place.displacement(z)
+    """External forces (stations, 2), of ends behind a hinge at the joint, and the stations whose reactions the answer has."""
+    _, loads, springs = layout.tables
+    acting = (loads - springs * layout.motions(z))[:, :2]
     for hinge in layout.hinges:
         acting[hinge.joint] += acting[hinge.end]
     where = {end: k for k, item in enumerate(layout.stations) for end in item.joint}
@@ -263,10 +244,10 @@ def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[i
 
 
 def _moments(
-    layout: Layout, part: Part, answer: AnswerState, turns: list[Rotations], z: Array
+    layout: Layout, n: int, answer: AnswerState, turns: list[Rotations], z: Array
 ) -> tuple[Array, float]:
     """Coefficients and right side of ``(r_b - r_a) x c = m_a - m_b + int r' x W ds`` in the beam's frame."""
-    a, b = part.ends(z)
+    part, (a, b) = layout.parts[n], layout.extents(z)[n]
     chord = part.rod.axes.T @ (layout.position(z, part.last) - layout.position(z, part.first))
     turn, step = turns[part.beam], (b - a) / 8.0
     m_a, m_b = (
@@ -282,30 +263,3 @@ def _moments(
     x, y = part.rod.axes.T @ way
     p, q = part.rod.force(part.piece, (0.0, 0.0), (s[:-1] + s[1:]) / 2.0)
     return lever, m_a - m_b + float(y @ p - x @ q)
-
-
-def _less_shear(layout: Layout, answer: AnswerState, turn: Rotations, number: int, z: Array) -> Rotations:
-    """Rotations of the sections from the directions of the axis.
-
-    ``r' = d1 + (N/EA) d1 + (Q/GA) d2`` gives ``r' - n/GA = (1 + N/EA - N/GA) d1``. In strong shear the factor of d1 is negative; its
-    sign is the one that agrees with N.
-    """
-    _, way = _chords(layout, answer, number)
-    theta = turn.theta
-    if not len(way):
-        return turn
-    for part in layout.parts:
-        if part.beam != number or not np.any(part.rod.greatest.shear):
-            continue
-        _, stretch, shear = part.rod.flexibility(turn.arc)
-        first, last = part.ends(z)
-        inside = (turn.arc >= first) & (turn.arc <= last)
-        x, y = part.rod.force(part.piece, part.constant(z), turn.arc)
-        n = (x + 1.0j * y) * np.exp(-1.0j * part.rod.angle(turn.arc))
-        along = way - shear * n
-        size = np.abs(along)
-        d1 = along / np.where(size > 0.0, size, 1.0)
-        factor = (stretch - shear) * (d1 * n.conjugate()).real
-        d1 = np.where(np.abs(1.0 + factor - size) <= np.abs(1.0 - factor + size), d1, -d1)
-        theta = np.where(inside & (size > 0.0), np.angle(d1), theta)
-    return Rotations(arc=turn.arc, theta=np.unwrap(theta))

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from comparisons.referee.certificate import Judgement, Verdict
 from comparisons.referee.distance import Distance, Scales, distance
 from comparisons.referee.grip import UnknownFrictionError
-from comparisons.referee.guess import AnswerState, answer_state, idle_at_an_end, pull_allowed
-from comparisons.referee.newton import SearchStatus, Solution
-from comparisons.referee.path import closed_pairs, reach
-from comparisons.referee.rod import face_slope, touching_distance
-from comparisons.referee.state import Equilibrium, described, equilibrium
+from comparisons.referee.guess import answer_state, idle_at_an_end, pull_allowed
+from comparisons.referee.newton import SearchStatus
+from comparisons.referee.path import reach
+from comparisons.referee.rod import angle, cross, face_of
+from comparisons.referee.state import Equilibrium, equilibrium
 from comparisons.response import ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
 
@@ -30,8 +30,6 @@ ROUGH = 5e-2
 """Least allowance of a difference that is interpolated."""
 CLOSE = 1e-3
 """Largest difference of an answer from an equilibrium that was not sought from the answer itself, so that it is the nearest one."""
-LOCAL = 1.5
-"""Distance from contacts, loads and ends, over the height, within which the section forces of a solid are not compared."""
 LAST_PLACES = 1e-9
 """Largest relative difference between the size of a contact force and the norm of its components."""
 INSIDE = 1e-9
@@ -47,23 +45,17 @@ def judged(
     scene: Scene,
     k: int,
     allowed: float,
-    *,
-    history: "History | None" = None,
-    given: Equilibrium | Solution | None = None,
-    largest: Scales = (0.0, 0.0, 0.0),
+    history: "History | None",
+    before: Equilibrium | None,
 ) -> Judgement:
-    """Judge one load parameter.
-
-    The equilibrium near the answer may be `given`, or the solution at the load parameter before, from which it is sought first.
-    Differences are relative to the largest force, moment and displacement, here or those of other load parameters in `largest`.
-    """
+    """Judge one load parameter; the equilibrium near it is sought first from the one `before`."""
     t = float(response.load_parameter[k])
     contradiction = next(impossible(response, scene, k), "") or next(_not_finite(response, scene, k), "")
     if contradiction:
         return Judgement(load_parameter=t, verdict=Verdict.NOT_AN_EQUILIBRIUM, reason=contradiction)
     answer = answer_state(response, scene, k)
     if history is not None:
-        from comparisons.referee.friction import rubs_wrongly, unlawful, wanders
+        from comparisons.referee.friction import unlawful, wanders
 
         misstated = next(unlawful(response, scene, k, allowed), "") or next(wanders(history, k, allowed), "")
         if misstated:
@@ -73,38 +65,57 @@ def judged(
         except UnknownFrictionError as error:
             verdict = Verdict.INADMISSIBLE if error.wrong else Verdict.NOT_JUDGED
             return Judgement(load_parameter=t, verdict=verdict, reason=str(error))
-    exact, differences = _nearest(response, scene, answer, k, given, min(allowed, CLOSE), largest)
-    if differences is None:
+    if before is not None and not answer.grips and before.contacts.keys() == answer.arcs.keys():
+        # it is the nearest one if it is close, though it was not sought from the answer
+        found = reach(before.solution, t, {}, halvings=0)
+        item = compared(response, k, Equilibrium(found), allowed, history) if found.found else None
+        if (
+            item
+            and item.distance
+            and max(item.distance.largest[1], item.distance.sizes["place"]) <= min(allowed, CLOSE)
+        ):
+            return item
+    exact = equilibrium(scene, answer)
+    if not exact.solution.found:
         not_judged = exact.status in (SearchStatus.NOT_JUDGED, SearchStatus.NOT_RESOLVED)
         verdict = Verdict.NOT_JUDGED if not_judged else Verdict.NOT_AN_EQUILIBRIUM
         return Judgement(load_parameter=t, verdict=verdict, reason=exact.message)
-    index = -1 if response.index is None else int(response.index[k])
-    verdict, reason = _verdict(scene, index, exact, differences, allowed)
+    return compared(response, k, exact, allowed, history)
+
+
+def compared(
+    response: Response,
+    k: int,
+    exact: Equilibrium,
+    allowed: float,
+    history: "History | None",
+    largest: Scales = (0.0, 0.0, 0.0),
+) -> Judgement:
+    """Judge an answer beside an equilibrium, by differences relative to the largest force, moment and displacement, here or in `largest`."""
+    differences = distance(response, k, exact, largest)
+    stated = -1 if response.index is None else int(response.index[k])
+    verdict, reason = _verdict(stated, exact, differences, allowed)
     if verdict is Verdict.CERTIFIED and history is not None:
+        from comparisons.referee.friction import rubs_wrongly
+
         violation = next(rubs_wrongly(history, k, exact, allowed), "")
         verdict, reason = (Verdict.INADMISSIBLE, violation) if violation else (verdict, reason)
     return Judgement(
-        load_parameter=t,
-        verdict=verdict,
-        reason=reason,
-        distance=differences,
-        index=exact.index,
-        residual=exact.error,
-        exact=exact,
-    )
+        load_parameter=exact.load_parameter, verdict=verdict, reason=reason, distance=differences, index=exact.index,
+        residual=exact.error, exact=exact,
+    )  # fmt: skip
 
 
-def _verdict(
-    scene: Scene, stated: int, exact: Equilibrium, differences: Distance, allowed: float
-) -> tuple[Verdict, str]:
+def _verdict(stated: int, exact: Equilibrium, differences: Distance, allowed: float) -> tuple[Verdict, str]:
     """Return the verdict on an answer near an exact equilibrium, and its reason; `stated` is the answer's index, -1 without one."""
-    if not differences.place <= PLACE:
-        words = f"supports and contacts are off by {differences.place:.2g} L{differences.at('place')}"
+    place = differences.sizes["place"]
+    if not place <= PLACE:
+        words = f"supports and contacts are off by {place:.2g} L{differences.at('place')}"
         return Verdict.NOT_AN_EQUILIBRIUM, words
-    for item, limit in ((differences.largest, allowed), (differences.rough(), max(allowed, ROUGH))):
+    for item, limit in ((differences.largest, allowed), (differences.rough, max(allowed, ROUGH))):
         if not item[1] <= limit:
             return Verdict.NOT_AN_EQUILIBRIUM, f"{differences.line(item)}, allowed {100.0 * limit:.3g} %"
-    violation = next(inadmissible(scene, exact), "")
+    violation = next(inadmissible(exact), "")
     if violation:
         return Verdict.INADMISSIBLE, violation
     if exact.index > 0:
@@ -153,64 +164,9 @@ def _impossible_contact(contact: ContactHistory, scene: Scene, spec: ContactSpec
             yield f"the force of {spec.pair} and its components differ"
 
 
-def _nearest(
-    response: Response,
-    scene: Scene,
-    answer: AnswerState,
-    k: int,
-    given: Equilibrium | Solution | None,
-    close: float,
-    largest: Scales,
-) -> tuple[Equilibrium, Distance | None]:
-    """Return the equilibrium nearest to an answer, and the differences; None without an equilibrium.
-
-    It is the given one, or follows from the given solution at another load parameter if it is `close` to the answer, which has no
-    friction then, or is sought from the answer.
-    """
-    exact = given if isinstance(given, Equilibrium) else None
-    if isinstance(given, Solution) and closed_pairs(given).keys() == answer.arcs.keys() and not answer.grips:
-        found = reach(scene, given, answer.load_parameter, {}, halvings=0)
-        if found.status is SearchStatus.FOUND:
-            there = described(scene, found)
-            differences = distance(scene, _complete(answer, response, scene, there, k), there, largest)
-            if max(differences.largest[1], differences.place) <= close:
-                return there, differences
-    exact = exact or equilibrium(scene, answer)
-    if exact.status is not SearchStatus.FOUND:
-        return exact, None
-    return exact, distance(scene, _complete(answer, response, scene, exact, k), exact, largest)
-
-
-def _complete(
-    answer: AnswerState, response: Response, scene: Scene, exact: Equilibrium, k: int
-) -> AnswerState:
-    """Add all that the answer states, and the exact direction of contact forces without direction."""
-    forces = dict(answer.forces)
-    for pair, force in answer.forces.items():
-        if math.isnan(force[0]):
-            # a contact that is open at an end has a force that is round-off
-            x, y = exact.contacts[pair].force if pair in exact.contacts else np.zeros(2)
-            size = float(response.contacts[pair].force[k]) / max(math.hypot(x, y), 1e-300)
-            forces[pair] = (size * float(x), size * float(y))
-    gaps = {pair: float(item.gap[k]) for pair, item in response.contacts.items()}
-    stated = (
-        {}
-        if response.sections is None
-        else {beam.name: response.sections(beam.name, k) for beam in scene.beams}
-    )
-    springs = response.springs.items()
-    return replace(
-        answer,
-        forces=forces,
-        gaps={pair: gap for pair, gap in gaps.items() if pair in exact.contacts or math.isfinite(gap)},
-        springs={end: (*item.force[k].tolist(), float(item.moment[k])) for end, item in springs},
-        sections={name: (at.arc, at.N, at.V, at.M) for name, at in stated.items()},
-        local=LOCAL if response.continuum else 0.0,
-    )
-
-
-def inadmissible(scene: Scene, exact: Equilibrium) -> Iterator[str]:
+def inadmissible(exact: Equilibrium) -> Iterator[str]:
     """Yield a sentence for every violation of unilateral contact; `friction.rubbing` judges friction."""
+    scene = exact.scene
     for spec in scene.contacts:
         beam = scene.beam(spec.beam)
         contact = exact.contacts.get(spec.pair)
@@ -219,18 +175,19 @@ def inadmissible(scene: Scene, exact: Equilibrium) -> Iterator[str]:
                 yield f"the contact force of {spec.pair} pulls, {contact.push:.3g}"
             if not 0.0 <= contact.arc_position <= beam.length:
                 yield f"{spec.pair} is closed beyond the end of its beam"
-        gap, arc = least_gap(scene, exact, spec)
+        gap, arc = least_gap(exact, spec)
         if gap < -INSIDE * beam.length:
             what = "the round pin" if scene.radius(spec) else "the node"
             yield f"{what} of {spec.pair} is {-gap / beam.length:.2g} L inside the beam at arc position {arc:.4g}"
-        for end, room in _rooms(scene, exact, spec):
+        for end, room in _rooms(exact, spec):
             if room < -INSIDE * beam.length:
                 yield f"the round pin of {spec.pair} overlaps the {end} of the beam by {-room / beam.length:.2g} L"
 
 
-def _rooms(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> Iterator[tuple[str, float]]:
+def _rooms(exact: Equilibrium, spec: ContactSpec) -> Iterator[tuple[str, float]]:
     """Distance of a round pin beyond an end from the segment across that end, for the ends that no other beam shares."""
-    beam, radius, node = scene.beam(spec.beam), scene.radius(spec), exact.place(spec.node)
+    scene, node = exact.scene, exact.place(spec.node)
+    beam, radius = scene.beam(spec.beam), scene.radius(spec)
     for end, arc, out in (("start", 0.0, -1.0), ("end", beam.length, 1.0)):
         half = beam.height_at(arc / beam.length) / 2.0 if spec.surface == "face" else 0.0
         if any(
@@ -239,24 +196,20 @@ def _rooms(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> Iterator[tupl
         ):
             continue
         there = exact.shape(spec.beam, np.array([arc]))
-        (x, y), (tx, ty) = node - there.position[0], out * there.tangent[0] / np.hypot(*there.tangent[0])
-        along, across = x * tx + y * ty, abs(y * tx - x * ty)
+        away, tangent = node - there.position[0], out * there.tangent[0] / np.hypot(*there.tangent[0])
+        along, across = float(tangent @ away), abs(float(cross(tangent, away)))
         if along > 0.0:
             yield end, math.hypot(along, max(across - half, 0.0)) - radius
 
 
-def least_gap(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> tuple[float, float]:
-    """Return the smallest gap of a pair, if it is closed on its side of the beam, and its arc position; infinite without a closest point.
-
-    Gaps are evaluated at the local minima of the distance between node and axis, less the radius of the face's circles. At a contact the axis has a kink of the angle 2 a by
-    shear, and the contact force is normal to the mean of the two directions. Near it, at the distance d, a round pin penetrates the
-    beam by ``a d - (1/offset - curvature) d^2/2``. Only penetration beyond ``a d``, which means line contact, counts.
-    """
-    beam, node = scene.beam(spec.beam), exact.place(spec.node)
-    offset, side = touching_distance(scene, spec, 0.0), 1.0 if spec.side == "left" else -1.0
+def least_gap(exact: Equilibrium, spec: ContactSpec) -> tuple[float, float]:
+    """Return the smallest gap of a pair on its side of the beam, and its arc position; infinite without a closest point."""
+    # at a contact the axis has a kink 2 a by shear; at the distance d a round pin penetrates by a d - (1/offset - curvature) d^2/2,
+    # and only penetration beyond a d, which means line contact, counts
+    beam, node = exact.scene.beam(spec.beam), exact.place(spec.node)
+    side, offset, steep, _ = face_of(exact.scene, spec)
     if offset == 0.0:
         return np.inf, np.nan
-    steep = face_slope(scene, spec)
     arcs, contact, half = np.linspace(0.0, beam.length, _POINTS), exact.contacts.get(spec.pair), 0.0
     if contact is not None:
         arcs = np.sort(np.append(arcs, contact.arc_position))
@@ -267,19 +220,18 @@ def least_gap(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> tuple[floa
     for k in least[away[least] < offset + 2.0 * beam.length / _POINTS]:
         arc = _foot(exact, spec.beam, node, steep, (float(arcs[k - 1]), float(arcs[k + 1])))
         there = exact.shape(spec.beam, np.array([arc]))
-        (out_x, out_y), (x, y) = node - there.position[0], there.tangent[0]
-        gap = math.hypot(out_x, out_y) - offset - steep * arc
+        out = node - there.position[0]
+        gap = math.hypot(*out) - offset - steep * arc
         if contact is not None:
             gap += half * abs(arc - contact.arc_position)
-        if (contact is None or side * (x * out_y - y * out_x) > 0.0) and gap < best:
+        if (contact is None or side * cross(there.tangent[0], out) > 0.0) and gap < best:
             best, place = gap, arc
     return best, place
 
 
 def _kink(exact: Equilibrium, beam: str, arc: float) -> float:
     """Angle between the directions of the axis before and behind a contact."""
-    a, b = exact.shape(beam, arc * np.array([1.0 - _BESIDE, 1.0 + _BESIDE])).tangent
-    return abs(math.atan2(a[0] * b[1] - a[1] * b[0], a @ b))
+    return angle(*exact.shape(beam, arc * np.array([1.0 - _BESIDE, 1.0 + _BESIDE])).tangent)
 
 
 def _foot(exact: Equilibrium, beam: str, node: Array, steep: float, between: tuple[float, float]) -> float:

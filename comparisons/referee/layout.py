@@ -3,55 +3,40 @@
 Stations are the contacts, the ends of the beams, and the places inside a beam where a force acts or a load begins or ends. Joined ends
 are one station; an end behind a hinge is a station of its own with the place of the joint. A part is a rod between neighbouring stations
 of a beam; its force is ``n = c - W(s)`` with an unknown constant c. Lengths are in units of the longest beam and forces in units of
-``EI/L^2`` with the largest EI, so that all quantities are dimensionless. The number of a prescribed quantity is `NONE`, the place of a
-zero that is appended to the unknowns.
+``EI/L^2`` with the largest EI, so that all quantities are dimensionless. Prescribed quantities have negative numbers, their places in
+`Layout.given` behind the unknowns.
 """
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from itertools import pairwise
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.grip import Grip
-from comparisons.referee.rod import Rod
+from comparisons.referee.rod import Rod, face_of, left, rod_of, units_of
 from comparisons.scene import ContactSpec, Scene
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 NONE = -1
-"""Number of a quantity that is prescribed and not unknown."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Position:
-    """A position: a reference, which may be far larger than the displacement, and a displacement, prescribed or unknown by component."""
-
-    reference: tuple[float, float]
-    prescribed: tuple[float, float] = (0.0, 0.0)
-    unknown: tuple[int, int] = (NONE, NONE)
-
-    def displacement(self, z: Array) -> Array:
-        """Return the displacement."""
-        return np.array(
-            [z[k] if k != NONE else g for g, k in zip(self.prescribed, self.unknown, strict=True)]
-        )
-
-    def position(self, z: Array) -> Array:
-        """Return the position."""
-        return np.array(self.reference) + self.displacement(z)
+"""Number of a quantity that is zero."""
+_FREE: Mapping[str, Grip] = MappingProxyType({})
+_NOTHING = np.zeros(3)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Touch:
-    """A closed contact between a touching point x and the axis point ``r = x - offset(s) nu(phi)``.
+    """A closed contact between a touching point x and the axis point ``r = x - offset(s) nu(phi)``, nu the left normal of the direction phi.
 
-    nu is the left normal of the direction phi. With an offset the angle phi is an unknown; since the energy is stationary in phi, the
-    contact force acts along nu. Stationarity in s, ``nu . (r'_- + r'_+)/2 = -offset'``, makes nu normal to the face. With friction phi is
-    the direction of the face by a row of its own.
+    The energy is stationary in phi, so that the contact force acts along nu, and in s: ``nu . (r'_- + r'_+)/2 = -offset'`` makes nu normal
+    to the face. With friction phi is the direction of the face by a row of its own.
     """
 
     spec: ContactSpec
@@ -79,44 +64,35 @@ class Touch:
     @property
     def right(self) -> float:
         """1 for a node on the right of the beam, -1 on its left."""
-        return -1.0 if self.spec.side == "left" else 1.0
+        return -left(self.spec)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Station:
-    """An end of a beam, a joint, a contact, or a place inside a beam, with the dead load there.
+    """An end of a beam, a joint, a contact, or a place inside a beam; of a contact, the position is that of the touching point."""
 
-    At the end of a beam the force includes the resultant of the load along the beam, since the part has c = n + W there.
-    """
-
-    place: Position
-    """Position of the axis; of a contact, that of the touching point."""
-    rotation_unknown: int
-    prescribed_rotation: float = 0.0
-    force: tuple[float, float] = (0.0, 0.0)
-    moment: float = 0.0
+    reference: Array
+    """Undeformed position (2,), which may be far larger than the displacement."""
+    numbers: Ints
+    """Numbers (3,) of the displacement and the rotation."""
+    load: Array = field(default_factory=lambda: np.zeros(3))
+    """Dead force and moment (3,); at the end of a beam with the resultant of the load along it, since the part has c = n + W there."""
+    springs: Array = field(default_factory=lambda: np.zeros(3))
+    """Stiffnesses (3,) against displacement and rotation."""
     touch: Touch | None = None
     ends: tuple[str, ...] = ()
     """Ends of beams that are rigidly attached."""
     joint: tuple[str, ...] = ()
     """Ends of all beams at a joint, with those behind a hinge; empty for other stations."""
-    springs: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Stiffnesses against displacement and rotation."""
     arc: float | None = None
     """Arc position of a place inside a beam."""
 
-    def rotation(self, z: Array) -> float:
-        """Return the rotation."""
-        return self.prescribed_rotation if self.rotation_unknown == NONE else float(z[self.rotation_unknown])
-
-    @property
-    def unknown(self) -> tuple[int, int, int]:
-        """Numbers of the displacement and the rotation."""
-        return (*self.place.unknown, self.rotation_unknown)
+    def turning(self, rotation: int, **more: Any) -> "Station":
+        """Return a station at the same place with a rotation of its own."""
+        return Station(reference=self.reference, numbers=np.append(self.numbers[:2], rotation), **more)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Hinge:
+class Hinge(NamedTuple):
     """A hinge between the stations `end`, of the beam's end, and `joint`, with a rotational spring."""
 
     end: int
@@ -133,23 +109,11 @@ class Part:
     last: int
     arcs: tuple[int, int]
     """Numbers of the arc positions of both stations."""
-    fixed: tuple[float, float]
-    """Arc positions that are not unknown; 0 for a contact."""
     force: int
     """Number of the first of the two components of c, along the chord of the undeformed beam and to its left."""
     rod: Rod
     piece: int
     """Number of the piece of the load."""
-
-    def ends(self, z: Array) -> tuple[float, float]:
-        """Arc positions at the start and the end."""
-        a, b = (g if k == NONE else float(z[k]) for g, k in zip(self.fixed, self.arcs, strict=True))
-        return a, b
-
-    def extent(self, z: Array) -> float:
-        """Undeformed length."""
-        a, b = self.ends(z)
-        return b - a
 
     def constant(self, z: Array) -> Array:
         """Return c (2,)."""
@@ -167,6 +131,8 @@ class Layout:
     stations: tuple[Station, ...]
     parts: tuple[Part, ...]
     hinges: tuple[Hinge, ...]
+    given: Array
+    """Prescribed quantities."""
     unknowns: int
     """Number of unknowns without the rotations inside the parts."""
 
@@ -186,18 +152,28 @@ class Layout:
         return np.array([k for part in self.parts for k in (part.force, part.force + 1)], dtype=np.int64)
 
     @cached_property
+    def moving(self) -> Ints:
+        """Numbers of the displacements and arc positions."""
+        moved = [k for item in self.stations for k in item.numbers[:2] if k >= 0]
+        return np.array([*moved, *self.arcs], dtype=np.int64)
+
+    @cached_property
+    def tables(self) -> tuple[Ints, Array, Array]:
+        """Numbers, loads and springs (stations, 3) of the stations."""
+        return (
+            np.array([item.numbers for item in self.stations]),
+            np.array([item.load for item in self.stations]),
+            np.array([item.springs for item in self.stations]),
+        )
+
+    @cached_property
     def uniform(self) -> bool:
         """Whether all beams are straight, of one section, and without a load along them."""
         return all(part.rod.uniform for part in self.parts)
 
     @property
-    def rubs(self) -> bool:
-        """Whether a closed contact has friction."""
-        return any(touch.grip is not None for touch in self.touches)
-
-    @property
     def grips(self) -> dict[str, Grip]:
-        """How friction holds the contacts, by pair."""
+        """How friction holds the contacts, by pair; none without friction."""
         return {touch.spec.pair: touch.grip for touch in self.touches if touch.grip is not None}
 
     def rod(self, beam: int) -> Rod:
@@ -217,24 +193,166 @@ class Layout:
         before = next(part for part in self.parts if part.arcs[1] == touch.arc)
         return before, next(part for part in self.parts if part.arcs[0] == touch.arc)
 
+    def full(self, z: Array) -> Array:
+        """Unknowns and prescribed quantities."""
+        return np.append(z, self.given)
+
+    def motions(self, z: Array) -> Array:
+        """Displacements and rotations (stations, 3)."""
+        return self.full(z)[self.tables[0]]
+
+    def shifts(self, z: Array) -> Array:
+        """Ways (stations, 2) of the axis from the references."""
+        ways = self.motions(z)[:, :2]
+        for k, item in enumerate(self.stations):
+            if item.touch is not None and item.touch.angle != NONE:
+                s, phi = z[[item.touch.arc, item.touch.angle]].tolist()
+                ways[k] -= item.touch.away(s) * normal(phi)
+        return ways
+
     def position(self, z: Array, station: int) -> Array:
-        """Position of the axis at a station."""
-        there = self.stations[station]
-        place, touch = there.place.position(z), there.touch
-        if touch is None or touch.angle == NONE:
-            return place
-        return np.asarray(place - touch.away(float(z[touch.arc])) * normal(float(z[touch.angle])))
+        """Position (2,) of the axis at a station."""
+        return np.asarray(self.stations[station].reference + self.shifts(z)[station])
 
     def extents(self, z: Array) -> Array:
         """Arc positions (parts, 2) at the starts and the ends of all parts."""
-        numbers, fixed = self._ends
-        return np.where(numbers == NONE, fixed, z[numbers])
+        return self.full(z)[self._ends]
 
     @cached_property
-    def _ends(self) -> tuple[Ints, Array]:
-        return np.array([part.arcs for part in self.parts]), np.array([part.fixed for part in self.parts])
+    def _ends(self) -> Ints:
+        return np.array([part.arcs for part in self.parts])
 
 
 def normal(angle: float) -> Array:
     """Left normal of a direction."""
     return np.array([-math.sin(angle), math.cos(angle)])
+
+
+def lay_out(
+    scene: Scene, load_parameter: float, closed: Mapping[str, float], grips: Mapping[str, Grip] = _FREE
+) -> Layout:
+    """Return the layout with contacts at the arc positions `closed`, which order them, and held by friction as `grips` say."""
+    length, force = units_of(scene)
+    unit = np.array([force, force, force * length])
+    rods = [rod_of(scene, beam, load_parameter, (length, force)) for beam in scene.beams]
+    given = [0.0]
+    stations, hinges = _joints(scene, load_parameter, rods, length, unit, given)
+    count = 1 + max(int(item.numbers.max()) for item in stations)
+    at = {end: station for station in stations for end in station.joint}
+    on_beam: dict[str, list[tuple[float, int, int]]] = {beam.name: [] for beam in scene.beams}
+    for spec in scene.contacts:
+        if spec.pair not in closed:
+            continue
+        face = face_of(scene, spec)
+        touch = Touch(
+            spec=spec, arc=count + 1, angle=count + 2 if face.start else NONE, offset=face.left * face.start / length,
+            slope=face.left * face.slope, roll=-face.left * face.radius / length, grip=grips.get(spec.pair),
+        )  # fmt: skip
+        node = at.get(spec.node) or Station(
+            reference=_place(scene, scene.pin(spec.node).position(load_parameter), length),
+            numbers=np.full(3, NONE),
+        )
+        on_beam[spec.beam].append((closed[spec.pair], len(stations), touch.arc))
+        stations.append(node.turning(count, touch=touch))
+        count += 2 + (touch.angle != NONE)
+    for beam, rod in zip(scene.beams, rods, strict=True):
+        inside = [item for item in scene.load_histories if item.load.beam == beam.name and item.load.at]
+        for arc in map(float, rod.breaks[1:-1]):
+            loads = _total(
+                item.at(load_parameter) for item in inside if (item.load.at or 0.0) * rod.length == arc
+            )
+            on_beam[beam.name].append((arc * length, len(stations), _fixed(given, arc)))
+            stations.append(
+                Station(
+                    reference=_place(scene, beam.place(arc / rod.length), length),
+                    numbers=np.arange(count, count + 3),
+                    load=loads / unit,
+                    arc=arc,
+                )
+            )
+            count += 3
+    ends = {end: number for number, station in enumerate(stations) for end in station.ends}
+    parts: list[Part] = []
+    for number, (beam, rod) in enumerate(zip(scene.beams, rods, strict=True)):
+        first, last = ends[f"{beam.name}.start"], ends[f"{beam.name}.end"]
+        chain = [
+            (0.0, first, NONE),
+            *sorted(on_beam[beam.name]),
+            (beam.length, last, _fixed(given, rod.length)),
+        ]
+        piece = 0
+        for (_, first, arc), (_, last, arc_after) in pairwise(chain):
+            piece += stations[first].arc is not None
+            parts.append(Part(number, first, last, (arc, arc_after), count, rod, piece))
+            count += 2
+    return Layout(
+        scene=scene, load_parameter=load_parameter, length=length, force=force, stations=tuple(stations),
+        parts=tuple(parts), hinges=tuple(hinges), given=np.array(given[::-1]), unknowns=count,
+    )  # fmt: skip
+
+
+def _place(scene: Scene, point: tuple[float, float], length: float) -> Array:
+    """Position from the first beam's start."""
+    return np.asarray((np.array(point) - scene.beams[0].start) / length)
+
+
+def _fixed(given: list[float], value: float) -> int:
+    """Return the number of a prescribed quantity, which is added in front of the others."""
+    given.append(value)
+    return -len(given)
+
+
+def _total(amounts: Iterable[Any]) -> Array:
+    """Sum of triples."""
+    return np.asarray(np.sum([_NOTHING, *amounts], axis=0))
+
+
+def _joints(
+    scene: Scene, t: float, rods: list[Rod], length: float, unit: Array, given: list[float]
+) -> tuple[list[Station], list[Hinge]]:
+    """Return the stations of joints and ends with the numbers of their free components, those behind hinges last, and the hinges."""
+    names: dict[tuple[float, float], list[str]] = {}
+    resultants: dict[str, Array] = {}
+    for beam, rod in zip(scene.beams, rods, strict=True):
+        names.setdefault(beam.start, []).append(f"{beam.name}.start")
+        names.setdefault(beam.end, []).append(f"{beam.name}.end")
+        if rod.loaded:
+            W = np.array(rod.force(len(rod.load) - 1, (0.0, 0.0), rod.length))
+            resultants[f"{beam.name}.end"] = np.append(-rod.axes @ W, 0.0)
+    hinged = {hinge.node: hinge.stiffness / unit[2] for hinge in scene.hinges}
+    stations: list[Station] = []
+    count = 0
+    for point, ends in names.items():
+        own = tuple(end for end in ends if end not in hinged)
+        motion: tuple[float | None, ...] = (None, None, None)
+        for support in scene.all_supports:
+            if support.node in ends:
+                motion = scene.prescribed_motions[support.node].at(t)
+        springs = _total((*item.stiffness, item.rotation) for item in scene.springs if item.node in ends)
+        turns = bool(own or springs[2] or any(hinged.get(end) for end in ends))
+        free = [motion[k] is None and (k < 2 or turns) for k in range(3)]
+        loads = _total(item.at(t) for item in scene.load_histories if item.load.node in ends)
+        along = _total(resultants[end] for end in own if end in resultants)
+        stations.append(
+            Station(
+                reference=_place(scene, point, length),
+                numbers=np.array(
+                    [
+                        count + sum(free[:k]) if free[k] else _fixed(given, (motion[k] or 0.0) / size)
+                        for k, size in enumerate((length, length, 1.0))
+                    ]
+                ),
+                load=loads / unit + along,
+                springs=springs * (length, length, 1.0) / unit,
+                ends=own,
+                joint=tuple(ends),
+            )
+        )
+        count += sum(free)
+    hinges: list[Hinge] = []
+    for node, stiffness in hinged.items():
+        joint = next(k for k, item in enumerate(stations) if node in item.joint)
+        hinges.append(Hinge(len(stations), joint, stiffness))
+        stations.append(stations[joint].turning(count, ends=(node,), load=resultants.get(node, _NOTHING)))
+        count += 1
+    return stations, hinges

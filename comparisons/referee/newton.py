@@ -1,20 +1,22 @@
 """The search for the exact equilibrium of a scene's rods near an answer, by Newton's method on elements that are halved."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from enum import Enum
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.elements import AMPLITUDE, DEGREE, GAUSS, VALUES, Mesh, mesh_of, rotations, shapes
-from comparisons.referee.equations import System, assemble
+from comparisons.referee.equations import System, assemble, index_of, solved
 from comparisons.referee.guess import SHORTEST, AnswerState, first_guess
-from comparisons.referee.layout import Layout
-from comparisons.referee.numbering import lay_out
+from comparisons.referee.layout import Layout, lay_out
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Change = tuple[Array, Array]
+"""Of the unknowns and the bubbles."""
 
 _RESOLVED = 3e-14
 """Largest amplitude of the last two bubbles of a resolved element [rad]."""
@@ -30,8 +32,6 @@ _ROUND_OFF = 1e-10
 _LAST_PLACES = 10.0 * float(np.finfo(float).eps)
 """Round-off of a force over EA, since forces follow from stretches."""
 _AT_ONE_PLACE = "two contacts on a beam, or a contact and an end, come to one place"
-DENSE = 300
-"""Number of unknowns up to which matrices are solved as full ones."""
 _MOST_ELEMENTS = 400
 """Largest number of elements of a part."""
 _FIT = np.asarray(np.linalg.pinv(VALUES[:, 2:]), dtype=np.float64)
@@ -54,7 +54,7 @@ class SearchStatus(Enum):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Solution:
-    """Result of Newton's method in the units of `layout`, with the last equations and the last correction over the unknowns; or a guess."""
+    """Result of Newton's method in the units of `layout`, or a guess."""
 
     layout: Layout
     mesh: Mesh
@@ -64,9 +64,38 @@ class Solution:
     status: SearchStatus = SearchStatus.NO_EQUILIBRIUM
     reason: str = ""
     """Reason of a search without success."""
-    system: System | None = field(default=None, repr=False)
     iterations: int = 0
     correction: float = np.inf
+    """Last correction of the unknowns."""
+
+    @property
+    def found(self) -> bool:
+        """Whether it is an equilibrium."""
+        return self.status is SearchStatus.FOUND
+
+    @property
+    def t(self) -> float:
+        """The load parameter."""
+        return self.layout.load_parameter
+
+    @cached_property
+    def closed(self) -> dict[str, float]:
+        """Arc positions of the closed contacts in the units of the scene, by pair."""
+        return {item.spec.pair: float(self.z[item.arc]) * self.layout.length for item in self.layout.touches}
+
+    @cached_property
+    def system(self) -> System:
+        """The equations."""
+        return assemble(self.layout, self.mesh, self.z, self.bubbles)
+
+    @cached_property
+    def index(self) -> int:
+        """The index."""
+        return index_of(self.layout, self.z, self.system)
+
+    def plus(self, change: Change, part: float = 1.0) -> "Solution":
+        """Return the guess with a part of a change."""
+        return replace(self, z=self.z + part * change[0], bubbles=self.bubbles + part * change[1])
 
 
 def rotation_at(solution: Solution, part: Ints, x: Array) -> Array:
@@ -74,7 +103,9 @@ def rotation_at(solution: Solution, part: Ints, x: Array) -> Array:
     mesh, inside = solution.mesh, np.minimum(x, _INSIDE)
     e = np.searchsorted(mesh.part + mesh.start, part + inside, side="right") - 1
     values = shapes(2.0 * (x - mesh.start[e]) / mesh.share[e] - 1.0)[0]
-    return np.asarray((values * rotations(mesh, solution.z, solution.bubbles)[e]).sum(axis=-1))
+    return np.asarray(
+        (values * rotations(solution.layout, mesh, solution.z, solution.bubbles)[e]).sum(axis=-1)
+    )
 
 
 def solve(scene: Scene, answer: AnswerState) -> Solution:
@@ -83,16 +114,15 @@ def solve(scene: Scene, answer: AnswerState) -> Solution:
     z, turns = first_guess(layout, answer)
     reason = _reason_not_to_judge(layout, z)
     if reason:
-        mesh, bubbles = (
-            mesh_of(layout, [np.array([0.0, 1.0]) for _ in layout.parts]),
-            np.zeros((0, DEGREE - 1)),
+        mesh, status = mesh_of(layout, [np.array([0.0, 1.0])] * len(layout.parts)), SearchStatus.NOT_JUDGED
+        return Solution(
+            layout=layout, mesh=mesh, z=z, bubbles=np.zeros((0, DEGREE - 1)), status=status, reason=reason
         )
-        status = SearchStatus.NOT_JUDGED
-        return Solution(layout=layout, mesh=mesh, z=z, bubbles=bubbles, status=status, reason=reason)
     mesh = mesh_of(layout, _first_grids(layout, z))
-    places, ends = _places(mesh), zip(layout.extents(z), layout.parts, strict=True)
+    places = _places(mesh)
     seen = [
-        turns[part.beam].angle(a + (b - a) * places[mesh.part == k]) for k, ((a, b), part) in enumerate(ends)
+        turns[part.beam].angle(a + (b - a) * places[mesh.part == k])
+        for k, (part, (a, b)) in enumerate(zip(layout.parts, layout.extents(z), strict=True))
     ]
     start = _fitted(layout, mesh, z, np.concatenate(seen), _FIT_LOW)
     best = correct(start, _ITERATIONS)
@@ -112,20 +142,17 @@ def _is_near(z: Array, solution: Solution) -> bool:
     size = float(np.abs(z[forces]).max(initial=0.0))
     apart = np.abs(solution.z[: len(z)] - z)
     close = apart[forces].max(initial=0.0) <= _NEAR * size and apart[arcs].max(initial=0.0) <= _NEAR
-    return solution.status is SearchStatus.FOUND and bool(close)
+    return solution.found and bool(close)
 
 
 def correct(guess: Solution, iterations: int) -> Solution:
-    """Return the equilibrium near a guess; elements that do not resolve the rotation are halved.
-
-    At most `iterations` Newton iterations are made on each mesh.
-    """
+    """Return the equilibrium near a guess, by some iterations on each mesh; elements that do not resolve the rotation are halved."""
     spent, layout = 0, guess.layout
     for _ in range(_ROUNDS):
         found = _newton(guess, iterations)
         spent += found.iterations
         coarse = tails(found.bubbles) > _RESOLVED
-        if found.status is not SearchStatus.FOUND or not coarse.any():
+        if not found.found or not coarse.any():
             return replace(found, iterations=spent)
         grids = _refined(found.mesh, coarse)
         if max(map(len, grids)) > _MOST_ELEMENTS:
@@ -137,21 +164,15 @@ def correct(guess: Solution, iterations: int) -> Solution:
 
 
 def _rotations_corrected(guess: Solution, held: Ints) -> Solution:
-    """Correct the rotations while the unknowns `held` keep the values of the answer.
-
-    Otherwise the first correction of inaccurate rotations could move a contact beyond an end. With a tension near GA EA/(EA - GA)
-    the rotations are so sensitive that the first correction could lead to another equilibrium.
-    """
+    """Correct the rotations while the unknowns `held` keep the values of the answer."""
+    # the first correction of inaccurate rotations could move a contact beyond an end, or lead to another equilibrium near GA EA/(EA - GA)
     for _ in range(_HOLDING):
-        system = assemble(guess.layout, guess.mesh, guess.z, guess.bubbles)
-        change = _step(system, held)
+        change = newton_step(guess, held)
         if change is None:
             break
-        inside = _inside(system, guess.mesh, change)
-        turns = change[guess.layout.unknowns :]
-        turn = max(float(np.abs(turns).max(initial=0.0)), float(np.abs(inside).max()))
-        part = min(1.0, _LARGEST_ROTATION / max(turn, 1e-300))
-        guess = replace(guess, z=guess.z + part * change, bubbles=guess.bubbles + part * inside)
+        turns = change[0][guess.layout.unknowns :]
+        turn = max(float(np.abs(turns).max(initial=0.0)), float(np.abs(change[1]).max()))
+        guess = guess.plus(change, min(1.0, _LARGEST_ROTATION / max(turn, 1e-300)))
     return guess
 
 
@@ -162,8 +183,8 @@ def _reason_not_to_judge(layout: Layout, z: Array) -> str:
     stiffness = [beam.EI / beam.length**2 for beam in layout.scene.beams]
     if max(stiffness) > _STIFFNESS_RATIO * min(stiffness):
         return f"the stiffest beam is {max(stiffness) / min(stiffness):.1g} times as stiff as the most flexible one"
-    for part in layout.parts:
-        if part.extent(z) <= SHORTEST:
+    for part, (begin, end) in zip(layout.parts, layout.extents(z), strict=True):
+        if end - begin <= SHORTEST:
             beam = layout.scene.beams[part.beam].name
             return (
                 f'two contacts on beam "{beam}", or a contact and an end, are at one place or beyond the end'
@@ -174,11 +195,11 @@ def _reason_not_to_judge(layout: Layout, z: Array) -> str:
 def _first_grids(layout: Layout, z: Array) -> list[Array]:
     """About one element for 1.5 of the length sqrt(EI/n) over which the deflection varies, at most 50."""
     grids = []
-    for part in layout.parts:
+    for part, extent in zip(layout.parts, np.diff(layout.extents(z))[:, 0], strict=True):
         n = float(np.hypot(*part.constant(z)))
         EI, stretch, shear = part.rod.greatest
         rate = np.sqrt(n * (1.0 + n * abs(stretch - shear)) / EI)
-        count = int(np.clip(np.ceil(part.extent(z) * rate / 1.5), 1, 50))
+        count = int(np.clip(np.ceil(extent * rate / 1.5), 1, 50))
         grids.append(np.linspace(0.0, 1.0, count + 1))
     return grids
 
@@ -190,109 +211,54 @@ def _places(mesh: Mesh) -> Array:
 
 def _fitted(layout: Layout, mesh: Mesh, z: Array, rotation: Array, fit: Array) -> Solution:
     """Return the guess with rotations at `_places`; z are the unknowns without the rotations inside the parts."""
-    whole, at = np.append(z, np.zeros(mesh.unknowns - len(z))), mesh.vertices[mesh.first]
+    whole, at = np.append(z, np.zeros(mesh.unknowns - len(z))), mesh.local[:, 0]
     whole[at[at >= len(z)]] = rotation[at >= len(z), -2]
     bubbles: Array = (rotation[:, :-2] - rotation[:, -2:] @ VALUES[:, :2].T) @ fit.T
     return Solution(layout=layout, mesh=mesh, z=whole, bubbles=bubbles)
 
 
-def _newton(guess: Solution, iterations: int) -> Solution:
+def _newton(now: Solution, iterations: int) -> Solution:
     """Iterate until the corrections are round-off."""
-    layout, mesh, z, bubbles = guess.layout, guess.mesh, guess.z, guess.bubbles
-    last, size, error = np.inf, np.inf, np.inf
+    layout, last, error = now.layout, np.inf, np.inf
     most = [part.rod.greatest for part in layout.parts]
     least = _LAST_PLACES / (_ROUND_OFF * min(min(stretch, shear or np.inf) for _, stretch, shear in most))
-    forces, turning, moving = layout.forces, np.ones(mesh.unknowns, bool), np.zeros(mesh.unknowns, bool)
-    moving[layout.arcs] = True
-    moving[[k for item in layout.stations for k in item.place.unknown if k >= 0]] = True
-    turning[forces] = turning[moving] = False
-    status, reason, system = SearchStatus.NO_EQUILIBRIUM, SearchStatus.NO_EQUILIBRIUM.value, None
+    turning = np.ones(now.mesh.unknowns, bool)
+    turning[layout.forces] = turning[layout.moving] = False
+    status, reason = SearchStatus.NO_EQUILIBRIUM, SearchStatus.NO_EQUILIBRIUM.value
     for iteration in range(1, iterations + 1):  # noqa: B007, the number of the last one is told
-        system, error = None, np.inf
-        if np.diff(layout.extents(z)).min() <= 0.0:
+        error = np.inf
+        if np.diff(layout.extents(now.z)).min() <= 0.0:
             reason = _AT_ONE_PLACE
             break
-        system = assemble(layout, mesh, z, bubbles)
-        change = _step(system)
-        if change is None:
+        step = newton_step(now)
+        if step is None:
             reason = "the equations are singular"
             break
-        inside = _inside(system, mesh, change)
+        change, inside = step
         turn = max(float(np.abs(change[turning]).max(initial=0.0)), float((np.abs(inside) * AMPLITUDE).max()))
-        moved = float(np.abs(change[moving]).max(initial=0.0))
-        scale, forced = float(np.abs(z[forces]).max()) + 1e-6, float(np.abs(change[forces]).max())
-        size, error = max(turn, moved, forced / (scale + least)), max(turn, moved, forced / scale)
-        part = min(1.0, _LARGEST_ROTATION / max(turn, 1e-300), _damping(layout, z, change))
-        z, bubbles = z + part * change, bubbles + part * inside
+        moved = float(np.abs(change[layout.moving]).max(initial=0.0))
+        scale, forced = (float(np.abs(x[layout.forces]).max()) for x in (now.z, change))
+        size = max(turn, moved, forced / (scale + 1e-6 + least))
+        error = max(turn, moved, forced / (scale + 1e-6))
+        part = min(1.0, _LARGEST_ROTATION / max(turn, 1e-300), _damping(layout, now.z, change))
+        now = now.plus(step, part)
         if not np.isfinite(size):
             break
         if part == 1.0 and (size < 1e-15 or (size < _ROUND_OFF and size >= 0.25 * last)):
-            status, reason, system = SearchStatus.FOUND, "", assemble(layout, mesh, z, bubbles)
+            status, reason = SearchStatus.FOUND, ""
             break
         last = size if part == 1.0 else np.inf
-    return Solution(
-        layout=layout, mesh=mesh, z=z, bubbles=bubbles, status=status, reason=reason, system=system,
-        iterations=iteration, correction=error,
-    )  # fmt: skip
+    return replace(now, status=status, reason=reason, iterations=iteration, correction=error)
 
 
-def newton_step(guess: Solution) -> tuple[Array, Array]:
-    """Return the first Newton correction; zero if the equations are singular."""
-    system = assemble(guess.layout, guess.mesh, guess.z, guess.bubbles)
-    change = _step(system)
+def newton_step(guess: Solution, held: Ints | None = None) -> Change | None:
+    """Newton correction with the unknowns `held` fixed; None if singular."""
+    system = guess.system
+    change = solved(system, held)
     if change is None:
-        return np.zeros_like(guess.z), np.zeros_like(guess.bubbles)
-    return change, _inside(system, guess.mesh, change)
-
-
-def _inside(system: System, mesh: Mesh, change: Array) -> Array:
-    """Change of the bubbles that belongs to a change of the other unknowns."""
-    moved = np.append(change, 0.0)[mesh.local]
-    return np.asarray(-(system.shift + np.einsum("eij,ej->ei", system.lever, moved)))
-
-
-def _step(system: System, held: Ints | None = None) -> Array | None:
-    """Newton correction with the unknowns `held` fixed; None if singular.
-
-    Rows and columns are scaled, since EI, EA and forces differ by orders of magnitude.
-    """
-    hessian, gradient = system.hessian, system.gradient
-    if held is not None and len(held):
-        hessian, gradient = hessian.copy(), gradient.copy()
-        hessian[held], hessian[:, held], gradient[held] = 0.0, 0.0, 0.0
-        hessian[held, held] = 1.0
-    row, column, entry = entries(hessian)
-    if not np.all(np.isfinite(entry)) or len(np.unique(row)) < len(hessian):
         return None
-    scale = scales(row, column, entry)
-    right = scale * gradient
-    try:
-        if len(hessian) <= DENSE:
-            return np.asarray(-scale * np.linalg.solve(scale[:, None] * hessian * scale, right))
-        from scipy.sparse import coo_array
-        from scipy.sparse.linalg import splu
-
-        factors = splu(coo_array((scale[row] * entry * scale[column], (row, column))).tocsc())
-        return np.asarray(-scale * factors.solve(right))
-    except (np.linalg.LinAlgError, RuntimeError):
-        return None
-
-
-def entries(matrix: Array) -> tuple[Ints, Ints, Array]:
-    """Return rows, columns and values of the entries that are not zero."""
-    # faster than `nonzero` of the matrix itself, which has few such entries
-    number = np.flatnonzero(matrix != 0.0)
-    return *np.divmod(number, len(matrix)), matrix.ravel()[number]
-
-
-def scales(row: Ints, column: Ints, entry: Array) -> Array:
-    """Return factors of rows and columns with which the largest entry of every row is about one."""
-    scale, size = np.ones(int(row[-1]) + 1), np.abs(entry)
-    for _ in range(3):
-        largest = np.zeros(len(scale))
-        np.maximum.at(largest, row, scale[row] * size * scale[column])
-        scale = scale / np.sqrt(largest)
-    return scale
+    moved = np.append(change, 0.0 * guess.layout.given)[guess.mesh.local]
+    return change, np.asarray(-(system.shift + np.einsum("eij,ej->ei", system.lever, moved)))
 
 
 def _damping(layout: Layout, z: Array, change: Array) -> float:

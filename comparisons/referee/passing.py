@@ -1,6 +1,7 @@
 """Checks between the load parameters of an answer: no node passes through a beam, contacts change at events only, and these are true."""
 
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -9,11 +10,11 @@ from numpy.typing import NDArray
 
 from comparisons.referee.distance import gap_off, largest_force
 from comparisons.referee.guess import answer_state
-from comparisons.referee.newton import SearchStatus, solve
+from comparisons.referee.newton import solve
 from comparisons.referee.path import PASSES, at_rest, changes_of, events_between, on_the_way, reach
-from comparisons.referee.rod import axis_at_rest, face_slope, touching_distance
-from comparisons.referee.state import Equilibrium, described
-from comparisons.response import ContactEvent, ContactHistory, Response
+from comparisons.referee.rod import Face, axis_at_rest, cross, face_of
+from comparisons.referee.state import Equilibrium
+from comparisons.response import ContactEvent, Response
 from comparisons.scene import ContactSpec, Scene
 
 Array = NDArray[np.float64]
@@ -46,7 +47,7 @@ class _Moment(NamedTuple):
 def passages(response: Response, scene: Scene) -> Iterator[str]:
     """Yield a sentence for every open pair whose node passed through the beam."""
     for spec in scene.contacts:
-        through = _passed_through(response, scene, spec, response.contacts[spec.pair])
+        through = _Pair(response, scene, spec).passed_through()
         if through is not None:
             yield f"{spec.pair} is open and its node goes through the beam up to load parameter {through:.6g}"
 
@@ -56,13 +57,12 @@ def changes(response: Response, scene: Scene) -> Iterator[str]:
     if response.events is None:
         return
     times = np.concatenate([[0.0], response.load_parameter])
-    slipped = {event.pair for event in response.events if event.kind == "slip-off"}
     for spec in scene.contacts:
         contact = response.contacts[spec.pair]
-        if np.isfinite(contact.slip_off) and spec.pair not in slipped:
+        own = [event for event in response.events if event.pair == spec.pair and event.kind not in _CLOSED]
+        if np.isfinite(contact.slip_off) and not any(event.kind == "slip-off" for event in own):
             yield f"{spec.pair} slips off at load parameter {contact.slip_off:.6g} without an event"
         closed = contact.force != 0.0
-        own = [event for event in response.events if event.pair == spec.pair and event.kind not in _CLOSED]
         events = np.array([event.load_parameter for event in own])
         for k in np.flatnonzero(closed[1:] != closed[:-1]) + 1:
             if not np.any((events >= times[k]) & (events <= times[k + 1])):
@@ -70,173 +70,136 @@ def changes(response: Response, scene: Scene) -> Iterator[str]:
                 yield f"{spec.pair} {what} without an event up to load parameter {times[k + 1]:.6g}"
 
 
-def _passed_through(
-    response: Response, scene: Scene, spec: ContactSpec, contact: ContactHistory
-) -> float | None:
-    """Load parameter by which the node of an open pair has passed through the deflected axis; None if it has not.
+class _Pair:
+    """A node that may pass through the deflected axis of a beam."""
 
-    Between two load parameters the axis and the ends of beams move in straight lines; where these cross, along the path that is followed.
-    After a closed contact the node is followed only if it ends behind the axis, and after a slip-off it is not followed.
-    """
-    closed = contact.force > 0.0
-    now = _moment(response, scene, spec, -1)
-    where = _whereabouts(now.line, now.node, scene, spec)
-    for k, t in enumerate(map(float, response.load_parameter)):
-        if t >= contact.slip_off:
-            return None
-        if closed[k]:
-            where = "before"
-            continue
-        now = _moment(response, scene, spec, k)
-        last, where = where, _whereabouts(now.line, now.node, scene, spec)
-        if where == "before" or (k > 0 and closed[k - 1] and where != "behind"):
-            continue
-        if _goes_through(scene, spec, _moment(response, scene, spec, k - 1), now, last):
-            way = _followed(response, scene, spec, k)
-            if not way or _goes_through_on(scene, spec, way, last):
-                return t
-    return None
+    def __init__(self, response: Response, scene: Scene, spec: ContactSpec) -> None:
+        self.response, self.scene, self.spec = response, scene, spec
+        self.near = 1e-6 * scene.beam(spec.beam).length
 
+    @cached_property
+    def face(self) -> Face:
+        """Where the node touches."""
+        return face_of(self.scene, self.spec)
 
-def _goes_through_on(scene: Scene, spec: ContactSpec, way: list[_Moment], where: str) -> bool:
-    """Whether a node, first at the side `where`, passes through the axis on a followed way and does not return."""
-    through = False
-    for first, last in pairwise(way):
-        before, where = where, _whereabouts(last.line, last.node, scene, spec)
-        through = where != "before" and (through or _goes_through(scene, spec, first, last, before))
-    return through
+    def passed_through(self) -> float | None:
+        """Load parameter by which the open node has passed through; None if it has not, and after a slip-off."""
+        # axes and ends move in straight lines; where these cross, along the path that is followed
+        contact = self.response.contacts[self.spec.pair]
+        closed, where = contact.force > 0.0, self.whereabouts(self.moment(-1))
+        for k, t in enumerate(map(float, self.response.load_parameter)):
+            if t >= contact.slip_off:
+                return None
+            if closed[k]:
+                where = "before"
+                continue
+            last, now = where, self.moment(k)
+            where = self.whereabouts(now)
+            if where == "before" or (k > 0 and closed[k - 1] and where != "behind"):
+                continue
+            if self.goes_through(self.moment(k - 1), now, last):
+                way, through = self.followed(k), False
+                for first, after in pairwise(way):
+                    before, last = last, self.whereabouts(after)
+                    through = last != "before" and (through or self.goes_through(first, after, before))
+                if through or not way:
+                    return t
+        return None
 
+    def followed(self, k: int) -> list[_Moment]:
+        """States on the path to load parameter k from the one before; none if it rubs, jumps, or leads elsewhere."""
+        begin, end = self.moment(k - 1), self.moment(k)
+        now = (
+            at_rest(self.scene)
+            if k == 0
+            else solve(self.scene, answer_state(self.response, self.scene, k - 1))
+        )
+        if not now.found:
+            return []
+        way, beam = [begin], self.spec.beam
+        stops = np.linspace(begin.t, end.t, _STEPS + 1)[1:].tolist()
+        for exact in map(Equilibrium, on_the_way(now, events_between(self.response, begin.t, end.t), stops)):
+            line = exact.shape(beam, self.response.axis_line(beam, k)[0]).position
+            way.append(_Moment(exact.load_parameter, line, exact.place(self.spec.node)))
+        apart = np.hypot(*(way[-1].line - end.line).T).max()
+        return way if len(way) > 1 and apart <= _SAME * self.scene.beam(beam).length else []
 
-def _followed(response: Response, scene: Scene, spec: ContactSpec, k: int) -> list[_Moment]:
-    """States on the path to load parameter k from the one before; none if it rubs, jumps, or leads elsewhere."""
-    way, arcs = [_moment(response, scene, spec, k - 1)], response.axis_line(spec.beam, k)[0]
-    end = _moment(response, scene, spec, k)
-    now = at_rest(scene) if k == 0 else solve(scene, answer_state(response, scene, k - 1))
-    if now.status is not SearchStatus.FOUND:
-        return []
-    events = events_between(response, way[0].t, end.t)
-    found = on_the_way(scene, now, events, np.linspace(way[0].t, end.t, _STEPS + 1)[1:].tolist())
-    for solution in found:
-        exact = described(scene, solution)
-        line = exact.shape(spec.beam, arcs).position
-        way.append(_Moment(exact.load_parameter, line, exact.place(spec.node)))
-    apart = np.hypot(*(way[-1].line - end.line).T).max()
-    return way if found and apart <= _SAME * scene.beam(spec.beam).length else []
-
-
-def _goes_through(scene: Scene, spec: ContactSpec, begin: _Moment, end: _Moment, where: str) -> bool:
-    """Whether a node, first at the side `where`, passes through the axis between two moments and does not return.
-
-    A node that returns may have been in contact in between.
-    """
-    line, line_after = begin.line, end.line
-    parts = np.linspace(0.0, 1.0, SAMPLES)
-    touched = np.concatenate([line, line_after])
-    if "." in spec.node:
+    def goes_through(self, begin: _Moment, end: _Moment, where: str) -> bool:
+        """Whether the node, first at the side `where`, passes between two moments and does not return from a contact in between."""
+        parts, touched = np.linspace(0.0, 1.0, SAMPLES), np.concatenate([begin.line, end.line])
         nodes = (1.0 - parts)[:, None] * begin.node + parts[:, None] * end.node
-    else:
-        pin = scene.pin(spec.node)
-        nodes = np.array([pin.position(float((1.0 - u) * begin.t + u * end.t)) for u in parts])
-    apart = np.maximum(nodes.min(axis=0) - touched.max(axis=0), touched.min(axis=0) - nodes.max(axis=0))
-    if apart.max() > float(np.max(_reach(line, scene, spec))):
-        return False
-    leaves = _whereabouts(line_after, nodes[-1], scene, spec) == "beyond"
-    way = np.hypot(*((nodes[-1] - nodes[0]) - (line_after - line)[[0, -1]]).T)
-    through = False
-    for u, (start, node) in zip(parts[1:], pairwise(nodes), strict=True):
-        moved = (1.0 - u) * line + u * line_after
-        before, where = where, _whereabouts(moved, node, scene, spec)
-        if before == "before" and where != "before":
-            through = where == "behind" or _cuts(moved, start, node, scene, spec)
-            short = np.hypot(*(node - moved[[0, -1]]).T) - np.max(_reach(moved, scene, spec))
-            # so near to an end that the node may have passed around the end
-            through = through and not (leaves and bool((short <= _AROUND * way).any()))
-        through = through and where != "before"
-    return through
+        if "." not in self.spec.node:
+            pin = self.scene.pin(self.spec.node)
+            nodes = np.array([pin.position(float((1.0 - u) * begin.t + u * end.t)) for u in parts])
+        apart = np.maximum(nodes.min(axis=0) - touched.max(axis=0), touched.min(axis=0) - nodes.max(axis=0))
+        if apart.max() > self.reach(begin.line).max():
+            return False
+        leaves = self.whereabouts(end._replace(node=nodes[-1])) == "beyond"
+        way = np.hypot(*((nodes[-1] - nodes[0]) - (end.line - begin.line)[[0, -1]]).T)
+        through = False
+        for u, (start, node) in zip(parts[1:], pairwise(nodes), strict=True):
+            now = _Moment(u, (1.0 - u) * begin.line + u * end.line, node)
+            before, where = where, self.whereabouts(now)
+            if before == "before" and where != "before":
+                through = where == "behind" or self.cuts(now, start)
+                short = np.hypot(*(node - now.line[[0, -1]]).T) - self.reach(now.line).max()
+                # so near to an end that the node may have passed around the end
+                through = through and not (leaves and bool((short <= _AROUND * way).any()))
+            through = through and where != "before"
+        return through
 
+    def moment(self, k: int) -> _Moment:
+        """The beam and the node at load parameter k; undeformed for k = -1."""
+        t, node = float(self.response.load_parameter[k]) if k >= 0 else 0.0, self.spec.node
+        line = self.line(self.spec.beam, k)
+        if "." not in node:
+            return _Moment(t, line, np.array(self.scene.pin(node).position(t)))
+        beam, end = node.split(".")
+        if k >= 0 and end == self.scene.tip(beam):
+            return _Moment(t, line, np.asarray(self.response.tips[beam][k]))
+        return _Moment(t, line, self.line(beam, k)[0 if end == "start" else -1])
 
-def _moment(response: Response, scene: Scene, spec: ContactSpec, k: int) -> _Moment:
-    """A beam and a node at load parameter k; undeformed for k = -1."""
-    t, line = float(response.load_parameter[k]) if k >= 0 else 0.0, _line(response, scene, spec.beam, k)
-    if "." not in spec.node:
-        return _Moment(t, line, np.array(scene.pin(spec.node).position(t)))
-    beam, end = spec.node.split(".")
-    if k >= 0 and end == scene.tip(beam):
-        return _Moment(t, line, np.asarray(response.tips[beam][k]))
-    return _Moment(t, line, np.asarray(_line(response, scene, beam, k)[0 if end == "start" else -1]))
+    def line(self, beam: str, k: int) -> Array:
+        """Axis of a beam at load parameter k; undeformed for k = -1."""
+        arc, line = self.response.axis_line(beam, max(k, 0))
+        return line if k >= 0 else axis_at_rest(self.scene.beam(beam), arc)
 
+    def cuts(self, now: _Moment, start: Array) -> bool:
+        """Whether the way of the node from `start` crosses the curve of touching nodes from the pair's side."""
+        line, way, left = now.line, now.node - start, self.face.left
+        pieces, offset = np.diff(line, axis=0), self.reach(line[:-1])
+        lengths = np.hypot(*pieces.T)
+        before, after = (
+            left * cross(pieces, node - line[:-1]) / lengths - offset for node in (start, now.node)
+        )
+        aside = (left * offset / lengths)[:, None] * np.column_stack([-pieces[:, 1], pieces[:, 0]])
+        first, last = (cross(way, ends + aside - start) > 0.0 for ends in (line[:-1], line[1:]))
+        return bool(((before > self.near) & (after < -self.near) & (first != last)).any())
 
-def _line(response: Response, scene: Scene, beam: str, k: int) -> Array:
-    """Axis of a beam at load parameter k; undeformed for k = -1 and if nothing acts on the beam."""
-    if k >= 0 and not _at_rest(response, scene, beam, k):
-        return response.axis_line(beam, k)[1]
-    return axis_at_rest(scene.beam(beam), response.axis_line(beam, 0)[0])
+    def whereabouts(self, now: _Moment) -> str:
+        """Position of the node: "beyond" an end of the axis, "before" the axis on the pair's side, or "behind" the axis."""
+        line, near = now.line, self.near
+        nearest = int(np.argmin(np.hypot(*(line - now.node).T)))
+        first, last = max(nearest - 1, 0), min(nearest + 1, len(line) - 1)
+        tangent, away = line[last] - line[first], now.node - line[nearest]
+        tangent = tangent / np.hypot(*tangent)
+        along = float(tangent @ away)
+        if (nearest == 0 and along < -near) or (nearest == len(line) - 1 and along > near):
+            return "beyond"
+        gap = self.face.left * cross(tangent, away) - self.reach(line)[nearest] - self.face.slope * along
+        return "behind" if gap < -near else "before"
 
-
-def _at_rest(response: Response, scene: Scene, beam: str, k: int) -> bool:
-    """Whether a beam has one fixed clamp and no load, joint or closed contact, so that it is undeformed."""
-    ends, held = (f"{beam}.start", f"{beam}.end"), scene.supports_of(beam)
-    spec = scene.beam(beam)
-    joined = any({spec.start, spec.end} & {item.start, item.end} for item in scene.beams if item is not spec)
-    still = len(held) == 1 and None not in held[0].motion and not scene.prescribed_motions[held[0].node].moves
-    loaded = any(item.load.beam == beam for item in scene.load_histories) or spec.density is not None
-    if joined or not still or loaded:
-        return False
-    pairs = [contact.pair for contact in scene.contacts if contact.beam == beam or contact.node in ends]
-    return all(response.contacts[pair].force[k] == 0.0 for pair in pairs)
-
-
-def _cuts(line: Array, start: Array, end: Array, scene: Scene, spec: ContactSpec) -> bool:
-    """Whether the segment from start to end crosses the curve of touching nodes from the pair's side."""
-    near = 1e-6 * scene.beam(spec.beam).length
-    side = 1.0 if spec.side == "left" else -1.0
-    pieces, way, offset = np.diff(line, axis=0), end - start, _reach(line[:-1], scene, spec)
-    lengths = np.hypot(*pieces.T)
-    before, after = (side * _cross(pieces, node - line[:-1]) / lengths - offset for node in (start, end))
-    left = np.reshape(side * offset / lengths, (-1, 1)) * np.column_stack([-pieces[:, 1], pieces[:, 0]])
-    first, last = (_cross(way, ends + left - start) > 0.0 for ends in (line[:-1], line[1:]))
-    return bool(((before > near) & (after < -near) & (first != last)).any())
-
-
-def _cross(a: Array, b: Array) -> Array:
-    """Cross product of plane vectors (..., 2)."""
-    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
-
-
-def _whereabouts(line: Array, node: Array, scene: Scene, spec: ContactSpec) -> str:
-    """Position of a node: "beyond" an end of the axis, "before" the axis on the pair's side, or "behind" the axis."""
-    near = 1e-6 * scene.beam(spec.beam).length
-    nearest = int(np.argmin(np.hypot(*(line - node).T)))
-    first, last = max(nearest - 1, 0), min(nearest + 1, len(line) - 1)
-    tangent, away = line[last] - line[first], node - line[nearest]
-    tangent = tangent / np.hypot(*tangent)
-    along = float(tangent @ away)
-    if (nearest == 0 and along < -near) or (nearest == len(line) - 1 and along > near):
-        return "beyond"
-    distance = float(_cross(tangent, away)) * (1.0 if spec.side == "left" else -1.0)
-    reach = np.broadcast_to(_reach(line, scene, spec), len(line))[nearest]
-    gap = distance - float(reach) - face_slope(scene, spec) * along
-    return "behind" if gap < -near else "before"
-
-
-def _reach(line: Array, scene: Scene, spec: ContactSpec) -> Array | float:
-    """Distances at which a node touches at the points of an axis."""
-    steep = face_slope(scene, spec)
-    if not steep:
-        return scene.offset(spec)
-    arcs = np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))
-    return touching_distance(scene, spec, 0.0) + steep * arcs
+    def reach(self, line: Array) -> Array:
+        """Distances (m,) at which the node touches at the points of an axis."""
+        if not self.face.slope:
+            return np.full(len(line), self.face.start)
+        return np.asarray(self.face.reach(np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))))
 
 
 def misstated(
     response: Response, scene: Scene, found: Mapping[int, Equilibrium], allowed: float
 ) -> Iterator[str]:
-    """Yield events that are not those of the answer's states, or at which the exact contact is elsewhere or has another force.
-
-    An event beside one of the exact equilibria `found`, by the numbers of their load parameters, is compared with the equilibrium that
-    follows from it: at a contact that is closed there, arc position and force; of one that is open, the gap. With friction,
-    `friction.rubbing` compares the events instead.
-    """
+    """Yield events that are not those of the answer's states, or not those of the exact equilibria `found` beside them."""
     specs, times = {spec.pair: spec for spec in scene.contacts}, response.load_parameter
     for event in response.events or ():
         t = event.load_parameter
@@ -249,12 +212,12 @@ def misstated(
             yield f"no contact of the scene has the event {event.kind} of {event.pair} at load parameter {t:.6g}"
             continue
         after = int(np.searchsorted(times, t))
-        # the load parameter of a pass-through is interpolated
+        # the load parameter of a pass-through is interpolated; `friction.rubbing` compares the events with friction
         if event.kind == PASSES or any(spec.friction for spec in scene.contacts):
             continue
         for k in (after - 1, after)[: 1 if event.kind in OPENS else 2]:
-            there = _at(scene, found.get(k), t) if _alone(response, event, k) else None
-            wrong = "" if there is None else _wrong(scene, specs[event.pair], event, there, allowed)
+            there = _at(found.get(k), t) if _alone(response, event, k) else None
+            wrong = "" if there is None else _wrong(specs[event.pair], event, there, allowed)
             if wrong:
                 yield f"{event.kind} of {event.pair} at load parameter {t:.6g}: {wrong}"
     for spec in scene.contacts:
@@ -283,26 +246,24 @@ def _disorder(response: Response, spec: ContactSpec) -> Iterator[str]:
         yield f"{spec.pair} is {'open' if closed else 'closed'} at the end, not as its last event says"
 
 
-def _at(scene: Scene, near: Equilibrium | None, t: float) -> Equilibrium | None:
+def _at(near: Equilibrium | None, t: float) -> Equilibrium | None:
     """Return the equilibrium with the same contacts at an event beside a load parameter; None if there is none."""
-    if near is None:
-        return None
-    found = reach(scene, near.solution, t, near.solution.layout.grips, halvings=2)
-    return described(scene, found) if found.status is SearchStatus.FOUND else None
+    found = None if near is None else reach(near.solution, t, near.solution.layout.grips, halvings=2)
+    return Equilibrium(found) if found and found.found else None
 
 
-def _wrong(scene: Scene, spec: ContactSpec, event: ContactEvent, there: Equilibrium, allowed: float) -> str:
+def _wrong(spec: ContactSpec, event: ContactEvent, there: Equilibrium, allowed: float) -> str:
     """Return what an event states otherwise than the equilibrium there; empty if it states the same."""
-    length = scene.beam(spec.beam).length
+    length = there.scene.beam(spec.beam).length
     contact = there.contacts.get(spec.pair)
     if contact is None and event.kind not in CLOSES:
         return ""
     if contact is None:
-        off = gap_off(scene, there, spec, 0.0) / length
+        off = gap_off(there, spec, 0.0) / length
         return "" if off <= allowed else f"the node is {off:.2g} L away"
     off = abs(contact.arc_position - event.arc_position) / length
     if not off <= allowed:
         return f"arc position off by {off:.2g}"
     force = 0.0 if event.kind in CLOSES else float(np.hypot(*contact.force))
-    off = abs(force - event.force) / largest_force(scene, there)
+    off = abs(force - event.force) / largest_force(there)
     return "" if off <= allowed else f"contact force off by {off:.2g}"

@@ -155,10 +155,7 @@ def _linear(given: float | tuple[float, float] | None, extent: float) -> Array:
 def _resultants(
     length: float, densities: list[tuple[float, float, Array]], breaks: set[float]
 ) -> tuple[Array, Array]:
-    """Return the arc positions between which loads are one polynomial, and the coefficients of W there.
-
-    `densities` are loads from one arc position to another, each with the coefficients (k, 2) of q.
-    """
+    """Return the arc positions between which loads (from, to, coefficients (k, 2) of q) are one polynomial, and W's coefficients there."""
     places = np.array(sorted({0.0, length, *breaks, *(s for a, b, _ in densities for s in (a, b))}))
     if not densities:
         return places, np.zeros((len(places) - 1, 1, 2))
@@ -175,20 +172,36 @@ def _resultants(
     return places, table
 
 
-def face_slope(scene: Scene, spec: ContactSpec) -> float:
-    """Derivative of `touching_distance` by the arc position."""
-    beam = scene.beam(spec.beam)
+class Face(NamedTuple):
+    """Where a node, or the centre of a round pin, touches a beam: at the distance `reach` from a point of the axis."""
+
+    left: float
+    """1 on the left of the beam, -1 on its right."""
+    start: float
+    """Distance at the start of the beam."""
+    slope: float
+    """Derivative of the distance by the arc position."""
+    radius: float
+    """Radius of the pin; 0 for a point."""
+
+    def reach(self, arc: Any) -> Any:
+        """Distance at arc positions."""
+        return self.start + self.slope * arc
+
+
+def left(spec: ContactSpec) -> float:
+    """1 for a node on the left of the beam, -1 on its right."""
+    return 1.0 if spec.side == "left" else -1.0
+
+
+def face_of(scene: Scene, spec: ContactSpec) -> Face:
+    """Return where the node of a pair touches."""
+    beam, radius = scene.beam(spec.beam), scene.radius(spec)
     steep = (beam.height_at(1.0) - beam.height_at(0.0)) / (2.0 * beam.length)
-    return 0.0 if spec.surface == "axis" or not steep else steep / math.hypot(1.0, steep)
-
-
-def touching_distance(scene: Scene, spec: ContactSpec, arc: float) -> float:
-    """Distance of a node, or of the centre of a round pin, from the axis point at which it touches."""
-    steep = face_slope(scene, spec)
-    if not steep:
-        return scene.offset(spec)
-    start = scene.beam(spec.beam).height_at(0.0) / 2.0 * math.sqrt(1.0 - steep**2)
-    return scene.radius(spec) + start + steep * arc
+    if spec.surface == "axis" or not steep:
+        return Face(left(spec), scene.offset(spec), 0.0, radius)
+    slope = steep / math.hypot(1.0, steep)
+    return Face(left(spec), radius + beam.height_at(0.0) / 2.0 * math.sqrt(1.0 - slope**2), slope, radius)
 
 
 def axis_at_rest(beam: BeamSpec, arcs: Array) -> Array:
@@ -196,3 +209,13 @@ def axis_at_rest(beam: BeamSpec, arcs: Array) -> Array:
     if beam.turn:
         return np.array([beam.place(part) for part in (arcs / beam.length).tolist()])
     return np.asarray(np.array(beam.start) + np.outer(arcs, beam.direction))
+
+
+def cross(a: Array, b: Array) -> Any:
+    """Cross product of plane vectors (..., 2)."""
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
+def angle(a: Array, b: Array) -> float:
+    """Angle between two vectors."""
+    return abs(math.atan2(cross(a, b), a @ b))

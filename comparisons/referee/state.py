@@ -1,15 +1,15 @@
 """The exact equilibrium in the units of the scene: contacts, reactions, ends, and shapes of the beams."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.elements import GAUSS, VALUES, WEIGHTS, fields, places, rotations, shapes, up_to
 from comparisons.referee.guess import AnswerState
-from comparisons.referee.layout import Touch
+from comparisons.referee.layout import NONE, Touch
 from comparisons.referee.newton import SearchStatus, Solution, solve, tails
-from comparisons.referee.stability import index_of
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
@@ -57,47 +57,85 @@ class Shape:
     Q: Array
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Equilibrium:
     """The exact equilibrium near an answer, or the reason why there is none.
 
+    All but `status`, `message` and `load_parameter` is valid for `SearchStatus.FOUND` only.
+
     Attributes
     ----------
-    status : SearchStatus
-        Outcome of the search; the other attributes are valid for `SearchStatus.FOUND` only.
-    message : str
-        The status as a sentence.
-    load_parameter : float
-        Load parameter of the answer.
-    contacts : dict of Contact
-        Closed contacts, by pair.
-    reactions : dict of ndarray, shape (3,)
-        Force and moment of every support, by the supported end.
-    ends : dict of ndarray, shape (2,)
-        Positions of the beams' ends, by names such as ``upper.end``.
-    strain_energy : float
-        Energy of all rods, springs and hinges.
-    index : int
-        Number of negative eigenvalues of the energy's Hessian on the admissible variations; -1 without an equilibrium.
-    error : float
-        Estimated relative error: the last correction and the last terms of the rotation.
-    iterations : int
-        Number of Newton iterations.
     solution : Solution
         The solution in the units of `Layout`.
     """
 
-    status: SearchStatus
-    message: str
-    load_parameter: float
-    contacts: dict[str, Contact]
-    reactions: dict[str, Array]
-    ends: dict[str, Array]
-    strain_energy: float
-    index: int
-    error: float
-    iterations: int
     solution: Solution = field(repr=False)
+
+    @property
+    def status(self) -> SearchStatus:
+        """Outcome of the search."""
+        return self.solution.status
+
+    @property
+    def message(self) -> str:
+        """The status as a sentence."""
+        return self.solution.reason or self.status.value
+
+    @property
+    def scene(self) -> Scene:
+        """The scene."""
+        return self.solution.layout.scene
+
+    @property
+    def load_parameter(self) -> float:
+        """Load parameter of the answer."""
+        return self.solution.t
+
+    @property
+    def iterations(self) -> int:
+        """Number of Newton iterations."""
+        return self.solution.iterations
+
+    @cached_property
+    def contacts(self) -> dict[str, Contact]:
+        """Closed contacts, by pair."""
+        return {touch.spec.pair: touching(self.solution, touch) for touch in self.solution.layout.touches}
+
+    @cached_property
+    def reactions(self) -> dict[str, Array]:
+        """Force and moment (3,) of every support, by the supported end; zero in free components."""
+        layout, held = self.solution.layout, self.solution.system.held
+        unit, found = layout.force * np.array([1.0, 1.0, layout.length]), dict[str, Array]()
+        for support in self.scene.all_supports:
+            numbers = layout.stations[layout.joint(support.node)].numbers
+            given = [value is not None for value in support.motion]
+            found[support.node] = np.where(given, unit * held[np.minimum(numbers, NONE)], 0.0)
+        return found
+
+    @cached_property
+    def ends(self) -> dict[str, Array]:
+        """Positions (2,) of the beams' ends, by names such as ``upper.end``."""
+        layout, moved = self.solution.layout, self.solution.layout.motions(self.solution.z)
+        return {
+            end: np.array(self.scene.beams[0].start) + layout.length * (station.reference + moved[k, :2])
+            for k, station in enumerate(layout.stations)
+            for end in station.joint
+        }
+
+    @property
+    def strain_energy(self) -> float:
+        """Energy of all rods, springs and hinges."""
+        return self.solution.system.energy * self.solution.layout.force * self.solution.layout.length
+
+    @property
+    def index(self) -> int:
+        """Number of negative eigenvalues of the energy's Hessian on the admissible variations; -1 with friction."""
+        return self.solution.index
+
+    @property
+    def error(self) -> float:
+        """Estimated relative error: the last correction and the last terms of the rotation."""
+        return max(self.solution.correction, float(tails(self.solution.bubbles).max()))
 
     def shape(self, beam: str, arc: Array) -> Shape:
         """Return the shape of a beam at arc lengths (m,)."""
@@ -107,12 +145,12 @@ class Equilibrium:
         """Return the position of a beam's end such as ``upper.end``, or of a pin."""
         if "." in node:
             return self.ends[node]
-        return np.array(self.solution.layout.scene.pin(node).position(self.load_parameter))
+        return np.array(self.scene.pin(node).position(self.load_parameter))
 
     def joint_rotation(self, end: str) -> float:
         """Return the rotation of the joint to which a beam's end belongs, which differs from the end's behind a hinge."""
         layout = self.solution.layout
-        return layout.stations[layout.joint(end)].rotation(self.solution.z)
+        return float(layout.motions(self.solution.z)[layout.joint(end), 2])
 
 
 def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
@@ -132,45 +170,13 @@ def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
     >>> f"{exact.contacts['pin->cantilever'].push:.12e}", exact.index
     ('2.288274307175e-03', 0)
     """
-    solution = solve(scene, answer)
-    if solution.status is not SearchStatus.FOUND or solution.system is None:
-        return Equilibrium(
-            status=solution.status, message=solution.reason or solution.status.value,
-            load_parameter=answer.load_parameter, contacts={}, reactions={}, ends={}, strain_energy=np.nan, index=-1,
-            error=np.inf, iterations=solution.iterations, solution=solution,
-        )  # fmt: skip
-    return described(scene, solution)
-
-
-def described(scene: Scene, solution: Solution) -> Equilibrium:
-    """Return an equilibrium that was found, in the units of the scene."""
-    assert solution.system is not None, "an equilibrium has its equations"
-    layout = solution.layout
-    contacts = {touch.spec.pair: touching(solution, touch) for touch in layout.touches}
-    origin = np.array(scene.beams[0].start)
-    return Equilibrium(
-        status=solution.status,
-        message=solution.status.value,
-        load_parameter=layout.load_parameter,
-        contacts=contacts,
-        reactions=_reactions(solution, contacts),
-        ends={
-            end: origin + layout.length * station.place.position(solution.z)
-            for station in layout.stations
-            for end in station.joint
-        },
-        strain_energy=solution.system.energy * layout.force * layout.length,
-        index=index_of(solution),
-        error=max(solution.correction, float(tails(solution.bubbles).max())),
-        iterations=solution.iterations,
-        solution=solution,
-    )
+    return Equilibrium(solve(scene, answer))
 
 
 def _tangents(solution: Solution, touch: Touch) -> tuple[Array, Array]:
     """Return ``r'_-`` and ``r'_+`` at a contact."""
     parts, z = solution.layout.beside(touch), solution.z
-    s, theta = float(z[touch.arc]), solution.layout.stations[parts[0].last].rotation(z)
+    s, theta = float(z[touch.arc]), float(solution.layout.motions(z)[parts[0].last, 2])
     before, behind = (np.asarray(part.rod.tangent(part.piece, part.constant(z), s, theta)) for part in parts)
     return before, behind
 
@@ -190,48 +196,10 @@ def touching(solution: Solution, touch: Touch) -> Contact:
     )
 
 
-def _reactions(solution: Solution, contacts: dict[str, Contact]) -> dict[str, Array]:
-    """Reactions (3,) by supported end, from the balance of parts, loads and contacts; zero in free components."""
-    layout = solution.layout
-    reactions: dict[str, Array] = {}
-    for support in layout.scene.all_supports:
-        number = layout.joint(support.node)
-        total = _held(solution, number) * layout.force * np.array([1.0, 1.0, layout.length])
-        for touch in layout.touches:
-            if touch.spec.node in layout.stations[number].joint:
-                total[:2] += contacts[touch.spec.pair].force
-        held = [value is not None for value in support.motion]
-        reactions[support.node] = np.where(held, total, 0.0)
-    return reactions
-
-
-def _held(solution: Solution, number: int) -> Array:
-    """Force and moment (3,) of parts, springs and hinges less the loads at a joint, in units of the layout."""
-    layout, z, mesh = solution.layout, solution.z, solution.mesh
-    assert solution.system is not None, "an equilibrium has its equations"
-    station = layout.stations[number]
-    total = -np.array([*station.force, station.moment])
-    total += np.array(station.springs) * [*station.place.displacement(z), station.rotation(z)]
-    here = {number}
-    for hinge in layout.hinges:
-        if hinge.joint == number:
-            here.add(hinge.end)
-            total[:2] -= layout.stations[hinge.end].force
-            total[2] += hinge.stiffness * (station.rotation(z) - layout.stations[hinge.end].rotation(z))
-    for k, part in enumerate(layout.parts):
-        for end, sign in ((part.first, -1.0), (part.last, 1.0)):
-            if end in here:
-                total[:2] += sign * part.rod.axes @ part.constant(z)
-            if end == number:
-                e = np.flatnonzero(mesh.part == k)[0 if sign < 0.0 else -1]
-                total[2] += solution.system.ends[e, int(sign > 0.0)]
-    return total
-
-
 def _shape(solution: Solution, beam: str, arc: Array) -> Shape:
     """Evaluate the shape of a beam at arc lengths (m,)."""
     layout, z, mesh = solution.layout, solution.z, solution.mesh
-    coefficients, s = rotations(mesh, z, solution.bubbles), arc / layout.length
+    coefficients, s = rotations(layout, mesh, z, solution.bubbles), arc / layout.length
     number = [item.name for item in layout.scene.beams].index(beam)
     numbers = np.array([k for k, part in enumerate(layout.parts) if part.beam == number])
     begins = layout.extents(z)[numbers, 0]
@@ -239,7 +207,7 @@ def _shape(solution: Solution, beam: str, arc: Array) -> Shape:
     table = np.empty((len(s), 8))
     for k in np.unique(own):
         part, inside, here = layout.parts[k], own == k, mesh.part == k
-        (first, _), extent = part.ends(z), part.extent(z)
+        first, extent = layout.extents(z)[k, 0], np.diff(layout.extents(z)[k])[0]
         start, half, rotation = mesh.start[here], mesh.share[here] * extent / 2.0, coefficients[here]
         points = first + extent * start[:, None] + half[:, None] * (1.0 + GAUSS)
         within = places(layout, mesh.part[here], points, z[mesh.local[here, 2:4]])

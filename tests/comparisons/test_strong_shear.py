@@ -33,7 +33,7 @@ beam = [{{ name = "b", start = [0, 0], end = [1, 0], clamped = ["start"], elemen
         return None
     (judged,) = certify(response, scene, at=[-1], allowance=math.inf).judged
     assert judged.distance is not None, judged.reason
-    sizes = judged.distance.sizes()
+    sizes = judged.distance.sizes
     return max(sizes[name] for name in ("force", "arc_position", "reaction", "tip", "shape"))
 
 

@@ -149,7 +149,7 @@ def run(scene: Scene, model: str, *, every: bool = True) -> Row:
         return replace(row, ended="RAISED", certificate=traceback.format_exc(), response=None)
     off = max((_off(scene, item) for item in found.judged), default=math.nan)
     near = off <= ALLOWED[model]
-    sections = max((item.distance.sections for item in found.judged if item.distance), default=0.0)
+    sections = max((item.distance.sizes["sections"] for item in found.judged if item.distance), default=0.0)
     steep = model == "mixed" and found.reason.startswith("sections off") and sections <= SECTIONS
     sound = found.certified or found.reason.startswith("nothing to judge") or steep
     line = found.line() if near or not sound else f"FAR: off by {off:.2g}, allowed {ALLOWED[model]:g}"
@@ -170,7 +170,7 @@ def _off(scene: Scene, item: Judgement) -> float:
     names = {"arc_position", "tip", "shape"} | (
         {"force", "reaction"} if size > NOTHING * least_force(scene) else set()
     )
-    return max(value for name, value in item.distance.sizes().items() if name in names)
+    return max(value for name, value in item.distance.sizes.items() if name in names)
 
 
 def least_force(scene: Scene) -> float:

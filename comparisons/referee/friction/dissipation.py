@@ -8,9 +8,9 @@ from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 
 from comparisons.referee.friction.history import History
-from comparisons.referee.friction.slip import rates, slip_rate
+from comparisons.referee.friction.slip import slip_rate
 from comparisons.referee.grip import Grip, UnknownFrictionError
-from comparisons.referee.newton import SearchStatus, Solution
+from comparisons.referee.newton import Solution
 from comparisons.referee.path import corners, reach
 from comparisons.referee.state import Equilibrium, touching
 
@@ -28,10 +28,7 @@ _LEAST = 1e-12
 
 
 def dissipated(history: History, k: int, exact: Equilibrium) -> dict[str, float]:
-    """Return the energy that every contact with friction dissipates from the load parameter before number k up to it.
-
-    The interval is cut where contacts begin to slip, stick, touch or open. The energy is nan if one of these places is not found.
-    """
+    """Return what every contact with friction dissipates since the load parameter before number k; nan where a change is not found."""
     times = history.response.load_parameter
     begin, end = (float(times[k - 1]) if k else 0.0), float(times[k])
     pairs = [spec.pair for spec in history.scene.contacts if spec.friction]
@@ -58,28 +55,25 @@ def _cuts(history: History, k: int) -> dict[float, Solution | None]:
         for phase in own[before + 1 : history.numbers[pair][k] + 1]:
             if phase.before is not None and phase.slip != phase.before.slip:
                 begin = history.begin(phase)
-                found[begin.layout.load_parameter] = begin
+                found[begin.t] = begin
     return found
 
 
 def _between(
     history: History, first: float, last: float, there: Solution | None
 ) -> tuple[dict[str, float], Solution | None]:
-    """Dissipation between two load parameters without a change, and the equilibrium nearest to the first one.
-
-    `there` is an equilibrium at the last one, in any state, or None. Where the integrand is not smooth the interval is halved.
-    """
+    """Dissipation between two load parameters without a change, and the equilibrium at the first; `there` is one at the last, in any state."""
     middle = (first + last) / 2.0
     grips, closed = history.around(middle), history.closed(middle)
     if not any(grip.slip for grip in grips.values()):
         return {}, None
-    if there is None or closed != {touch.spec.pair for touch in there.layout.touches}:
+    if there is None or closed != there.closed.keys():
         there = history.near(middle, closed, grips)
     spent: dict[str, float] = {}
     spans = [(first, last, _DEPTH)]
     while spans:
         low, high, depth = spans.pop()
-        powers, there = _powers(history, low, high, there, grips)
+        powers, there = _powers(low, high, there, grips)
         terms = np.abs([_LEGENDRE @ values for values in powers.values()])
         if depth and np.any(terms[:, -2:].sum(axis=1) > _SMOOTH * terms[:, 0]):
             spans += [(low, (low + high) / 2.0, depth - 1), ((low + high) / 2.0, high, depth - 1)]
@@ -90,18 +84,17 @@ def _between(
 
 
 def _powers(
-    history: History, low: float, high: float, there: Solution, grips: dict[str, Grip]
+    low: float, high: float, there: Solution, grips: dict[str, Grip]
 ) -> tuple[dict[str, Array], Solution]:
     """``F_t v`` of the slipping contacts at the Gauss points between two load parameters, and the equilibrium at the first of them."""
     powers: dict[str, Array] = {}
     for k in reversed(range(len(_POINTS))):
         t = float((low + high) / 2.0 + _POINTS[k] * (high - low) / 2.0)
-        there = reach(history.scene, there, t, grips)
-        if there.status is not SearchStatus.FOUND:
+        there = reach(there, t, grips)
+        if not there.found:
             raise UnknownFrictionError(f"no equilibrium was found at load parameter {t:.6g}")
-        rate = rates(history.scene, there)
         for touch in there.layout.touches:
             if touch.grip is not None and touch.grip.slip:
-                power = touching(there, touch).drag * slip_rate(there, touch, rate) * there.layout.length
+                power = touching(there, touch).drag * slip_rate(there, touch) * there.layout.length
                 powers.setdefault(touch.spec.pair, np.zeros(len(_POINTS)))[k] = power
     return powers, there

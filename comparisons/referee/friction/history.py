@@ -11,13 +11,12 @@ from itertools import pairwise
 import numpy as np
 
 from comparisons.referee.friction.phases import OPEN, SAME, UNKNOWN, Phase, phases, states
-from comparisons.referee.friction.rolling import roll
-from comparisons.referee.friction.slip import place, rates, slip_rate, speed
+from comparisons.referee.friction.slip import place, relative_slip_rate, roll, slip_rate
 from comparisons.referee.grip import LOOSE, Grip, Hold, UnknownFrictionError
 from comparisons.referee.guess import answer_state
-from comparisons.referee.newton import SearchStatus, Solution, solve
-from comparisons.referee.path import changes_of, closed_pairs, corners, reach
-from comparisons.referee.rod import face_slope, touching_distance
+from comparisons.referee.newton import Solution, solve
+from comparisons.referee.path import changes_of, corners, reach
+from comparisons.referee.rod import face_of
 from comparisons.referee.state import touching
 from comparisons.response import ContactEvent, Response
 from comparisons.scene import BeamSpec, ContactSpec, Scene
@@ -38,15 +37,7 @@ _ZERO = 1e-12
 
 
 class History:
-    """The phases of the contacts of an answer, and where they begin.
-
-    Attributes
-    ----------
-    response, scene
-        The answer and its scene.
-    taken : str
-        What was taken for the states of friction if the answer does not state them; empty if it does.
-    """
+    """The phases of the contacts of an answer, and where they begin; `taken` says what its states of friction were taken from."""
 
     def __init__(self, response: Response, scene: Scene) -> None:
         self.response, self.scene = response, scene
@@ -73,13 +64,7 @@ class History:
         return self.phases[pair][self.numbers[pair][k]]
 
     def grips(self, k: int) -> dict[str, Grip]:
-        """Return how friction holds the closed contacts at load parameter number k.
-
-        Raises
-        ------
-        UnknownFrictionError
-            If no equilibrium is found where a stick begins; so do the following methods.
-        """
+        """Return how friction holds the closed contacts at load parameter number k; raises `UnknownFrictionError`, as the following."""
         t = float(self.response.load_parameter[k])
         now = {spec.pair: self.phase(spec.pair, k) for spec in self.scene.contacts if spec.friction}
         return {pair: self.grip(phase, t) for pair, phase in now.items() if phase.slip != OPEN}
@@ -132,11 +117,11 @@ class History:
             return
         closed = self.closed(middle)
         began = [self._begins[item] for item in sticking.values() if item in self._begins]
-        began = [item for item in began if closed_pairs(item).keys() == closed]
+        began = [item for item in began if item.closed.keys() == closed]
         # a stick is followed from its begin: at the load parameters of the answer it may have no equilibrium
-        latest = max(began, key=lambda item: item.layout.load_parameter, default=None)
+        latest = max(began, key=lambda item: item.t, default=None)
         near = self.near(middle, closed, grips) if latest is None else latest
-        rolled = roll(self.scene, near, (begin, last), grips, begins)
+        rolled = roll(near, (begin, last), grips, begins)
         if rolled is None:
             raise UnknownFrictionError(f"no equilibria in stick were found up to load parameter {last:.6g}")
         for pair, item in sticking.items():
@@ -181,8 +166,8 @@ class History:
 
     def _unlike(self, phase: Phase, before: Phase, own: Grip, begin: Solution) -> tuple[bool, float, float]:
         """How unlikely it is that the slip `own` ends where a phase begins: a slip rate of the other sign, and distances from the stated place."""
-        off = abs(closed_pairs(begin)[phase.spec.pair] - self.stated_arc(phase))
-        slipped, t = self._slipped(phase, before, own, begin), begin.layout.load_parameter
+        off = abs(begin.closed[phase.spec.pair] - self.stated_arc(phase))
+        slipped, t = self._slipped(phase, before, own, begin), begin.t
         return not slipped, 0.0 if math.isnan(off) else off, abs(t - phase.begin)
 
     def events_at(self, phase: Phase) -> list[ContactEvent]:
@@ -196,14 +181,14 @@ class History:
 
     def _slipped(self, phase: Phase, before: Phase, own: Grip, begin: Solution) -> bool:
         """Whether the slip rate before the beginning of a phase has the sign of the slip `own`, where the same contacts are closed there."""
-        pair, t = phase.spec.pair, begin.layout.load_parameter
+        pair, t = phase.spec.pair, begin.t
         t = t - _BEFORE * (t - before.begin)
-        if self.closed(t) != closed_pairs(begin).keys():
+        if self.closed(t) != begin.closed.keys():
             return True
-        now = reach(self.scene, begin, t, {**self.around(t, phase.spec), pair: own})
-        if now.status is not SearchStatus.FOUND:
+        now = reach(begin, t, {**self.around(t, phase.spec), pair: own})
+        if not now.found:
             return False
-        return own.slip * slip_rate(now, now.layout.touch(pair), rates(self.scene, now)) > 0.0
+        return own.slip * slip_rate(now, now.layout.touch(pair)) > 0.0
 
     def _root(self, phase: Phase, own: Grip) -> Solution:
         """Return the equilibrium at which the state `own` of a contact ends."""
@@ -212,8 +197,8 @@ class History:
 
         def margin(t: float) -> float:
             nonlocal now
-            now = _found_at(reach(self.scene, now, t, state), phase, t)
-            return _margin(self.scene, now, phase, own)
+            now = _found_at(reach(now, t, state), phase, t)
+            return _margin(now, phase, own)
 
         # each way evaluates the margin at the root last
         if self._jumps(phase, phase.begin):
@@ -233,13 +218,13 @@ class History:
         closed = self.closed(t) | {phase.spec.pair}
         later = before is not None and before.before is not None
         try:
-            found = reach(self.scene, self.near(t, closed, state), t, state)
+            found = reach(self.near(t, closed, state), t, state)
         except UnknownFrictionError:
             if not later:
                 raise
-        if before is not None and later and (found is None or found.status is not SearchStatus.FOUND):
+        if before is not None and later and (found is None or not found.found):
             began = self.begin(before)
-            found = reach(self.scene, began, t, state) if closed == closed_pairs(began).keys() else None
+            found = reach(began, t, state) if closed == began.closed.keys() else None
         return _found_at(found, phase, t)
 
     def _jumps(self, phase: Phase, t: float) -> bool:
@@ -257,10 +242,7 @@ class History:
     def around(
         self, t: float, spec: ContactSpec | None = None, until: float | None = None
     ) -> dict[str, Grip]:
-        """Return how friction holds the closed contacts but one at load parameter t; those that change there, as before.
-
-        A contact that touches there is `LOOSE`. Sticks are followed `until` a load parameter, by default t.
-        """
+        """Return how friction holds the closed contacts but one at t, before a change there; sticks are followed `until` a load parameter."""
         held, until = {}, t if until is None else until
         for other in self.scene.contacts:
             now = self._phase_at(other.pair, t)
@@ -285,9 +267,9 @@ class History:
             for first in (state, loose):
                 found = solve(self.scene, replace(answer, arcs=kept, grips=first))
                 for then in (loose, state) if first is loose else ():
-                    if found.status is SearchStatus.FOUND:
-                        found = reach(self.scene, found, t, then)
-                if found.status is SearchStatus.FOUND:
+                    if found.found:
+                        found = reach(found, t, then)
+                if found.found:
                     return found
         raise UnknownFrictionError(
             f"no equilibrium near load parameter {t:.6g} was found in the contacts there"
@@ -296,7 +278,7 @@ class History:
 
 def _found_at(solution: Solution | None, phase: Phase, t: float) -> Solution:
     """Return an equilibrium that was found where a phase begins, or raise `UnknownFrictionError`."""
-    if solution is None or solution.status is not SearchStatus.FOUND:
+    if solution is None or not solution.found:
         raise UnknownFrictionError(
             f"no equilibrium was found where {phase.spec.pair} {phase.does} at {t:.6g}"
         )
@@ -308,14 +290,15 @@ def at_rest(scene: Scene, spec: ContactSpec) -> Hold:
     beam = scene.beam(spec.beam)
     x, y = beam.direction
     there = scene.place(spec.node) if "." in spec.node else scene.pin(spec.node).position(0.0)
-    left, steep = 1.0 if spec.side == "left" else -1.0, face_slope(scene, spec)
+    face = face_of(scene, spec)
+    steep = face.slope
     arc = _foot(beam, there)
     for _ in range(_FEET if steep else 0):
         apart = np.array(there) - np.array(beam.place(arc / beam.length))
-        ahead = float(apart @ beam.tangent(arc / beam.length)) + steep * touching_distance(scene, spec, arc)
+        ahead = float(apart @ beam.tangent(arc / beam.length)) + steep * face.reach(arc)
         arc = min(max(arc + ahead, 0.0), beam.length)
-    angle, tilt = math.atan2(y, x), left * math.asin(steep)
-    lever = left * (scene.radius(spec) - touching_distance(scene, spec, arc))
+    angle, tilt = math.atan2(y, x), face.left * math.asin(steep)
+    lever = face.left * (face.radius - face.reach(arc))
     return Hold(
         load_parameter=0.0,
         arc_position=arc,
@@ -334,12 +317,11 @@ def _foot(beam: BeamSpec, point: tuple[float, float]) -> float:
     return float(np.clip(fraction, 0.0, 1.0)) * beam.length
 
 
-def _margin(scene: Scene, now: Solution, phase: Phase, own: Grip) -> float:
+def _margin(now: Solution, phase: Phase, own: Grip) -> float:
     """A dimensionless number that is zero where a state ends: push at a touch or release, slip rate in slip, distance from the cone in stick."""
     touch, opens = now.layout.touch(phase.spec.pair), phase.slip == OPEN
     if own.friction and own.slip and not opens:
-        rate = rates(scene, now)
-        return own.slip * slip_rate(now, touch, rate) / speed(scene, now, rate)
+        return relative_slip_rate(now, touch)
     contact = touching(now, touch)
     if opens or not own.friction:
         return contact.push / now.layout.force

@@ -83,11 +83,7 @@ def _leaning(response: Response, spec: ContactSpec, force: NDArray[np.float64], 
 
 
 def phases(response: Response, spec: ContactSpec, column: Ints) -> tuple[tuple[Phase, ...], tuple[int, ...]]:
-    """Return the phases of a contact in order, and the number of the phase at every load parameter.
-
-    The first phase begins at 0. A phase that begins at an event is stated there; one that the events leave out begins somewhere
-    between two load parameters. At an event an answer may state the state before or behind it.
-    """
+    """Return the phases of a contact in order, the first from 0, and the number of the phase at every load parameter."""
     times = np.concatenate([[0.0], response.load_parameter])
     events = changes_of(response, spec.pair)
     found: list[Phase] = []
@@ -96,6 +92,7 @@ def phases(response: Response, spec: ContactSpec, column: Ints) -> tuple[tuple[P
         low, high = float(times[k]), float(times[k + 1])
         between = [event for event in events if event.load_parameter <= high]
         before = found[-1].slip if found else _before(between, now)
+        # at an event an answer may state the state before or behind it
         if between and between[-1].load_parameter >= high - SAME and not _may_be(between[-1], before, now):
             between = [event for event in between if event.load_parameter < high - SAME]
         events = events[len(between) :]

@@ -10,7 +10,7 @@ from comparisons.referee.certificate import Judgement
 from comparisons.referee.friction.dissipation import dissipated
 from comparisons.referee.friction.history import History, at_rest
 from comparisons.referee.friction.phases import OPEN, UNKNOWN, Phase
-from comparisons.referee.friction.slip import place, rates, slip_rate, speed
+from comparisons.referee.friction.slip import place, relative_slip_rate
 from comparisons.referee.grip import UnknownFrictionError
 from comparisons.referee.layout import Touch
 from comparisons.referee.path import corners
@@ -61,11 +61,7 @@ def _unlawful(
 
 
 def rubs_wrongly(history: History, k: int, exact: Equilibrium, allowed: float) -> Iterator[str]:
-    """Yield violations of Coulomb's law by the exact equilibrium next to an answer, and moves of the answer in stick.
-
-    The difference `allowed` also bounds a slip the wrong way and a force outside the cone: the answer may change its state a little
-    earlier or later than the exact one.
-    """
+    """Yield violations of Coulomb's law by more than `allowed` by the exact equilibrium next to an answer, and its moves in stick."""
     for touch in exact.solution.layout.touches:
         if touch.grip is None:
             continue
@@ -76,7 +72,7 @@ def rubs_wrongly(history: History, k: int, exact: Equilibrium, allowed: float) -
             yield f"{pair} sticks with an exact force outside its cone, F_t = {contact.drag / contact.push:.6g} F_n"
         if touch.grip.slip == 0:
             yield from _creeps(history, k, touch, exact, allowed)
-        elif _backwards(history.scene, exact, touch) > allowed:
+        elif _backwards(exact, touch) > allowed:
             yield f"{pair} slips against the stated direction"
 
 
@@ -92,11 +88,8 @@ def wanders(history: History, k: int, allowed: float) -> Iterator[str]:
 
 
 def _creeps(history: History, k: int, touch: Touch, exact: Equilibrium, allowed: float) -> Iterator[str]:
-    """Yield a contact whose held material point moves though it sticks.
-
-    ``A (s - s*) + lever (psi - psi*) + roll (phi - phi*) = 0`` holds the point. An answer states s alone; the angles are those of the exact
-    equilibrium, and the answer knows each of the three terms to its accuracy only.
-    """
+    """Yield a contact whose held material point moves: ``A (s - s*) + lever (psi - psi*) + roll (phi - phi*) = 0`` holds it."""
+    # an answer states s alone; the angles are exact, and it knows each of the three terms to its accuracy only
     assert touch.grip is not None, "a contact that sticks has friction"
     hold = touch.grip.hold
     assert hold is not None, "a contact that sticks has a place"
@@ -123,18 +116,14 @@ def _law(response: Response, allowed: float) -> float:
     return allowed if response.outside or response.continuum else LAW
 
 
-def _backwards(scene: Scene, exact: Equilibrium, touch: Touch) -> float:
+def _backwards(exact: Equilibrium, touch: Touch) -> float:
     """Slip rate against the sign of the slip, over the speed; at a corner of a pin's path the smaller of those before and behind it."""
-    assert touch.grip is not None, "only a contact with friction slips"
-    sizes = []
+    least = np.inf
     for behind in (False, True):
-        rate = rates(scene, exact.solution, behind=behind)
-        size = -touch.grip.slip * slip_rate(exact.solution, touch, rate) / speed(scene, exact.solution, rate)
-        sizes.append(size)
-        t = exact.load_parameter
-        if size <= 0.0 or not any(abs(t - corner) < 1e-9 for corner in corners(scene)):
+        least = min(least, -relative_slip_rate(exact.solution, touch, behind=behind))
+        if least <= 0.0 or not any(abs(exact.load_parameter - t) < 1e-9 for t in corners(exact.scene)):
             break
-    return min(sizes)
+    return least
 
 
 def _spent(history: History, k: int, exact: Equilibrium) -> tuple[float, float]:
@@ -173,11 +162,7 @@ def _misspent(history: History, k: int, exact: Equilibrium, tolerance: float) ->
 def rubs_wrongly_on_the_way(
     history: History, numbers: Sequence[int], states: Sequence[Judgement], allowed: float
 ) -> Iterator[str]:
-    """Yield violations between load parameters.
-
-    They are dissipation that falls, changes of slip and stick that are not stated or elsewhere, work that is not the exact strain
-    energy and the dissipation at the judged load parameters, and dissipation up to the last of them that is not the exact one.
-    """
+    """Yield changes of slip and stick that are unstated or elsewhere, and work and dissipation up to judged load parameters that are not exact."""
     response = history.response
     for spec in history.scene.contacts:
         friction = response.contacts[spec.pair].friction
@@ -230,7 +215,7 @@ def _elsewhere(history: History, spec: ContactSpec, allowed: float) -> Iterator[
         if UNKNOWN in (phase.slip, before.slip):
             continue
         try:
-            begin = history.begin(phase).layout.load_parameter
+            begin = history.begin(phase).t
         except UnknownFrictionError as error:
             if error.wrong:
                 yield str(error)

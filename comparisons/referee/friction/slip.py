@@ -1,66 +1,146 @@
-"""The place of a contact with friction, and its slip rate, by the referee's own equilibria."""
+"""The slip rate of a contact with friction, and its integral in stick, along the referee's own equilibria.
+
+In stick ``v = A s' + lever psi' + roll phi'`` is zero all along. The row of `friction` is its trapezium from the beginning of the stick; it is
+off by the areas between path and chord in the planes of s and A, and of psi and the lever, ::
+
+    c = (A - A*)/2 (s - s*) - int (A - A*) ds + (lever - lever*)/2 (psi - psi*) - int (lever - lever*) dpsi
+
+a polynomial of the load parameter through equilibria whose rows have its values: a fixed point, since an area changes the path little.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
+from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from comparisons.referee.equations import element_before
-from comparisons.referee.grip import Hold, rows
+from comparisons.referee.grip import Grip, Hold, rows
 from comparisons.referee.layout import NONE, Touch
 from comparisons.referee.newton import Solution
-from comparisons.referee.path import corners, tangent
-from comparisons.scene import Scene
+from comparisons.referee.path import corners, reach, tangent
 
 Array = NDArray[np.float64]
+Holds = dict[str, Hold]
 
 _AHEAD, _AHEAD_TURNED = 1e-4, 1e-6
 """Load parameters over which rates are differences. The equations are linear in pins and loads, but not in prescribed rotations."""
 _CORNER = 1e-9
 """Distance from a corner, in load parameters, that counts as none."""
+_PLACES = (1.0 - np.cos(np.pi * np.arange(9) / 8.0)) / 2.0
+"""Load parameters in an interval from 0 to 1."""
+_APART = 1e-9
+"""Largest difference of the areas through nine and five points, over the length."""
+_SAME = 1e-14
+"""Change of the areas over the length at which they are found."""
+_SWEEPS, _LEAST = 30, 1e-4
+"""Largest number of corrections, and smallest interval of load parameters that is halved."""
 
 
-def rates(scene: Scene, now: Solution, *, behind: bool = False) -> Array:
+@lru_cache(maxsize=2)
+def _rates(now: Solution, behind: bool) -> Array:
     """Rates of the unknowns ahead, or behind, up to the next of the `corners`."""
-    t, sign = now.layout.load_parameter, -1.0 if behind else 1.0
+    scene, sign = now.layout.scene, -1.0 if behind else 1.0
     turned = any(change[2] for motion in scene.prescribed_motions.values() for change in motion.increments)
-    apart = [sign * (corner - t) for corner in corners(scene)]
+    apart = [sign * (corner - now.t) for corner in corners(scene)]
     little = [part / 2.0 for part in apart if part > _CORNER]
-    return tangent(scene, now, sign * min([_AHEAD_TURNED if turned else _AHEAD, *little]))[0]
+    return tangent(now, sign * min([_AHEAD_TURNED if turned else _AHEAD, *little]))[0]
 
 
-def speed(scene: Scene, now: Solution, rate: Array) -> float:
-    """Largest rate of a position per load parameter, in units of `Layout`; rates of slip are measured against it."""
-    layout = now.layout
-    moved = [k for item in layout.stations for k in item.place.unknown if k != NONE]
-    moved += [touch.arc for touch in layout.touches]
-    ways = [float(np.hypot(*np.diff(pin.points, axis=0).T).sum()) / layout.length for pin in scene.pins]
-    return max([float(np.abs(rate[moved]).max(initial=0.0)), *ways, 1e-300])
+def slip_rate(now: Solution, touch: Touch, *, behind: bool = False) -> float:
+    """Slip rate of a contact with friction, ahead or behind, in units of the layout."""
+    layout, rate = now.layout, _rates(now, behind)
+    before, _ = layout.beside(touch)
+    slipping = place(now, touch).stretch * float(rate[touch.arc])
+    if touch.angle == NONE:
+        return slipping
+    theta, phi = float(rate[layout.stations[before.last].numbers[2]]), float(rate[touch.angle])
+    theta += before.rod.curvature * float(rate[touch.arc])
+    return slipping + float(touch.lever(float(now.z[touch.arc]))) * (phi - theta) + touch.roll * phi
+
+
+def relative_slip_rate(now: Solution, touch: Touch, *, behind: bool = False) -> float:
+    """Slip rate in the direction of the slip, over the largest rate of a position."""
+    assert touch.grip is not None, "only a contact with friction slips"
+    rate = _rates(now, behind)[now.layout.moving]
+    pins = (np.hypot(*np.diff(pin.points, axis=0).T).sum() for pin in now.layout.scene.pins)
+    speed = max([float(np.abs(rate).max(initial=0.0)), *(float(x) / now.layout.length for x in pins), 1e-300])
+    return touch.grip.slip * slip_rate(now, touch, behind=behind) / speed
 
 
 def place(solution: Solution, touch: Touch) -> Hold:
     """The place of a contact with friction, at which it may begin to stick."""
     layout, z = solution.layout, solution.z
     before, _ = layout.beside(touch)
-    theta = layout.stations[before.last].rotation(z)
     phi = 0.0 if touch.angle == NONE else float(z[touch.angle])
-    assert solution.system is not None, "an equilibrium has its equations"
     moment = float(solution.system.ends[element_before(solution.mesh, touch), 1])
     return Hold(
-        load_parameter=layout.load_parameter,
+        load_parameter=solution.t,
         arc_position=float(z[touch.arc]) * layout.length,
         stretch=rows(layout, touch, z, moment).stretch,
-        shear=phi - theta - before.rod.curvature * float(z[touch.arc]),
+        shear=phi - float(layout.motions(z)[before.last, 2]) - before.rod.curvature * float(z[touch.arc]),
         direction=phi,
     )
 
 
-def slip_rate(solution: Solution, touch: Touch, rate: Array) -> float:
-    """Slip rate of a contact with friction from the rates of the unknowns, in units of the layout."""
-    layout = solution.layout
-    before, _ = layout.beside(touch)
-    slipping = place(solution, touch).stretch * float(rate[touch.arc])
-    if touch.angle == NONE:
-        return slipping
-    theta, phi = float(rate[layout.stations[before.last].rotation_unknown]), float(rate[touch.angle])
-    theta += before.rod.curvature * float(rate[touch.arc])
-    lever = float(touch.lever(float(solution.z[touch.arc])))
-    return slipping + lever * (phi - theta) + touch.roll * phi
+def roll(
+    near: Solution, span: tuple[float, float], grips: Mapping[str, Grip], begins: Holds
+) -> tuple[Holds, Holds] | None:
+    """Follow contacts that stick without a change from `begins` to an equilibrium near the end; where they began, and the places at the end."""
+    first, last = span
+    times, found = first + (last - first) * _PLACES, [near] * len(_PLACES)
+    holds = {pair: hold for pair in begins if (hold := grips[pair].hold) is not None}
+    areas = {pair: Polynomial([hold.area(first)], domain=span) for pair, hold in holds.items()}
+    length = near.layout.length
+    for _ in range(_SWEEPS):
+        own = {pair: replace(hold, areas=(*hold.areas, (first, areas[pair]))) for pair, hold in holds.items()}
+        held = {**grips, **{pair: replace(grips[pair], hold=hold) for pair, hold in own.items()}}
+        start = near
+        for k in reversed(range(1, len(times))):
+            start = found[k] = reach(start if found[k] is near else found[k], float(times[k]), held)
+            if not start.found:
+                return None
+        trails = {pair: _trail(hold, begins[pair], found[1:], pair) for pair, hold in holds.items()}
+        changes = {pair: _area(times, trail) for pair, trail in trails.items()}
+        rough = [
+            _area(times[::2], trail[:, ::2])(last) - changes[pair](last) for pair, trail in trails.items()
+        ]
+        if last - first > _LEAST and max(map(abs, rough)) > _APART * length:
+            middle = float(times[len(times) // 2])
+            half = roll(found[len(times) // 2], (first, middle), grips, begins)
+            if half is None:
+                return None
+            grips = {**grips, **{pair: replace(grips[pair], hold=hold) for pair, hold in half[0].items()}}
+            return roll(found[-1], (middle, last), grips, half[1])
+        before, areas = areas, {pair: change + holds[pair].area(first) for pair, change in changes.items()}
+        if all(np.abs((areas[pair] - before[pair])(times)).max() <= _SAME * length for pair in holds):
+            ends = {pair: found[-1].layout.touch(pair) for pair in holds}
+            return own, {pair: place(found[-1], touch) for pair, touch in ends.items()}
+    return None
+
+
+def _trail(hold: Hold, begin: Hold, found: list[Solution], pair: str) -> Array:
+    """Changes (4, n) of s, A, psi and the lever since the stick began, at the begin of an interval and at equilibria."""
+    touches = [item.layout.touch(pair) for item in found]
+    unit, touch = found[0].layout.length, touches[0]
+    places = [hold, begin, *(place(item, own) for item, own in zip(found, touches, strict=True))]
+    rows = [
+        [item.arc_position, item.stretch, item.shear, unit * touch.lever(item.arc_position / unit)]
+        for item in places
+    ]
+    trail = np.array(rows[1:]).T - np.array(rows[:1]).T
+    trail[2] -= 2.0 * np.pi * np.rint(trail[2] / (2.0 * np.pi))
+    return trail
+
+
+def _area(times: Array, trail: Array) -> Polynomial:
+    """Change of c since the first load parameter."""
+    arc, stretch, shear, lever = (
+        Polynomial.fit(times, row, len(times) - 1, domain=[times[0], times[-1]]) for row in trail
+    )
+    area = (arc * stretch + shear * lever) / 2.0
+    area = area - (stretch * arc.deriv() + lever * shear.deriv()).integ(lbnd=times[0])
+    whole: Polynomial = area - area(times[0])
+    return whole

@@ -46,8 +46,6 @@ SOURCES: dict[str, tuple[Scene, tuple[str, ...]]] = {
 """Scenes, and the options of the model whose true answers are forged."""
 SCENES = {
     "left": cantilever(0.0, STEPS, (1.0, 0.0), (0.0, 2.0 / np.pi), side="left"),
-    "through": cantilever(0.0, STEPS, (0.5, 0.01), (0.5, -0.2), side="left"),
-    "around": cantilever(0.0, STEPS, (1.2, 0.01), (1.2, -0.1), (0.6, -0.1), side="left"),
 }
 """Scenes that are judged with answers of others."""
 
@@ -217,7 +215,7 @@ def shifted(kind: str, **by: float) -> Forgery:
 
 PROGRAM, OUTSIDE = claimed(model="other"), claimed(outside=True, continuum=True)
 CONE, STEEP = np.arctan(0.3), 1.05 * np.arctan(0.3)
-BUT_ONE, ONE = slice(STEPS - 1), slice(4, 5)
+BUT_ONE = slice(STEPS - 1)
 WRONG, NOT = "NOT_AN_EQUILIBRIUM: ", "INADMISSIBLE: "
 BALANCE = "NOT_AN_EQUILIBRIUM: the support reactions do not balance contact forces and loads"
 FORGED: dict[str, tuple[str, Forgery, str]] = {
@@ -225,7 +223,6 @@ FORGED: dict[str, tuple[str, Forgery, str]] = {
     "nothing moves, of a solid": ("steel solid", moved(0.0), WRONG + "displacement off by 25 % (cantilever), allowed 6.58 %"),
     "reactions times 3": ("steel", held(3.0), WRONG + "reaction off by 50 % (moment of cantilever.start)"),
     "forces times 3 at all but one": ("ks", both(pushed(3.0, BUT_ONE), held(3.0, BUT_ONE)), WRONG + "force off by 2e+02 % (pin->cantilever)"),
-    "forces times 3 at one alone": ("mixed", both(pushed(3.0, ONE), held(3.0, ONE)), WRONG + "force off by 2e+02 %"),
     "two states exchanged": ("ks", exchanged(4, 7), WRONG + "supports and contacts are off by 0.36 L (pin->cantilever) at load parameter 0.5"),
     "half an answer": ("ks", reordered(*range(STEPS // 2)), "load_parameter: has 5 of 10 load parameters, and the status is COMPLETED"),
     "contact force times 1.009": ("ks", pushed(1.009), BALANCE),
@@ -235,9 +232,6 @@ FORGED: dict[str, tuple[str, Forgery, str]] = {
     "tip moved by 7": ("ks", put("tips", BEAM, to=plus(7.0)), WRONG + "tip off by 9.9e+02 %"),
     "lost contact": ("ks", lost, NOT + "pin->cantilever is open and its node goes through the beam up to load parameter 0.1"),
     "a slip-off without an event": ("ks", both(lost, pin("slip_off", 0.0)), NOT + "pin->cantilever slips off at load parameter 0 without an event"),
-    "a pin that goes through": ("through", both(instead("ks"), lost), NOT + "pin->cantilever is open and its node goes through the beam"),
-    "a pin around the end": ("around", both(instead("ks"), lost), "NOT_JUDGED: nothing to judge: no load, support or contact carries a force"),
-    "a pull": ("ks", pin("force", -1.0, 6), WRONG + "the contact force of pin->cantilever pulls"),
     "a pin from the other side": ("left", instead("ks"), NOT + "the contact force of pin->cantilever pulls, -7.28e-05"),
     "closed without an event": ("ks", pin("force", 0.0, 4), WRONG + "tip off by 66 %"),
     "index 7": ("ks", put("index", 6, to=7), WRONG + "index 7 is stated, the equilibrium has 0 at load parameter 0.7"),
@@ -326,7 +320,7 @@ def test_a_stored_response_is_judged_as_the_response_itself(tmp_path, judged):
     assert read["verdict"] == "CERTIFIED"
     for name in ("force", "arc_position", "reaction", "tip"):
         assert read["judged"][-1]["distance"][name] == pytest.approx(
-            getattr(whole.judged[-1].distance, name), rel=1e-6
+            whole.judged[-1].distance.sizes[name], rel=1e-6
         )
     arc = read["judged"][-1]["exact"]["contacts"][PAIR]["arc_position"]
     assert arc == pytest.approx(whole.judged[-1].exact.contacts[PAIR].arc_position, rel=1e-13)

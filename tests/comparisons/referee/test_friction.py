@@ -87,7 +87,7 @@ def test_the_solid_is_certified_all_along():
     assert all_along(scene, response).certified
     found = all_along(scene, without_events(response))
     assert found.certified, found.line()
-    assert 1e-3 < max(item.distance.force for item in found.judged if item.distance) < 6e-3
+    assert 1e-3 < max(item.distance.sizes["force"] for item in found.judged if item.distance) < 6e-3
 
 
 @pytest.mark.slow

@@ -41,7 +41,7 @@ def test_a_true_answer_is_certified(name):
     assert response.completed, response.message
     found = certify(response, scene, at=at, allowance=allowance)
     assert found.certified, found.line()
-    assert name != "next to an end" or found.judged[0].distance.arc_position < 1e-5
+    assert name != "next to an end" or found.judged[0].distance.sizes["arc_position"] < 1e-5
     if name == "passing":
         order = [
             [judgement.exact.contacts[pair].arc_position for pair in ("a.start->c", "q->c")]

@@ -12,13 +12,7 @@ from comparisons.models.options import Options
 from comparisons.models.verify import CHECK_FAILED, verified
 from comparisons.referee import certify
 from comparisons.response import ContactHistory, Deformation, Response
-from comparisons.scene import (
-    ContactSpec,
-    PinSpec,
-    Scene,
-    SpringSpec,
-    load_scene,
-)
+from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene
 from tests.comparisons.referee.forged import contact, scene_of, support
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=2)
@@ -31,9 +25,6 @@ ARC = scene_of("arc")
 SOFTER = replace(STRIP, name="softer", start=(0.0, 5.0), end=(1.0, 5.0), second_moment=1e-7)
 TWO = replace(ARC, beams=(STRIP, SOFTER))
 """The strip of ARC, and a softer one, on which nothing depends."""
-SPRUNG = replace(
-    ARC, springs=(SpringSpec(beam="cantilever", end="end", stiffness=(0.0, 0.0), rotation=0.25),)
-)
 
 
 @cache
@@ -168,11 +159,6 @@ CASES: dict[str, tuple[float, Callable[[float], str], str]] = {
     "judge.LAST_PLACES": (1e-9, lambda x: refused(grown(x), KS), "components differ"),
     "balance.BALANCE of forces": (1e-6, lambda x: refused(held(KS, force=x), KS), "balance"),
     "balance.BALANCE of moments": (1e-6, lambda x: refused(held(ARC, moment=x), ARC), "balance"),
-    "balance.BALANCE with a spring": (
-        1e-6,
-        lambda x: refused(held(SPRUNG, moment=x / 0.8), SPRUNG),
-        "moments do not balance",
-    ),
     "start.PULL": (1e-9, lambda x: refused(*on_the_arc(force=-x, base=TWO)), "pulls"),
     "admissible.INSIDE": (1e-9, lambda x: refused(*on_the_arc(-x, 0.1)), "inside the beam"),
     "rubbing.LAW": (1e-6, lambda x: refused(off_the_cone(x), SLIPS), "slips with"),
@@ -185,7 +171,6 @@ CASES: dict[str, tuple[float, Callable[[float], str], str]] = {
     "verify.STRAIN": (0.1, lambda x: failed(strained(x), KS), "beyond elements of small strain"),
     # a shorter path is refused
     "verify.MOTION": (1e-10, lambda x: failed(*on_the_arc(0.01, way=1e-20 / x)), "is not resolved"),
-    "models.balance.BALANCE": (1e-6, lambda x: failed(held(KS, force=x), KS), "balance"),
 }
 """Value, what is said of an answer at a size, and a part of the sentence."""
 
