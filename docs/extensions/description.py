@@ -22,5 +22,5 @@ class Description(MetadataHookInterface):
 
     def update(self, metadata: dict[str, Any]) -> None:
         """Add the key ``readme``."""
-        text = description((Path(self.root) / "README.md").read_text(encoding="utf-8"))
-        metadata["readme"] = {"content-type": "text/markdown", "text": text}
+        readme = (Path(self.root) / "README.md").read_text(encoding="utf-8")
+        metadata["readme"] = {"content-type": "text/markdown", "text": description(readme)}

@@ -1,4 +1,4 @@
-"""The pages that are made from the code, before every build: nothing in them can go out of date."""
+"""The pages that are made from the code before every build."""
 
 import json
 import re
