@@ -4,7 +4,8 @@ Beams are ribbons of their height, so that beams and solids are shown on one foo
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,10 +28,19 @@ PARTS, LAYERS = 8, (4, 8)
 """Quadrilaterals along an element of a beam, and over its height for a stress linear in it or not."""
 THIN = 2e-3
 """Height of a beam whose section has none, over the size of the picture."""
-ARROW = 0.2
-"""Length of the longest arrow over the size of the picture."""
+ARROW, LEAST, POINT = 0.2, 0.02, 0.014
+"""Length of the longest arrow and the least length of one over the size of the picture; radius of a mark over half the size."""
 SYMBOL = 0.03
 """Size of a support's symbol over the size of the undeformed structure."""
+_TURN = np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False)
+CIRCLE = np.stack([np.cos(_TURN), np.sin(_TURN)], axis=-1)
+SHAFT, HEAD = np.array(
+    [
+        [[-1, -0.025], [-0.25, -0.025], [-0.25, 0.025], [-1, 0.025]],
+        [[-0.25, -0.08], [0, 0], [0, 0], [-0.25, 0.08]],
+    ]
+)
+"""The two parts of an arrow of unit length along the first axis, which ends at the origin."""
 COLOURS = {OPEN: CONTACT_STATES[OPEN], "contact": PIN, **CONTACT_STATES}
 """Colours of contacts by their state, the open ones first, below the others; a closed one without friction is a ``contact``."""
 
@@ -65,15 +75,30 @@ class Panel:
     states: NDArray[np.str_]
     supports: Segments
 
-    def pins_by_state(self) -> dict[str, NDArray[np.int64]]:
-        """Return the numbers of the pins by their states, in the order of drawing."""
-        found = {state: np.flatnonzero(self.states == state) for state in COLOURS}
-        return {state: numbers for state, numbers in found.items() if len(numbers)}
+    def shown(self) -> list[str]:
+        """Return the states of the pins in the order of drawing."""
+        return [state for state in COLOURS if state in self.states]
 
     def outline(self) -> list[Array]:
         """Return points (..., 2) within which all is drawn but the arrows."""
         reach = self.radii[:, None]
         return [self.points, self.pins + reach, self.pins - reach, self.supports.reshape(-1, 2)]
+
+    def shapes(self, scale: "Scale") -> Iterator[tuple[str, float, Array]]:
+        """Yield what stands for the pins, from below: colour, opacity and polygons (n, corners, 2) of discs, marks and arrows.
+
+        An arrow ends where a round pin touches.
+        """
+        lengths = scale.force * np.hypot(*self.forces.T)
+        for state in self.shown():
+            own, colour = self.states == state, COLOURS[state]
+            discs, drawn = own & (self.radii > 0.0), own & (lengths > 2.0 * LEAST * scale.half)
+            yield colour, 0.35, self.pins[discs, None] + self.radii[discs, None, None] * CIRCLE
+            yield colour, 1.0, self.pins[own, None] + POINT * scale.half * CIRCLE
+            along = self.forces[drawn] / np.hypot(*self.forces[drawn].T)[:, None]
+            axes = lengths[drawn, None, None] * np.stack([along, along @ [[0.0, 1.0], [-1.0, 0.0]]], axis=1)
+            tips = self.pins[drawn] + self.radii[drawn, None] * along
+            yield colour, 1.0, np.concatenate([tips[:, None] + part @ axes for part in (SHAFT, HEAD)])
 
 
 def mises_panel(response: Response, scene: Scene, ks: Sequence[int], title: str) -> Panel:
@@ -94,15 +119,12 @@ def mises_panel(response: Response, scene: Scene, ks: Sequence[int], title: str)
                 data["shear_stress"] = 1.5 * data["V"] / area
     panels = [panel(state, title, stress="von_mises") for state in states]
     starts = np.cumsum([0, *(len(one.points) for one in panels)]).tolist()
-    return Panel(
-        title=title,
-        quads=np.concatenate([one.quads + start for one, start in zip(panels, starts, strict=False)]),
-        forces=0.0 * np.concatenate([one.forces for one in panels]),
-        **{
-            name: np.concatenate([getattr(one, name) for one in panels])
-            for name in ("points", "stress", "pins", "radii", "states", "supports")
-        },
-    )
+    whole: dict[str, Any] = {
+        name: np.concatenate([getattr(one, name) for one in panels])
+        for name in ("points", "stress", "pins", "radii", "forces", "states", "supports")
+    }
+    quads = np.concatenate([one.quads + start for one, start in zip(panels, starts, strict=False)])
+    return replace(panels[0], quads=quads, **{**whole, "forces": 0.0 * whole["forces"]})
 
 
 def panel(
@@ -152,34 +174,36 @@ def _enlarged(grid: Grid, factor: float) -> Array:
 def _ribbon(grid: Grid, size: float, factor: float) -> Body:
     """Ribbons of a beam's height about the cubics that have the ends and end tangents of the lines; straight lines without rotations."""
     data, ends = grid.point_data, grid.cells["line"]
-    straight, chord = np.diff(grid.points[ends], axis=1), np.diff(data["deformed"][ends], axis=1)
+    before, after, ending = (
+        (points @ [1.0, 1.0j])[ends] for points in (grid.points, data["deformed"], _enlarged(grid, factor))
+    )
+    straight, tangent = (np.repeat(np.diff(points), 2, axis=1) for points in (before, after))
     if "rotation" in data:
-        before = _end_angles(np.arctan2(straight[:, 0, 1], straight[:, 0, 0]))
-        undeformed = np.hypot(*straight.T).T[..., None] * _unit(before)
-        tangent = np.hypot(*chord.T).T[..., None] * _unit(before + data["rotation"][ends])
-    else:
-        undeformed, tangent = (np.repeat(vectors, 2, axis=1) for vectors in (straight, chord))
-    tangent = tangent + (factor - 1.0) * (tangent - undeformed)
+        angles = _end_angles(np.angle(straight[:, 0]))
+        straight = np.abs(straight) * np.exp(1.0j * angles)
+        tangent = np.abs(tangent) * np.exp(1.0j * (angles + data["rotation"][ends]))
+    tangent = tangent + (factor - 1.0) * (tangent - straight)
     u = np.linspace(0.0, 1.0, PARTS + 1)
     blends = np.stack([1 - 3 * u**2 + 2 * u**3, 3 * u**2 - 2 * u**3, u - 2 * u**2 + u**3, u**3 - u**2])
-    line = np.einsum("bu,ebx->eux", blends, np.concatenate([_enlarged(grid, factor)[ends], tangent], axis=1))
-    between = np.stack([1 - u, u])
+    line = np.concatenate([ending, tangent], axis=1) @ blends
 
     def along(name: str) -> Array:
         values = data.get(name, np.zeros(len(grid.points)))[ends]
-        return np.asarray(np.einsum("bu,eb->eu", between, values)[..., None])
+        return np.asarray((values @ np.stack([1 - u, u]))[..., None])
 
-    normal = _unit(np.einsum("bu,eb->eu", between, _angles(tangent)) + np.pi / 2.0)
+    turn = np.angle(tangent[:, 1:] * tangent[:, :1].conj())
+    normal = 1.0j * np.exp(1.0j * (np.angle(tangent[:, :1]) + turn * u))
     half = along("height") / 2.0
     half[half == 0.0] = THIN / 2.0 * size
     across = np.linspace(-1.0, 1.0, LAYERS["shear_stress" in data] + 1)
-    points = line[:, :, None] + half[..., None] * across[:, None] * normal[:, :, None]
+    points = line[..., None] + half * across * normal[..., None]
     stress = along("axial_stress_right") * (1 - across) / 2 + along("axial_stress_left") * (1 + across) / 2
     if "shear_stress" in data:
         stress = np.sqrt(stress**2 + 3.0 * (along("shear_stress") * (1.0 - across**2)) ** 2)
-    number = np.arange(points[..., 0].size).reshape(points.shape[:-1])
+    number = np.arange(points.size).reshape(points.shape)
     corners = (number[:, :-1, :-1], number[:, 1:, :-1], number[:, 1:, 1:], number[:, :-1, 1:])
-    return points.reshape(-1, 2), np.stack(corners, axis=-1).reshape(-1, 4), stress.ravel()
+    plane = np.stack([points.real, points.imag], axis=-1).reshape(-1, 2)
+    return plane, np.stack(corners, axis=-1).reshape(-1, 4), stress.ravel()
 
 
 def _end_angles(chords: Array) -> Array:
@@ -192,18 +216,6 @@ def _end_angles(chords: Array) -> Array:
     return np.stack([np.append(first, between), np.append(between, last)], axis=1)
 
 
-def _unit(angles: Array) -> Array:
-    return np.stack([np.cos(angles), np.sin(angles)], axis=-1)
-
-
-def _angles(tangent: Array) -> Array:
-    """Return the angles of the tangents at both ends of every line, the second within half a turn of the first."""
-    first = np.arctan2(tangent[:, 0, 1], tangent[:, 0, 0])
-    cross = tangent[:, 0, 0] * tangent[:, 1, 1] - tangent[:, 0, 1] * tangent[:, 1, 0]
-    turn = np.arctan2(cross, np.einsum("ex,ex->e", tangent[:, 0], tangent[:, 1]))
-    return np.stack([first, first + turn], axis=1)
-
-
 def _symbols(grids: Mapping[str, Grid], factor: float) -> Iterator[tuple[Array, Segments]]:
     """Yield the symbols of supports, springs and hinges with their places."""
     for place in _enlarged(grids[HINGES], factor) if HINGES in grids else ():
@@ -211,9 +223,8 @@ def _symbols(grids: Mapping[str, Grid], factor: float) -> Iterator[tuple[Array, 
     if SUPPORTS not in grids:
         return
     data = grids[SUPPORTS].point_data
-    for place, kinds, away in zip(
-        _enlarged(grids[SUPPORTS], factor), data["held"], data["inward"], strict=True
-    ):
+    places = _enlarged(grids[SUPPORTS], factor)
+    for place, kinds, away in zip(places, data["held"], data["inward"], strict=True):
         held = tuple(name for name, kind in zip(COMPONENTS, kinds, strict=True) if kind == 1)
         if held:
             yield place, support_symbol(held, away)
@@ -251,12 +262,12 @@ class Scale:
         largest = max(float(np.hypot(*one.forces.T).max(initial=0.0)) for one in panels)
         force = ARROW * float(np.ptp(points, axis=0).max()) / (largest or 1.0)
         points = np.concatenate([points, *(one.pins - force * one.forces for one in panels)])
-        (left, low), (right, high) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+        low, high = points.min(axis=0), points.max(axis=0)
         top = max(float(np.abs(one.stress).max()) for one in panels)
         signed = any(float(one.stress.min()) < 0.0 for one in panels)
         return cls(
-            centre=((left + right) / 2.0, (low + high) / 2.0),
-            extent=((right - left) / 2.0, (high - low) / 2.0),
+            centre=tuple(((low + high) / 2.0).tolist()),
+            extent=tuple(((high - low) / 2.0).tolist()),
             stress=(-top if signed else 0.0, top),
             force=force if largest else 0.0,
             label=label,

@@ -1,4 +1,4 @@
-"""Pictures by matplotlib: the overlay of deflected shapes, and a stand-in for the rendered picture."""
+"""Pictures by matplotlib: what all of them share, and the overlay of deflected shapes."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,9 +9,9 @@ import numpy as np
 from comparisons.files import replacing
 from comparisons.models import find
 from comparisons.response import Array, Response
+from comparisons.response.table import unit_names
 from comparisons.scene import Scene
 from comparisons.show import palette
-from comparisons.show.panel import COLOURS, Panel, Scale
 from comparisons.show.symbols import draw_symbols
 
 SOLID = {"linewidth": 6.0, "alpha": 0.55, "solid_capstyle": "butt"}
@@ -64,12 +64,6 @@ def arrow(axes: Any, tail: Array, tip: Array, colour: str, width: float = 1.2) -
     axes.update_datalim([tail, tip])
 
 
-def ribbon(line: Array, normal: Array, height: Array) -> Array:
-    """Return the outline (2 n, 2) of a beam by its axis (n, 2), unit normals (n, 2) and heights (n,)."""
-    half = height[:, None] / 2.0 * normal
-    return np.concatenate([line + half, (line - half)[::-1]])
-
-
 def nearest_steps(load_parameter: Array, last: float = 1.0) -> list[int]:
     """Return the numbers of the load parameters nearest to those of `SHOWN` on the way to `last`, each once."""
     return sorted({int(np.argmin(np.abs(load_parameter - part * last))) for part in SHOWN})
@@ -89,7 +83,7 @@ def plot_shapes(scene: Scene, responses: dict[str, Response], *paths: Path) -> N
         axes.set_aspect("equal", adjustable="box")
         axes.grid(visible=True, linewidth=0.3)
     symbols = _draw_symbols(whole, scene, responses)
-    length = scene.units.split(",")[1].strip()
+    length = unit_names(scene.units)["length"]
     whole.set(xlabel=f"x [{length}]", ylabel=f"y [{length}]", title=f"{scene.name}: deflected axes")
     whole.margins(0.06)
     tall = float(np.clip(0.85 * WIDTH * whole.dataLim.height / max(whole.dataLim.width, 1e-300), 1.2, 5.5))
@@ -183,58 +177,3 @@ def _zoom_on_tip(whole: Any, detail: Any, scene: Scene, responses: dict[str, Res
     detail.locator_params(nbins=3)
     box = whole.indicate_inset(bounds=(x - half, y - half, 2.0 * half, 2.0 * half), edgecolor="0.3")
     box.rectangle.set_zorder(4)
-
-
-def plot_panels(panels: list[Panel], scale: Scale, path: Path) -> None:
-    """Draw deformed bodies side by side, coloured by stress, in place of the rendered picture."""
-    from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
-
-    wide, tall = (1.12 * max(half, 0.25 * scale.half) for half in scale.extent)
-    fig = figure(figsize=(WIDTH, min(WIDTH / len(panels) * tall / wide, 7.0) + 1.7))
-    frames = fig.subplots(1, len(panels), sharex=True, sharey=True, squeeze=False)[0]
-    x, y = scale.centre
-    for axes, panel in zip(frames, panels, strict=True):
-        bodies = PolyCollection(
-            list(panel.points[panel.quads]),
-            array=panel.stress[panel.quads].mean(axis=1),
-            cmap=scale.colours,
-            edgecolors="face",
-            linewidths=0.3,
-        )
-        bodies.set_clim(*scale.stress)
-        axes.add_collection(bodies)
-        axes.add_collection(LineCollection(list(panel.supports), colors="black", linewidths=0.8))
-        for state, numbers in panel.pins_by_state().items():
-            colour = COLOURS[state]
-            pins, diameters = panel.pins[numbers], 2.0 * panel.radii[numbers]
-            axes.add_collection(
-                EllipseCollection(
-                    diameters, diameters, 0.0 * diameters, units="xy", offsets=pins, offset_transform=axes.transData,
-                    facecolors=colour, alpha=0.5,
-                )
-            )  # fmt: skip
-            axes.plot(*pins.T, linestyle="none", marker="o", color=colour, markersize=4)
-            for pin, radius, force in zip(pins, panel.radii[numbers], panel.forces[numbers], strict=True):
-                if force.any():
-                    tip = pin + radius * force / np.hypot(*force)
-                    arrow(axes, tip - scale.force * force, tip, colour, 2.0)
-        axes.set(aspect="equal", xlim=(x - wide, x + wide), ylim=(y - tall, y + tall))
-        axes.set_title(panel.title, fontsize="medium")
-        axes.tick_params(labelsize="small")
-    fig.colorbar(bodies, ax=list(frames), label=scale.label, location="bottom", shrink=0.5)
-    _legend(fig, panels, scale)
-    save(fig, path)
-
-
-def _legend(fig: Any, panels: list[Panel], scale: Scale) -> None:
-    """Name the colours of the contacts, and the longest arrow."""
-    from matplotlib.lines import Line2D
-
-    words = list(dict.fromkeys(state for panel in panels for state in panel.pins_by_state()))
-    dots = [Line2D([], [], linestyle="none", marker="o", color=COLOURS[state]) for state in words]
-    if scale.arrow:
-        dots.append(Line2D([], [], color=COLOURS["contact"], marker=">"))
-        words.append(scale.arrow)
-    fig.legend(
-        dots, words, loc="outside lower center", ncols=len(words) or 1, fontsize="small", frameon=False
-    )
