@@ -65,10 +65,7 @@ def blocks(response: Response, scene: Scene, k: int) -> dict[str, Grid]:
 
 
 def _contacts(response: Response, scene: Scene, k: int) -> Grid:
-    """Return the nodes of the contacts, in the order of the scene: pins, and ends that touch another beam; with what acts on the beam there.
-
-    A model that states no force vectors has one pair, whose force is the one that the supports balance.
-    """
+    """Return the nodes of the contacts: pins, and ends that touch another beam; with what acts on the beam there."""
     start, deformed, touched, force = (
         np.array(column)
         for column in zip(*(_contact(response, scene, one, k) for one in scene.contacts), strict=True)
@@ -99,17 +96,13 @@ def _contact(response: Response, scene: Scene, contact: ContactSpec, k: int) -> 
         stations, line = response.axis_line(contact.beam, k)
         beam = scene.beam(contact.beam)
         moved = np.array([np.interp(arc, stations, x) for x in line.T]) - beam.place(arc / beam.length)
-    if history.vector is not None:
+    if history.vector is not None:  # a model without force vectors has one pair, which the supports balance
         return start, deformed, moved, history.vector[k]
     return start, deformed, moved, -sum((one.force[k] for one in response.supports.values()), np.zeros(2))
 
 
 def _reactions(response: Response, scene: Scene, k: int) -> dict[str, Array]:
-    """Return force and moment of supports and springs on the beam, and what a picture of them needs.
-
-    `held` has 1 for each component x, y and rotation that a support holds, 2 for one that a spring resists; `inward` is the unit vector
-    into the beam.
-    """
+    """Return force and moment of supports and springs on the beam; for pictures, what is held (1, by a spring 2) and the way into the beam."""
     found = [response.supports.get(one.node) for one in scene.all_supports]
     found += [response.springs.get(one.node) for one in scene.springs]
     kinds = [1] * len(scene.all_supports) + [2] * len(scene.springs)
@@ -148,10 +141,8 @@ def check_series(folder: Path, model: str, scene: Scene) -> None:
 
 
 def _names(model: str, k: int, count: int) -> list[str]:
-    """Return the names of the VTM and the VTU files of a load parameter.
-
-    A block has a number: names of beams may differ in capitals only, which some systems do not tell apart.
-    """
+    """Return the names of the VTM and the VTU files of a load parameter."""
+    # a number for a block: names of beams may differ in capitals only, which some systems do not tell apart
     stem = f"{model}-{k + 1:04d}"
     return [f"{stem}.vtm", *(f"{stem}-{number}.vtu" for number in range(count))]
 

@@ -4,7 +4,7 @@ Beams are ribbons of their height, so that beams and solids are shown on one foo
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -15,10 +15,10 @@ from comparisons.scene import Scene
 from comparisons.scene.conditions import COMPONENTS
 from comparisons.show.export import CONTACTS, HINGES, POINTS, SUPPORTS, blocks
 from comparisons.show.palette import PIN
-from comparisons.show.symbols import Segments, hinge_symbol, placed, spring_symbol, support_symbol
+from comparisons.show.symbols import SYMBOL, Segments, hinge_symbol, placed, spring_symbol, support_symbol
 
-Body = tuple[Array, NDArray[np.int64], Array]
-"""Deformed positions (n, 2), quadrilaterals (m, 4) and stress (n,) of a body."""
+Body = tuple[Array, Array]
+"""Quadrilaterals (m, 4, 2) of a deformed body, and the stress (m, 4) at their corners."""
 QUARTERS = {
     "quad9": np.array([[0, 4, 8, 7], [4, 1, 5, 8], [8, 5, 2, 6], [7, 8, 6, 3]]),
     "quad": np.array([[0, 1, 2, 3]]),
@@ -30,8 +30,6 @@ THIN = 2e-3
 """Height of a beam whose section has none, over the size of the picture."""
 ARROW, LEAST, POINT = 0.2, 0.02, 0.014
 """Length of the longest arrow and the least length of one over the size of the picture; radius of a mark over half the size."""
-SYMBOL = 0.03
-"""Size of a support's symbol over the size of the undeformed structure."""
 _TURN = np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False)
 CIRCLE = np.stack([np.cos(_TURN), np.sin(_TURN)], axis=-1)
 SHAFT, HEAD = np.array(
@@ -47,33 +45,21 @@ COLOURS = {OPEN: CONTACT_STATES[OPEN], "contact": PIN, **CONTACT_STATES}
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Panel:
-    """Deformed bodies as quadrilaterals with a stress at their points, the nodes that touch them, and the supports.
+    """Deformed bodies as m quadrilaterals with a stress at their corners, the p nodes that touch them, and the supports.
 
-    Attributes
-    ----------
-    title : str
-        What it shows.
-    points, quads, stress : ndarray
-        Deformed positions (n, 2), quadrilaterals (m, 4) and stress (n,) of the bodies.
-    pins, radii : ndarray, shape (p, 2) and (p,)
-        Pins, and the ends of beams that touch other beams; their radii, zero for a point.
-    forces : ndarray, shape (p, 2)
-        What they exert on the beams, drawn as arrows; zero where none are to be drawn.
-    states : ndarray of str, shape (p,)
-        Keys of `COLOURS`.
-    supports : ndarray, shape (l, 2, 2)
-        Line segments of the symbols of supports, springs and hinges.
+    The nodes are pins, and ends of beams that touch other beams. `radii` are zero for a point. `forces` are what they exert on the beams,
+    drawn as arrows; zero where none are to be drawn. `states` are keys of `COLOURS`. `supports` are the line segments of the symbols of
+    supports, springs and hinges.
     """
 
     title: str
-    points: Array
-    quads: NDArray[np.int64]
-    stress: Array
-    pins: Array
-    radii: Array
-    forces: Array
-    states: NDArray[np.str_]
-    supports: Segments
+    quads: Array  # (m, 4, 2)
+    stress: Array  # (m, 4)
+    pins: Array  # (p, 2)
+    radii: Array  # (p,)
+    forces: Array  # (p, 2)
+    states: NDArray[np.str_]  # (p,)
+    supports: Segments  # (l, 2, 2)
 
     def shown(self) -> list[str]:
         """Return the states of the pins in the order of drawing."""
@@ -82,7 +68,9 @@ class Panel:
     def outline(self) -> list[Array]:
         """Return points (..., 2) within which all is drawn but the arrows."""
         reach = self.radii[:, None]
-        return [self.points, self.pins + reach, self.pins - reach, self.supports.reshape(-1, 2)]
+        return [
+            part.reshape(-1, 2) for part in (self.quads, self.pins + reach, self.pins - reach, self.supports)
+        ]
 
     def shapes(self, scale: "Scale") -> Iterator[tuple[str, float, Array]]:
         """Yield what stands for the pins, from below: colour, opacity and polygons (n, corners, 2) of discs, marks and arrows.
@@ -118,13 +106,12 @@ def mises_panel(response: Response, scene: Scene, ks: Sequence[int], title: str)
                 data["axial_stress_right"], data["axial_stress_left"] = direct + bent, direct - bent
                 data["shear_stress"] = 1.5 * data["V"] / area
     panels = [panel(state, title, stress="von_mises") for state in states]
-    starts = np.cumsum([0, *(len(one.points) for one in panels)]).tolist()
     whole: dict[str, Any] = {
-        name: np.concatenate([getattr(one, name) for one in panels])
-        for name in ("points", "stress", "pins", "radii", "forces", "states", "supports")
+        item.name: np.concatenate([getattr(one, item.name) for one in panels])
+        for item in fields(Panel)
+        if item.name != "title"
     }
-    quads = np.concatenate([one.quads + start for one, start in zip(panels, starts, strict=False)])
-    return replace(panels[0], quads=quads, **{**whole, "forces": 0.0 * whole["forces"]})
+    return Panel(title=title, **{**whole, "forces": 0.0 * whole["forces"]})
 
 
 def panel(
@@ -142,7 +129,6 @@ def panel(
         _solid(grid, stress, factor) if QUARTERS.keys() & grid.cells.keys() else _ribbon(grid, size, factor)
         for grid in structure
     ]
-    starts = np.cumsum([0, *(len(points) for points, _, _ in bodies[:-1])])
     none = np.zeros((0, 2))
     data = grids[CONTACTS].point_data if CONTACTS in grids else {}
     forces = data.get("contact_force", none)
@@ -150,9 +136,8 @@ def panel(
     symbols = [placed(symbol, place, SYMBOL * size) for place, symbol in _symbols(grids, factor)]
     return Panel(
         title=title if factor == 1.0 else f"{title}, deformation x {factor:g}",
-        points=np.concatenate([points for points, _, _ in bodies]),
-        quads=np.concatenate([quads + start for (_, quads, _), start in zip(bodies, starts, strict=True)]),
-        stress=np.concatenate([values for _, _, values in bodies]),
+        quads=np.concatenate([quads for quads, _ in bodies]),
+        stress=np.concatenate([values for _, values in bodies]),
         pins=data.get("deformed", none) + (factor - 1.0) * data.get("beam_displacement", none),
         radii=data.get("radius", np.zeros(0)),
         forces=forces,
@@ -164,7 +149,8 @@ def panel(
 def _solid(grid: Grid, stress: str, factor: float) -> Body:
     """Return a solid's deformed body with one of its stresses."""
     found = [grid.cells[kind][:, own].reshape(-1, 4) for kind, own in QUARTERS.items() if kind in grid.cells]
-    return _enlarged(grid, factor), np.concatenate(found), grid.point_data[stress]
+    quads = np.concatenate(found)
+    return _enlarged(grid, factor)[quads], grid.point_data[stress][quads]
 
 
 def _enlarged(grid: Grid, factor: float) -> Array:
@@ -200,10 +186,13 @@ def _ribbon(grid: Grid, size: float, factor: float) -> Body:
     stress = along("axial_stress_right") * (1 - across) / 2 + along("axial_stress_left") * (1 + across) / 2
     if "shear_stress" in data:
         stress = np.sqrt(stress**2 + 3.0 * (along("shear_stress") * (1.0 - across**2)) ** 2)
-    number = np.arange(points.size).reshape(points.shape)
-    corners = (number[:, :-1, :-1], number[:, 1:, :-1], number[:, 1:, 1:], number[:, :-1, 1:])
-    plane = np.stack([points.real, points.imag], axis=-1).reshape(-1, 2)
-    return plane, np.stack(corners, axis=-1).reshape(-1, 4), stress.ravel()
+
+    def corners(values: Array) -> Array:
+        found = (values[:, :-1, :-1], values[:, 1:, :-1], values[:, 1:, 1:], values[:, :-1, 1:])
+        return np.stack(found, axis=-1).reshape(-1, 4)
+
+    quads = corners(points)
+    return np.stack([quads.real, quads.imag], axis=-1), corners(stress)
 
 
 def _end_angles(chords: Array) -> Array:

@@ -126,8 +126,8 @@ def plot_panels(panels: list[Panel], scale: Scale, path: Path) -> None:
     x, y = scale.centre
     for axes, panel in zip(frames, panels, strict=True):
         lines: dict[str, Any] = {"edgecolors": "face", "linewidths": 0.3}
-        stress = panel.stress[panel.quads].mean(axis=1)
-        bodies = PolyCollection(list(panel.points[panel.quads]), array=stress, cmap=scale.colours, **lines)
+        stress = panel.stress.mean(axis=1)
+        bodies = PolyCollection(list(panel.quads), array=stress, cmap=scale.colours, **lines)
         bodies.set_clim(*scale.stress)
         axes.add_collection(bodies)
         axes.add_collection(LineCollection(list(panel.supports), colors="black", linewidths=0.8))
@@ -172,28 +172,23 @@ def _plotter(panels: list[Panel], scale: Scale, *, off_screen: bool) -> Any:
 
 def _draw(plotter: Any, panels: list[Panel], scale: Scale) -> None:
     """Put the panels into the plotter, in place of what was there."""
-    import pyvista
-
     width, height, _ = _window(panels, scale)
     factor, plain = width / PANEL, {"lighting": False, "render": False}
     plotter.clear_actors()
     plotter.scalar_bars.clear()
     for i, panel in enumerate(panels):
         plotter.subplot(0, i)
-        body = pyvista.PolyData(_raised(panel.points, 0.0), np.insert(panel.quads, 0, 4, axis=1).ravel())
-        body.point_data["stress"] = panel.stress
+        body = _mesh(panel.quads, 0.0)
+        body.point_data["stress"] = panel.stress.ravel()
         # one bar in each panel takes different titles
         bar = {**_bar(factor * LABEL, factor * BAR / height), "title": scale.label + " " * i + "\n"}
         plotter.add_mesh(body, clim=scale.stress, cmap=scale.colours, scalar_bar_args=bar, **plain)
         for layer, (colour, opacity, polygons) in enumerate(panel.shapes(scale), 1):
             if len(polygons):
-                corners = np.arange(polygons[..., 0].size).reshape(polygons.shape[:2])
-                faces = np.insert(corners, 0, polygons.shape[1], axis=1).ravel()
-                points = _raised(polygons.reshape(-1, 2), layer * LAYER * scale.half)
-                plotter.add_mesh(pyvista.PolyData(points, faces), color=colour, opacity=opacity, **plain)
+                mesh = _mesh(polygons, layer * LAYER * scale.half)
+                plotter.add_mesh(mesh, color=colour, opacity=opacity, **plain)
         if len(panel.supports):
-            ends = _raised(panel.supports.reshape(-1, 2), LAYER * scale.half)
-            lines = pyvista.line_segments_from_points(ends)
+            lines = _mesh(panel.supports, LAYER * scale.half)
             plotter.add_mesh(lines, color="black", line_width=2, **plain)
         title = {"position": "upper_edge", "color": "black", "font_size": round(factor * TITLE)}
         plotter.add_text(panel.title, render=False, **title)
@@ -204,9 +199,14 @@ def _draw(plotter: Any, panels: list[Panel], scale: Scale) -> None:
             legend.SetPosition(0.02, 1.0 - factor * BELOW_TITLE / height - size[1])
 
 
-def _raised(points: Array, height: float) -> Array:
-    """Return points (n, 2) in space."""
-    return np.insert(points, 2, height, axis=1)
+def _mesh(shapes: Array, height: float) -> Any:
+    """Return polygons or, with two corners, lines (n, corners, 2) in space."""
+    import pyvista
+
+    count, corners = shapes.shape[:2]
+    numbers = np.insert(np.arange(count * corners).reshape(count, corners), 0, corners, axis=1).ravel()
+    points = np.insert(shapes.reshape(-1, 2), 2, height, axis=1)
+    return pyvista.PolyData(points, **{"lines" if corners == 2 else "faces": numbers})
 
 
 def _window(panels: list[Panel], scale: Scale) -> tuple[int, int, float]:

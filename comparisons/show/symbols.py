@@ -19,6 +19,8 @@ from comparisons.show import palette
 
 Segments = NDArray[np.float64]
 """Line segments, shape (n, 2, 2)."""
+SYMBOL = 0.03
+"""Size of a symbol over the size of a picture."""
 LARGEST = 13.0
 """Largest size of a symbol in a legend, so that it stays in its row [point]."""
 HATCHES = 5

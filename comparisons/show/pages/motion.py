@@ -15,14 +15,12 @@ from comparisons.response.table import unit_names
 from comparisons.scene import Scene
 from comparisons.show import palette
 from comparisons.show.pages.page import Section, markup, part, scrolling, text
-from comparisons.show.symbols import end_symbols
+from comparisons.show.symbols import SYMBOL, end_symbols
 
 POINTS = 61
 """Points of a deformed axis."""
 ARC = 25
 """Points of an undeformed axis that is an arc."""
-SYMBOL = 0.03
-"""Size of the symbol of a support, a spring or a hinge over the size of the scene."""
 DIGITS = 5
 """Decimals of the coordinates, over the size of the scene."""
 DASHES = ("7 3", "2 3", "9 3 2 3", "12 3", "5 2 1 2 1 2", "3 2", "9 2 2 2 2 2", "4 4", "14 2 2 2")
