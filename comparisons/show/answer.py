@@ -26,12 +26,8 @@ HEIGHT, DIAGRAM, HISTORY = 3.6, 1.25, 1.9
 """Heights of the shape, of each diagram and of the forces over the load parameter [inch]."""
 ARROW = 0.16
 """Size of the largest force over the size of the scene."""
-SPREAD = 9
-"""Arrows of a load along a beam."""
 DIAGRAMS = (("N", "axial", "force"), ("V", "shear", "force"), ("M", "moment", "moment"))
 ACTING = {palette.PIN: "contact force on the beam", palette.BLACK: "load"}
-Lines = dict[str, tuple[Array, Array]]
-"""Arc lengths and points of the deformed axes by beam."""
 
 
 class PictureError(ValueError):
@@ -102,70 +98,59 @@ def _shape(axes: "Axes", response: Response, scene: Scene, k: int) -> None:
     lines = {beam.name: response.axis_line(beam.name, k) for beam in scene.beams}
     undeformed = {beam.name: axis(beam)[1] for beam in scene.beams}
     points = np.concatenate([*(line for _, line in lines.values()), *undeformed.values()])
-    sketch = Sketch(axes=axes, scene=scene, size=float(np.ptp(points, axis=0).max()), letters="x-small")
+    extent = float(np.ptp(points, axis=0).max())
+    sketch = Sketch(axes=axes, scene=scene, size=extent, lines=lines, letters="x-small")
     title = " ".join(filter(None, (response.model, response.setting)))
     sketch.frame(f"{scene.name}, {title}: {response.status}, load parameter {t:.6g}", "medium")
     for number, beam in enumerate(scene.beams):
         (dashed,) = axes.plot(*undeformed[beam.name].T, color="0.6", linewidth=0.9, linestyle="--")
-        arc, line = lines[beam.name]
-        tangent = np.gradient(line, axis=0)
+        tangent = np.gradient(lines[beam.name][1], axis=0)
         normal = tangent @ [[0.0, 1.0], [-1.0, 0.0]] / np.maximum(np.hypot(*tangent.T), 1e-300)[:, None]
-        _, drawn = sketch.body(beam, arc, line, normal, COLOURS[number % len(COLOURS)])
+        _, drawn = sketch.body(beam, normal, COLOURS[number % len(COLOURS)], 1.6)
         sketch.legend |= {"undeformed": dashed, beam.name: drawn}
     for pin in scene.pins:
         at = np.array(pin.position(t))
         sketch.disc(at, pin.radius, facecolor=palette.PIN, alpha=0.5)
         (sketch.legend[pin.name],) = axes.plot(*at, ".", color=palette.PIN, markersize=6, zorder=5)
-    found = list(_acting(response, scene, lines, k))
+    found = list(_acting(sketch, response, k))
     largest = max((float(np.hypot(*force)) for _, force, _, _ in found), default=0.0)
     for tips, force, colour, words in found:
         if np.hypot(*force) > 1e-6 * largest:
             sketch.arrows(tips, ARROW * sketch.size / largest * force, words, colour, 1.3)
-            entry = axes.plot([], [], color=colour, marker=">", markersize=4, linewidth=1.3)
-            sketch.legend[ACTING[colour]] = entry[0]
-    sketch.symbols({name: line for name, (_, line) in lines.items()})
+            sketch.named(ACTING[colour], colour, marker=">", markersize=4, linewidth=1.3)
+    sketch.symbols()
     entries = {words.partition(" of ")[0]: entry for words, entry in sketch.legend.items()}
     place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.17), "ncols": 5}
     axes.legend(entries.values(), entries, fontsize="x-small", frameon=False, labelspacing=1.2, **place)
     sketch.separate(1)
 
 
-def _acting(
-    response: Response, scene: Scene, lines: Lines, k: int
-) -> Iterator[tuple[Array, Array, str, str]]:
+def _acting(sketch: Sketch, response: Response, k: int) -> Iterator[tuple[Array, Array, str, str]]:
     """Yield points (n, 2), the force at each, the colour and the value of every contact force, load and weight."""
-    units, t = unit_names(scene.units), float(response.load_parameter[k])
+    scene, t = sketch.scene, float(response.load_parameter[k])
+    units = unit_names(scene.units)
 
-    def at(beam: str, *arcs: float) -> Array:
-        stations, points = lines[beam]
-        return np.stack([np.interp(arcs, stations, points[:, i]) for i in (0, 1)], axis=1)
-
-    def value(force: Any) -> str:
+    def value(force: Array) -> str:
         # four significant digits, without an exponent below a million
         return f"{float(f'{np.hypot(*force):.4g}'):.6g} {units['force']}"
 
     for spec in scene.contacts:
         contact = response.contacts[spec.pair]
         if contact.vector is not None and contact.force[k] > 0.0:
-            force = contact.vector[k]
-            yield at(spec.beam, float(contact.arc_position[k])), force, palette.PIN, value(force)
+            at = sketch.at(spec.beam, [float(contact.arc_position[k]) / scene.beam(spec.beam).length])
+            yield at, contact.vector[k], palette.PIN, value(contact.vector[k])
     for history in scene.load_histories:
         load, force = history.load, np.array(history.at(t)[:2])
-        length = scene.beam(load.beam).length
-        if force.any() and load.force_per_length is None:
-            part = load.at if load.at is not None else float(load.end == "end")
-            yield at(load.beam, part * length), force, palette.BLACK, value(force)
-        elif force.any():
-            # its resultant in equal parts
-            a, b = load.span
-            parts = (a + (b - a) * (number + 0.5) / SPREAD for number in range(SPREAD))
-            share = force * (b - a) * length / SPREAD
-            words = f"{value(force)}/{units['length']}"
-            yield at(load.beam, *(part * length for part in parts)), share, palette.BLACK, words
+        tips, words, share = sketch.loaded(load), value(force), 1.0
+        if load.force_per_length is not None:  # its resultant in equal parts
+            words = f"{words}/{units['length']}"
+            share = (load.span[1] - load.span[0]) * scene.beam(load.beam).length / len(tips)
+        if force.any():
+            yield tips, share * force, palette.BLACK, words
     for beam in scene.beams:
         weight = beam.mass * np.array(scene.gravity_at(t))
         if weight.any():
-            yield at(beam.name, beam.length / 2.0), weight, palette.BLACK, f"weight {value(weight)}"
+            yield sketch.at(beam.name, [0.5]), weight, palette.BLACK, f"weight {value(weight)}"
 
 
 def _diagram(axes: "Axes", response: Response, scene: Scene, quantity: tuple[str, str], k: int) -> None:

@@ -57,11 +57,15 @@ def stated(scene: Scene, others: Sequence[str] = ()) -> Iterator[str]:
 
 @dataclass(kw_only=True)
 class Sketch:
-    """A drawing of a scene that grows, of that `size`; a label that moves down in favour of others has -1 beside it."""
+    """A drawing of a scene that grows, of that `size`; a label that moves down in favour of others has -1 beside it.
+
+    The `lines` are arc lengths (n,) and points (n, 2) of the axes by beam, deformed or not.
+    """
 
     axes: Any
     scene: Scene
     size: float
+    lines: dict[str, tuple[Array, Array]]
     letters: str = "medium"
     legend: dict[str, Any] = field(default_factory=dict)
     labels: list[tuple[Any, float]] = field(default_factory=list)
@@ -75,16 +79,36 @@ class Sketch:
         self.axes.margins(0.08)
         self.axes.grid(visible=True, linewidth=0.3)
 
-    def body(self, beam: BeamSpec, arcs: Array, line: Array, normal: Array, colour: str) -> list[Any]:
-        """Draw a beam of its height about an axis (n, 2) with unit normals (n, 2) at arc lengths (n,); return outline and axis."""
+    def named(self, words: str, colour: str, **style: Any) -> None:
+        """Add a line or marker to the legend."""
+        from matplotlib.lines import Line2D
+
+        self.legend.setdefault(words, Line2D([], [], color=colour, **style))
+
+    def body(self, beam: BeamSpec, normal: Array, colour: str, width: float) -> list[Any]:
+        """Draw a beam of its height about its axis with unit normals (n, 2); return outline and axis."""
+        arcs, line = self.lines[beam.name]
         heights = [beam.height_at(min(s / beam.length, 1.0)) for s in arcs]
         half = np.array(heights)[:, None] / 2.0 * normal
         outline = np.concatenate([line + half, (line - half)[::-1]])
         drawn = self.axes.fill(*outline.T, facecolor=colour, edgecolor=colour, alpha=0.35, linewidth=1.5)
-        return [*drawn, *self.axes.plot(*line.T, color=colour, linewidth=1.0)]
+        return [*drawn, *self.axes.plot(*line.T, color=colour, linewidth=width)]
 
-    def symbols(self, lines: dict[str, Array]) -> None:
+    def at(self, beam: str, parts: Sequence[float]) -> Array:
+        """Return the points (n, 2) of an axis at parts of the undeformed length."""
+        arcs, points = self.lines[beam]
+        arc = self.scene.beam(beam).length * np.array(parts)
+        return np.stack([np.interp(arc, arcs, values) for values in points.T], axis=1)
+
+    def loaded(self, load: LoadSpec) -> Array:
+        """Return the points (n, 2) at which the arrows of a load end, more than one of a force per length."""
+        if load.force_per_length is not None:
+            return self.at(load.beam, np.linspace(*load.span, ROW).tolist())
+        return self.at(load.beam, [load.at if load.at is not None else float(load.end == "end")])
+
+    def symbols(self) -> None:
         """Draw supports, springs and hinges at the ends of the axes."""
+        lines = {name: points for name, (_, points) in self.lines.items()}
         self.legend |= draw_symbols(self.axes, self.scene, lines, SYMBOL * self.size)
 
     def disc(self, at: Array, radius: float | None, **style: Any) -> None:
@@ -164,13 +188,14 @@ def draw(scene: Scene, path: Path) -> None:
     size = float(np.ptp(points, axis=0).max())
     width, height = np.maximum(np.ptp(points, axis=0), 0.2 * size) + 0.2 * size
     fig = figure(figsize=(WIDTH, float(np.clip(0.85 * WIDTH * height / width, 1.6, 6.5)) + 1.4))
-    sketch = Sketch(axes=fig.subplots(), scene=scene, size=size)
+    lines = {beam.name: axis(beam)[:2] for beam in scene.beams}
+    sketch = Sketch(axes=fig.subplots(), scene=scene, size=size, lines=lines)
     sketch.frame(scene.name)
     for beam in scene.beams:
         _beam(sketch, beam)
     for contact in scene.contacts:
         _side(sketch, contact)
-    sketch.symbols({beam.name: axis(beam)[1] for beam in scene.beams})
+    sketch.symbols()
     _motions(sketch)
     _loads(sketch)
     for pin in scene.pins:
@@ -183,7 +208,7 @@ def draw(scene: Scene, path: Path) -> None:
 
 def _beam(sketch: Sketch, beam: BeamSpec) -> None:
     """Draw a beam as its outline, at least a line, with its name and direction."""
-    outline, line = sketch.body(beam, *axis(beam), BEAM)
+    outline, line = sketch.body(beam, axis(beam)[2], BEAM, 1.0)
     middle, tangent = np.array(beam.place(0.5)), np.array(beam.tangent(0.5))
     arrow(sketch.axes, middle, middle + 0.03 * sketch.size * tangent, BEAM)
     left = _across(beam.tangent(NAME))
@@ -212,8 +237,7 @@ def _side(sketch: Sketch, contact: ContactSpec) -> None:
     sketch.axes.add_collection(LineCollection(list(drawn), colors=SIDE, linewidths=0.9, zorder=4))
     sketch.axes.update_datalim(drawn.reshape(-1, 2))
     friction = f", friction {contact.friction:g}" if contact.friction else ""
-    words = f"side of contact: {contact.surface} of the beam{friction}"
-    sketch.legend.setdefault(words, _line(SIDE, marker="|", markersize=6))
+    sketch.named(f"side of contact: {contact.surface} of the beam{friction}", SIDE, marker="|", markersize=6)
 
 
 def _motions(sketch: Sketch) -> None:
@@ -230,42 +254,36 @@ def _motions(sketch: Sketch) -> None:
             if turn:
                 _turn(sketch, place, turn, f"{abs(turn):.6g} rad{_after(stage)}", HELD)
             if path.any() or turn:
-                sketch.legend.setdefault("motion of a support", _line(HELD, marker=">"))
+                sketch.named("motion of a support", HELD, marker=">")
 
 
 def _loads(sketch: Sketch) -> None:
     """Draw the loads of every stage with their values, and the weights of the beams."""
     scene, units = sketch.scene, unit_names(sketch.scene.units)
     force = units["force"]
-    single = ("force, arrow not to scale", _line(LOAD, marker=">", linewidth=2.0))
     for number, load in scene.numbered_loads():
-        after, beam = _after(number + 1), scene.beam(load.beam)
+        after, tips = _after(number + 1), sketch.loaded(load)
         if load.force_per_length is not None:
-            tips = np.array([beam.place(part) for part in np.linspace(*load.span, ROW).tolist()])
             words = f"{hypot(*load.force_per_length):.6g} {force}/{units['length']}{after}"
             sketch.arrows(tips, ARROW / 2 * sketch.size * _unit(load.force_per_length), words, LOAD, 0.9)
-            entry = _line(LOAD, marker=">", linewidth=0.9)
-            sketch.legend.setdefault("force per length, arrows not to scale", entry)
+            sketch.named("force per length, arrows not to scale", LOAD, marker=">", linewidth=0.9)
             continue
-        at = np.array(scene.place(load.node) if load.at is None else beam.place(load.at))
         if any(load.force):
             vector = ARROW * sketch.size * _unit(load.force)
             words = f"{hypot(*load.force):.6g} {force}{after}"
-            if _pulls(scene, load):
-                sketch.arrows((at + vector)[None], vector, words, LOAD, 2.0, "tip")
-            else:
-                sketch.arrows(at[None], vector, words, LOAD, 2.0)
-            sketch.legend.setdefault(*single)
+            pulls = _pulls(scene, load)
+            sketch.arrows(tips + pulls * vector, vector, words, LOAD, 2.0, "tip" if pulls else "tail")
+            sketch.named("force, arrow not to scale", LOAD, marker=">", linewidth=2.0)
         if load.moment:
-            _turn(sketch, at, load.moment, f"{abs(load.moment):.6g} {units['moment']}{after}", LOAD)
+            _turn(sketch, tips[0], load.moment, f"{abs(load.moment):.6g} {units['moment']}{after}", LOAD)
             sketch.legend.setdefault("moment", legend_symbol(chain(arc(1.0)), LOAD))
     for stage, gravity in enumerate(scene.stage_gravities, 1):
         for beam in scene.beams if any(gravity) else ():
             if beam.density:
                 words = f"weight {hypot(*gravity) * beam.mass:.4g} {force}{_after(stage)}"
                 vector = ARROW * sketch.size * _unit(gravity)
-                sketch.arrows(np.array([beam.place(WEIGHT)]), vector, words, LOAD, 2.0, "beside")
-                sketch.legend.setdefault(*single)
+                sketch.arrows(sketch.at(beam.name, [WEIGHT]), vector, words, LOAD, 2.0, "beside")
+                sketch.named("force, arrow not to scale", LOAD, marker=">", linewidth=2.0)
 
 
 def _pulls(scene: Scene, load: LoadSpec) -> bool:
@@ -300,9 +318,8 @@ def _pin(sketch: Sketch, pin: PinSpec) -> None:
     sketch.label(pin.name, points[0] + (pin.radius or 0.0) * behind, behind, PIN)
     sketch.disc(points[0], pin.radius, facecolor=PIN, edgecolor=PIN, alpha=0.35)
     if pin.radius:
-        disc = _line(PIN, marker="o", markersize=9, linestyle="none", alpha=0.5)
         words = f"pin of radius {pin.radius:.6g} {unit_names(sketch.scene.units)['length']}, to scale"
-        sketch.legend.setdefault(words, disc)
+        sketch.named(words, PIN, marker="o", markersize=9, linestyle="none", alpha=0.5)
     else:
         sketch.legend.setdefault("pin, a point", mark)
     if pin.moving:
@@ -323,10 +340,3 @@ def _unit(vector: Sequence[float] | Array) -> Array:
 def _across(tangent: Sequence[float]) -> Array:
     """Return the unit vector to the left of a tangent."""
     return np.array([-tangent[1], tangent[0]])
-
-
-def _line(colour: str, **style: Any) -> Any:
-    """Return an entry of a legend."""
-    from matplotlib.lines import Line2D
-
-    return Line2D([], [], color=colour, **style)
