@@ -22,11 +22,7 @@ extensions = [
     "sphinx.ext.autodoc",
     "numpydoc",
     "sphinx_argparse_cli",
-    "docs.extensions.mathml",
-    "docs.extensions.proofs",
-    "docs.extensions.generated",
-    "docs.extensions.manual",
-    "docs.extensions.notebooks",
+    "docs.extensions.site",
 ]
 exclude_patterns = [
     "extensions",

@@ -20,7 +20,7 @@ def pytest_configure() -> None:
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the option of `make results`."""
+    """Add the option that writes measured numbers."""
     parser.addoption("--write-results", action="store_true", help="write measured numbers into the pages")
 
 

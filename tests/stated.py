@@ -1,4 +1,4 @@
-"""Numbers that the pages state, each behind a mark with its name: ``<!--name-->1.5e-5``. `make results` writes them anew.
+"""Numbers that the pages state, each behind a mark with its name: ``<!--name-->1.5e-5``. `pytest --write-results` writes them anew.
 
 A mark names the number behind it, ``<!--name x3-->`` the first three, before the next mark; a name may stand on several pages. A test
 measures the numbers of a name and judges them on every page, at the digits stated there.

@@ -11,10 +11,9 @@ from comparisons.response import Array, Response
 from comparisons.response.round_off import round_off
 from comparisons.response.table import unit_names
 from comparisons.scene import Scene
-from comparisons.scene.stages import LoadHistory
 from comparisons.show import palette
-from comparisons.show.plot import WIDTH, arrow, figure, ribbon, save
-from comparisons.show.symbols import draw_symbols
+from comparisons.show.plot import WIDTH, figure, save
+from comparisons.show.sketch import Sketch, axis
 from comparisons.version import release
 
 if TYPE_CHECKING:
@@ -25,11 +24,10 @@ COLOURS = (palette.BLUE, palette.ORANGE, palette.GREEN, palette.PURPLE, palette.
 """Colours of the beams, and of the forces, in turn."""
 HEIGHT, DIAGRAM, HISTORY = 3.6, 1.25, 1.9
 """Heights of the shape, of each diagram and of the forces over the load parameter [inch]."""
-SYMBOL, ARROW = 0.03, 0.16
-"""Sizes of a support and of the largest force, over the size of the scene."""
-SPREAD = 9
-"""Arrows of a load along a beam."""
+ARROW = 0.16
+"""Size of the largest force over the size of the scene."""
 DIAGRAMS = (("N", "axial", "force"), ("V", "shear", "force"), ("M", "moment", "moment"))
+ACTING = {palette.PIN: "contact force on the beam", palette.BLACK: "load"}
 
 
 class PictureError(ValueError):
@@ -70,7 +68,6 @@ def picture(response: Response, scene: Scene | None = None) -> "Figure":
     fig: Figure = figure(figsize=(WIDTH, sum(heights)))
     shape, *panels, history = fig.subplots(len(heights), 1, height_ratios=heights)
     k = _loaded(response, scene)
-    _shape(shape, response, scene, k)
     for axes, (name, words, kind) in zip(panels, diagrams, strict=True):
         _diagram(axes, response, scene, (name, kind), k)
         axes.set_ylabel(f"{words} {name}\n[{unit_names(scene.units)[kind]}]", fontsize="small")
@@ -83,6 +80,7 @@ def picture(response: Response, scene: Scene | None = None) -> "Figure":
             panels[0].legend(loc="best", fontsize="x-small", ncols=len(scene.beams))
     _history(history, response, scene)
     fig.supxlabel(f"tsm-crossval {release()}", fontsize="xx-small", x=0.99, ha="right")
+    _shape(shape, response, scene, k)
     return fig
 
 
@@ -96,122 +94,63 @@ def _loaded(response: Response, scene: Scene) -> int:
 
 
 def _shape(axes: "Axes", response: Response, scene: Scene, k: int) -> None:
-    units, t = unit_names(scene.units), float(response.load_parameter[k])
+    t = float(response.load_parameter[k])
     lines = {beam.name: response.axis_line(beam.name, k) for beam in scene.beams}
-    places = np.concatenate([line for _, line in lines.values()])
-    places = np.concatenate([places, [beam.place(part) for beam in scene.beams for part in (0.0, 0.5, 1.0)]])
-    extent = float(np.ptp(places, axis=0).max())
-    for number, beam in enumerate(scene.beams):
-        arc, line = lines[beam.name]
-        undeformed = np.array([beam.place(part) for part in np.linspace(0.0, 1.0, 41)])
-        dashed: dict[str, Any] = {"color": "0.6", "linewidth": 0.9, "linestyle": "--"}
-        axes.plot(*undeformed.T, label=None if number else "undeformed", **dashed)
-        colour, tangent = COLOURS[number % len(COLOURS)], np.gradient(line, axis=0)
-        normal = (
-            np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
-            / np.maximum(np.hypot(*tangent.T), 1e-300)[:, None]
-        )
-        height = np.array([beam.height_at(min(s / beam.length, 1.0)) for s in arc])
-        axes.fill(*ribbon(line, normal, height).T, color=colour, alpha=0.35, linewidth=0.0)
-        axes.plot(*line.T, color=colour, linewidth=1.6, label=beam.name)
-    symbols = draw_symbols(axes, scene, {name: line for name, (_, line) in lines.items()}, SYMBOL * extent)
-    for pin in scene.pins:
-        _pin(axes, np.array(pin.position(t)), pin.radius, pin.name)
-    _arrows(axes, response, scene, lines, k)
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.margins(0.08)
+    undeformed = {beam.name: axis(beam)[1] for beam in scene.beams}
+    points = np.concatenate([*(line for _, line in lines.values()), *undeformed.values()])
+    extent = float(np.ptp(points, axis=0).max())
+    sketch = Sketch(axes=axes, scene=scene, size=extent, lines=lines, letters="x-small")
     title = " ".join(filter(None, (response.model, response.setting)))
-    axes.set_title(f"{scene.name}, {title}: {response.status}, load parameter {t:.6g}", fontsize="medium")
-    axes.set(xlabel=f"x [{units['length']}]", ylabel=f"y [{units['length']}]")
-    axes.grid(visible=True, linewidth=0.3)
-    handles, labels = axes.get_legend_handles_labels()
-    short = {words.partition(" of ")[0]: entry for words, entry in symbols.items()}
-    entries = ([*handles, *short.values()], [*labels, *short])
-    place: dict[str, Any] = {
-        "loc": "upper center",
-        "bbox_to_anchor": (0.5, -0.17),
-        "ncols": 5,
-        "labelspacing": 1.2,
-    }
-    axes.legend(*entries, fontsize="x-small", frameon=False, **place)
+    sketch.frame(f"{scene.name}, {title}: {response.status}, load parameter {t:.6g}", "medium")
+    for number, beam in enumerate(scene.beams):
+        (dashed,) = axes.plot(*undeformed[beam.name].T, color="0.6", linewidth=0.9, linestyle="--")
+        tangent = np.gradient(lines[beam.name][1], axis=0)
+        normal = tangent @ [[0.0, 1.0], [-1.0, 0.0]] / np.maximum(np.hypot(*tangent.T), 1e-300)[:, None]
+        _, drawn = sketch.body(beam, normal, COLOURS[number % len(COLOURS)], 1.6)
+        sketch.legend |= {"undeformed": dashed, beam.name: drawn}
+    for pin in scene.pins:
+        at = np.array(pin.position(t))
+        sketch.disc(at, pin.radius, facecolor=palette.PIN, alpha=0.5)
+        (sketch.legend[pin.name],) = axes.plot(*at, ".", color=palette.PIN, markersize=6, zorder=5)
+    found = list(_acting(sketch, response, k))
+    largest = max((float(np.hypot(*force)) for _, force, _, _ in found), default=0.0)
+    for tips, force, colour, words in found:
+        if np.hypot(*force) > 1e-6 * largest:
+            sketch.arrows(tips, ARROW * sketch.size / largest * force, words, colour, 1.3)
+            sketch.named(ACTING[colour], colour, marker=">", markersize=4, linewidth=1.3)
+    sketch.symbols()
+    entries = {words.partition(" of ")[0]: entry for words, entry in sketch.legend.items()}
+    place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.17), "ncols": 5}
+    axes.legend(entries.values(), entries, fontsize="x-small", frameon=False, labelspacing=1.2, **place)
+    sketch.separate(1)
 
 
-def _pin(axes: "Axes", at: Array, radius: float | None, name: str) -> None:
-    from matplotlib.patches import Circle
+def _acting(sketch: Sketch, response: Response, k: int) -> Iterator[tuple[Array, Array, str, str]]:
+    """Yield points (n, 2), the force at each, the colour and the value of every contact force, load and weight."""
+    scene, t = sketch.scene, float(response.load_parameter[k])
+    units = unit_names(scene.units)
 
-    if radius:
-        axes.add_patch(Circle((at[0], at[1]), radius, facecolor=palette.PIN, alpha=0.5, label=name))
-    axes.plot(*at, ".", color=palette.PIN, markersize=6, zorder=5, label=None if radius else name)
+    def value(force: Array) -> str:
+        # four significant digits, without an exponent below a million
+        return f"{float(f'{np.hypot(*force):.4g}'):.6g} {units['force']}"
 
-
-def _acting(
-    response: Response, scene: Scene, lines: dict[str, tuple[Array, Array]], k: int
-) -> Iterator[tuple[Array, Array, str, str]]:
-    """Yield the point, the force, the colour and the value of every contact force and load; of a weight, its resultant."""
-    units, t = unit_names(scene.units), float(response.load_parameter[k])
     for spec in scene.contacts:
         contact = response.contacts[spec.pair]
         if contact.vector is not None and contact.force[k] > 0.0:
-            at = _at(lines[spec.beam], float(contact.arc_position[k]))
-            yield at, contact.vector[k], palette.PIN, f"{_digits(contact.force[k])} {units['force']}"
+            at = sketch.at(spec.beam, [float(contact.arc_position[k]) / scene.beam(spec.beam).length])
+            yield at, contact.vector[k], palette.PIN, value(contact.vector[k])
     for history in scene.load_histories:
-        x, y, _ = history.at(t)
-        per = "" if history.load.force_per_length is None else f"/{units['length']}"
-        words = f"{_digits(np.hypot(x, y))} {units['force']}{per}"
-        yield from ((at, force, palette.BLACK, words) for at, force in _load(history, scene, lines, t))
-    gravity = np.array(scene.gravity_at(t))
+        load, force = history.load, np.array(history.at(t)[:2])
+        tips, words, share = sketch.loaded(load), value(force), 1.0
+        if load.force_per_length is not None:  # its resultant in equal parts
+            words = f"{words}/{units['length']}"
+            share = (load.span[1] - load.span[0]) * scene.beam(load.beam).length / len(tips)
+        if force.any():
+            yield tips, share * force, palette.BLACK, words
     for beam in scene.beams:
-        weight = beam.mass * gravity
+        weight = beam.mass * np.array(scene.gravity_at(t))
         if weight.any():
-            words = f"weight {_digits(np.hypot(*weight))} {units['force']}"
-            yield _at(lines[beam.name], beam.length / 2.0), weight, palette.BLACK, words
-
-
-def _arrows(
-    axes: "Axes", response: Response, scene: Scene, lines: dict[str, tuple[Array, Array]], k: int
-) -> None:
-    """Draw contact forces and loads as arrows with a common scale, and their values."""
-    extent = float(np.ptp(np.concatenate([line for _, line in lines.values()]), axis=0).max())
-    found = list(_acting(response, scene, lines, k))
-    largest = max((float(np.hypot(*force)) for _, force, _, _ in found), default=0.0)
-    shown: set[str] = set()
-    for at, force, colour, words in found:
-        if np.hypot(*force) <= 1e-6 * largest:
-            continue
-        tail = at - ARROW * extent * force / largest
-        arrow(axes, tail, at, colour, 1.3)
-        if words not in shown:
-            place: dict[str, Any] = {"xytext": (3, 3), "textcoords": "offset points", "zorder": 6}
-            axes.annotate(words, (tail[0], tail[1]), color=colour, fontsize="x-small", **place)
-        shown.add(words)
-    for colour, words in ((palette.PIN, "contact force on the beam"), (palette.BLACK, "load")):
-        if any(own == colour for _, _, own, _ in found):
-            axes.plot([], [], color=colour, marker=">", markersize=4, linewidth=1.3, label=words)
-
-
-def _digits(value: float) -> str:
-    """Return four significant digits, without an exponent below a million."""
-    return f"{float(f'{value:.4g}'):.6g}"
-
-
-def _load(
-    history: LoadHistory, scene: Scene, lines: dict[str, tuple[Array, Array]], t: float
-) -> list[tuple[Array, Array]]:
-    """Return the points and forces of a load; of a force per length, its resultant in equal parts."""
-    load, (x, y, _) = history.load, history.at(t)
-    line, length, force = lines[load.beam], scene.beam(load.beam).length, np.array([x, y])
-    if load.force_per_length is None:
-        part = load.at if load.at is not None else float(load.end == "end")
-        return [(_at(line, part * length), force)] if force.any() else []
-    a, b = load.span
-    share = force * (b - a) * length / SPREAD
-    return [(_at(line, (a + (b - a) * (k + 0.5) / SPREAD) * length), share) for k in range(SPREAD)]
-
-
-def _at(line: tuple[Array, Array], arc: float) -> Array:
-    """Return the point of an axis at an arc length."""
-    arcs, points = line
-    return np.array([np.interp(arc, arcs, points[:, i]) for i in (0, 1)])
+            yield sketch.at(beam.name, [0.5]), weight, palette.BLACK, f"weight {value(weight)}"
 
 
 def _diagram(axes: "Axes", response: Response, scene: Scene, quantity: tuple[str, str], k: int) -> None:

@@ -1,4 +1,4 @@
-"""The error budget as one figure of stacked bars, and as a file of numbers."""
+"""The error budget as one figure of stacked bars, as a section of a page, and as a file of numbers."""
 
 from math import ceil
 from pathlib import Path
@@ -9,15 +9,16 @@ import numpy as np
 from comparisons.budget import PARTS, STEPS, TIMES, Budget, budget_rows
 from comparisons.output import write_numbers
 from comparisons.show import palette
+from comparisons.show.pages import Section, definitions, picture, table
 from comparisons.show.plot import WIDTH, figure, save
 
 COLOURS = (
     palette.ORANGE, palette.YELLOW, palette.SKY, palette.VERMILION, palette.GREEN, palette.PURPLE, palette.GREY,
 )  # fmt: skip
-COLUMNS = 3
-"""Panels beside each other."""
 HATCHES = ("", "////", "...", "", "xxx", "\\\\\\\\", "+++")
 """Colours and hatches of the parts, in their order; hatches distinguish neighbours in grey print."""
+COLUMNS = 3
+"""Panels beside each other."""
 
 
 def plot_budget(budget: Budget, *paths: Path) -> None:
@@ -58,6 +59,22 @@ def _stack(axes: Any, budget: Budget, quantity: str) -> None:
     axes.set_xticks(places, [f"{t:g}" for t in TIMES])
     axes.grid(visible=True, axis="y", linewidth=0.3)
     axes.set_axisbelow(True)
+
+
+def budget_section(budget: Budget, drawn: Path) -> Section:
+    """Return the figure `drawn`, the numbers, and what each part measures."""
+    rows = (
+        (
+            row["quantity"].replace("_", " "),
+            row["load_parameter"],
+            *(f"{part:.1e}" for part in (row["total"], *row["parts"].values(), row["rest_over_total"])),
+        )
+        for row in budget_rows(budget)
+    )
+    caption = "(TSM - solid) / exact rod; parts are measured by themselves, the rest is over the difference"
+    numbers = table(caption, ("quantity", "load parameter", "difference", *PARTS, "rest"), rows)
+    shown = picture(drawn, "What the difference of TSM and solid is made of.")
+    return Section(title="Error budget", html=f"{shown}\n{numbers}\n{definitions(PARTS)}")
 
 
 def write_budget(budget: Budget, path: Path) -> None:

@@ -3,14 +3,14 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from comparisons.budget import PARTS, Budget, budget_rows
+from comparisons.budget import Budget
 from comparisons.models import ROD
 from comparisons.models.options import Options
 from comparisons.scene import Scene
+from comparisons.show.budget_plot import budget_section
 from comparisons.show.findings import findings
 from comparisons.show.pages import (
     Section,
-    definitions,
     motion_section,
     picture,
     provenance,
@@ -48,36 +48,18 @@ def write_comparison_page(
         label: f"{path.parent.relative_to(folder).as_posix()}/{path.stem}-{{}}.vtm"
         for label, path in series.items()
     }
-    shown = tracks(responses, EXACT, scene)
+    shown, states = tracks(responses, EXACT, scene), states_section(responses)
     sections = [
         Section(title="Errors", html=table(ERRORS, HEADER, map(cells, rows))),
         motion_section("Shapes and histories", scene, responses, shown, focus=EXACT, vtu=vtu),
     ]
-    states = states_section(responses)
     if states is not None:
         sections.append(states)
     if budget is not None:
-        sections.append(_budget(budget, folder))
-    if folder / "side-by-side.png" in files:
-        stress = picture(folder / "side-by-side.png", "Beams and solid, von Mises stress.")
-        sections.append(Section(title="Stress", html=stress))
+        sections.append(budget_section(budget, folder / "budget.svg"))
+    stress = folder / "side-by-side.png"
+    if stress in files:
+        sections.append(Section(title="Stress", html=picture(stress, "Beams and solid, von Mises stress.")))
     sections += provenance([scene], files, folder)
     lead = " ".join(findings(scene, rows, EXACT, budget, left_out))
     return write_page(folder, f"{scene.name}: beams, solid and exact answers", lead, sections)
-
-
-def _budget(budget: Budget, folder: Path) -> Section:
-    numbers = table(
-        "(TSM - solid) / exact rod; parts are measured by themselves, the rest is over the difference",
-        ("quantity", "load parameter", "difference", *PARTS, "rest"),
-        (
-            (
-                str(row["quantity"]).replace("_", " "),
-                row["load_parameter"],
-                *(f"{part:.1e}" for part in (row["total"], *row["parts"].values(), row["rest_over_total"])),
-            )
-            for row in budget_rows(budget)
-        ),
-    )
-    drawn = picture(folder / "budget.svg", "What the difference of TSM and solid is made of.")
-    return Section(title="Error budget", html=f"{drawn}\n{numbers}\n{definitions(PARTS)}")

@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -21,13 +22,11 @@ from comparisons.show.vtk import read_entries, read_grid, read_units, write_bloc
 CONTACTS, SUPPORTS, HINGES = POINTS = ("contact points", "support points", "hinge points")
 """Names of the blocks besides the beams; no beam has a name with a space."""
 DIMENSIONS = {
-    "displacement": "L", "deformed": "L", "rotation": "rad", "N": "F", "V": "F", "M": "F L", "arc": "L", "height": "L",
-    "stress_xx": "F/L^2", "stress_yy": "F/L^2", "stress_xy": "F/L^2", "von_mises": "F/L^2", "axial_stress": "F/L^2",
-    "axial_stress_right": "F/L^2", "axial_stress_left": "F/L^2",
-    "beam_displacement": "L", "contact_force": "F", "gap": "L", "radius": "L", "tangential": "F", "normal": "F", "dissipated": "F L",
-    "reaction_force": "F", "reaction_moment": "F L",
+    "L": "displacement deformed arc height beam_displacement gap radius", "rad": "rotation",
+    "F": "N V contact_force tangential normal reaction_force", "F L": "M dissipated reaction_moment",
+    "F/L^2": "stress_xx stress_yy stress_xy von_mises axial_stress axial_stress_right axial_stress_left",
 }  # fmt: skip
-"""Dimensions of the fields, in force F and length L; other fields are plain numbers."""
+"""The fields by their dimensions, in force F and length L; other fields are plain numbers."""
 
 
 def field_units(scene: Scene) -> dict[str, str]:
@@ -36,14 +35,16 @@ def field_units(scene: Scene) -> dict[str, str]:
     symbols = {"F": force, "L": length}
     return {
         name: "".join(symbols.get(letter, letter) for letter in dimension)
-        for name, dimension in DIMENSIONS.items()
+        for dimension, names in DIMENSIONS.items()
+        for name in names.split()
     }
 
 
 def blocks(response: Response, scene: Scene, k: int) -> dict[str, Grid]:
     """Return the grids of a load parameter by name: every beam with its fields, then those of `POINTS` that the scene has.
 
-    Every point of a beam has the index: 0 where the equilibrium is stable, -1 where it is not known.
+    Every point of a beam has the index: 0 where the equilibrium is stable, -1 where it is not known. The other fields are those of
+    ``docs/how-to/paraview.md``; what a model does not state is nan.
     """
     grid, found = response.grid(k), {}
     for number, beam in enumerate(scene.beams):
@@ -55,92 +56,76 @@ def blocks(response: Response, scene: Scene, k: int) -> dict[str, Grid]:
             data["index"] = np.full(own.sum(), int(response.index[k]))
         found[beam.name] = Grid(points=grid.points[own], cells=cells, point_data=data)
     if scene.contacts:
-        found[CONTACTS] = contact_points(response, scene, k)
+        found[CONTACTS] = _contacts(response, scene, k)
     if scene.holding:
-        found[SUPPORTS] = support_points(response, scene, k)
+        found[SUPPORTS] = _ends(response, scene, k, scene.holding, _reactions(response, scene, k))
     if scene.hinges:
-        found[HINGES] = hinge_points(response, scene, k)
+        found[HINGES] = _ends(response, scene, k, scene.hinges, {})
     return found
 
 
-def contact_points(response: Response, scene: Scene, k: int) -> Grid:
-    """Return the nodes of the contacts, in the order of the scene: pins, and ends that touch another beam.
-
-    The fields are the displacement, the radius of a pin, the displacement of the beam where it is touched (of the node where the pair
-    is open), the contact force on the beam, and the gap (nan without contact). With friction there are `tangential`, `normal`,
-    `slip` and `dissipated` of `FrictionHistory` too, nan at a contact without. A model that states no force vectors has one pair,
-    whose force is the one that the supports balance.
-    """
-    rows = [_contact(response, scene, contact, k) for contact in scene.contacts]
-    start, deformed, beside, force = (np.array(column) for column in zip(*rows, strict=True))
+def _contacts(response: Response, scene: Scene, k: int) -> Grid:
+    """Return the nodes of the contacts: pins, and ends that touch another beam; with what acts on the beam there."""
+    start, deformed, touched, force = (
+        np.array(column)
+        for column in zip(*(_contact(response, scene, one, k) for one in scene.contacts), strict=True)
+    )
     histories = [response.contacts[contact.pair] for contact in scene.contacts]
     data = {
-        "beam_displacement": beside,
+        "beam_displacement": touched,
         "radius": np.array([scene.radius(contact) for contact in scene.contacts]),
         "contact_force": force,
         "gap": np.array([history.gap[k] for history in histories]),
     }
     rubbed = [history.friction for history in histories]
-    if any(rubbed):
-        for name in ("tangential", "normal", "slip", "dissipated"):
-            data[name] = np.array([np.nan if one is None else getattr(one, name)[k] for one in rubbed])
+    for name in ("tangential", "normal", "slip", "dissipated") if any(rubbed) else ():
+        data[name] = np.array([np.nan if one is None else getattr(one, name)[k] for one in rubbed])
     return _points(start, deformed, data)
 
 
 def _contact(response: Response, scene: Scene, contact: ContactSpec, k: int) -> tuple[Array, ...]:
-    """Return a contact's undeformed and deformed place, the displacement where it touches, and the force."""
+    """Return a contact's undeformed and deformed place, the displacement where it touches, of the node where it is open, and the force."""
     name, _, end = contact.node.partition(".")
-    if end:
-        start, deformed = np.array(scene.place(contact.node)), _end(response, name, end, k)
-    else:
-        pin = scene.pin(name)
-        start, deformed = np.array(pin.points[0]), np.array(pin.position(float(response.load_parameter[k])))
+    pin = None if end else scene.pin(name)
+    start = np.array(pin.points[0] if pin else scene.place(contact.node))
+    t = float(response.load_parameter[k])
+    deformed = np.array(pin.position(t)) if pin else _end(response, name, end, k)
     history, moved = response.contacts[contact.pair], deformed - start
     arc = float(history.arc_position[k])
     if np.isfinite(arc):
         stations, line = response.axis_line(contact.beam, k)
         beam = scene.beam(contact.beam)
-        at = np.array([np.interp(arc, stations, line[:, i]) for i in (0, 1)])
-        moved = at - np.array(beam.place(arc / beam.length))
-    if history.vector is not None:
+        moved = np.array([np.interp(arc, stations, x) for x in line.T]) - beam.place(arc / beam.length)
+    if history.vector is not None:  # a model without force vectors has one pair, which the supports balance
         return start, deformed, moved, history.vector[k]
     return start, deformed, moved, -sum((one.force[k] for one in response.supports.values()), np.zeros(2))
 
 
-def support_points(response: Response, scene: Scene, k: int) -> Grid:
-    """Return the ends on supports and springs: displacement, force and moment on the beam, and what a picture of them needs.
-
-    `held` has 1 for each component x, y and rotation that a support holds, 2 for one that a spring resists; `inward` is the unit vector
-    into the beam. What a model does not state is nan.
-    """
-    start = np.array([scene.place(one.node) for one in scene.holding])
-    reactions = [response.supports.get(one.node) for one in scene.all_supports]
-    reactions += [response.springs.get(one.node) for one in scene.springs]
+def _reactions(response: Response, scene: Scene, k: int) -> dict[str, Array]:
+    """Return force and moment of supports and springs on the beam; for pictures, what is held (1, by a spring 2) and the way into the beam."""
+    found = [response.supports.get(one.node) for one in scene.all_supports]
+    found += [response.springs.get(one.node) for one in scene.springs]
     kinds = [1] * len(scene.all_supports) + [2] * len(scene.springs)
     held = [[name in one.held for name in COMPONENTS] for one in scene.holding]
-    data = {
-        "reaction_force": np.array(
-            [np.full(2, np.nan) if one is None else one.force[k] for one in reactions]
-        ),
-        "reaction_moment": np.array([np.nan if one is None else one.moment[k] for one in reactions]),
+    return {
+        "reaction_force": np.array([np.full(2, np.nan) if one is None else one.force[k] for one in found]),
+        "reaction_moment": np.array([np.nan if one is None else one.moment[k] for one in found]),
         "held": np.array(kinds)[:, None] * np.array(held),
         "inward": np.array([inward(scene, one) for one in scene.holding]),
     }
-    return _points(start, np.array([_end(response, one.beam, one.end, k) for one in scene.holding]), data)
 
 
-def hinge_points(response: Response, scene: Scene, k: int) -> Grid:
-    """Return the hinges: displacement."""
-    start = np.array([scene.place(one.node) for one in scene.hinges])
-    return _points(start, np.array([_end(response, one.beam, one.end, k) for one in scene.hinges]), {})
+def _ends(response: Response, scene: Scene, k: int, items: Any, data: dict[str, Array]) -> Grid:
+    """Return what is at the ends of beams with its displacement and other fields."""
+    start = np.array([scene.place(one.node) for one in items])
+    return _points(start, np.array([_end(response, one.beam, one.end, k) for one in items]), data)
 
 
 def _points(start: Array, deformed: Array, data: dict[str, Array]) -> Grid:
     """Return places as a grid of points with their displacement and other fields."""
     cells = {"vertex": np.arange(len(start)).reshape(-1, 1)}
-    return Grid(
-        points=start, cells=cells, point_data={"displacement": deformed - start, "deformed": deformed, **data}
-    )
+    moved = {"displacement": deformed - start, "deformed": deformed}
+    return Grid(points=start, cells=cells, point_data={**moved, **data})
 
 
 def _end(response: Response, beam: str, end: str, k: int) -> Array:
@@ -149,20 +134,17 @@ def _end(response: Response, beam: str, end: str, k: int) -> Array:
 
 
 def check_series(folder: Path, model: str, scene: Scene) -> None:
-    """Raise unless the files of a series may be written: each is not there yet, or is as this program wrote it.
-
-    Raises
-    ------
-    OutputError
-        One line, with the first file in the way.
-    """
+    """Raise `OutputError` with the first file in the way, unless each of a series is not there yet, or is as this program wrote it."""
     count = len(scene.beams) + sum(map(bool, (scene.contacts, scene.holding, scene.hinges)))
-    names = [
-        name
-        for k in range(len(scene.times))
-        for name in (_set(model, k), *(_file(model, k, number) for number in range(count)))
-    ]
-    check_free(folder, *names, _list(model))
+    names = (name for k in range(len(scene.times)) for name in _names(model, k, count))
+    check_free(folder, *names, f"{model}.pvd")
+
+
+def _names(model: str, k: int, count: int) -> list[str]:
+    """Return the names of the VTM and the VTU files of a load parameter."""
+    # a number for a block: names of beams may differ in capitals only, which some systems do not tell apart
+    stem = f"{model}-{k + 1:04d}"
+    return [f"{stem}.vtm", *(f"{stem}-{number}.vtu" for number in range(count))]
 
 
 def write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
@@ -182,74 +164,35 @@ def write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
     OutputError
         If there is no room, or a file is there that this program did not write.
     """
+    model, units = response.model, field_units(scene)
     with alone_in(folder):
-        check_series(folder, response.model, scene)
+        check_series(folder, model, scene)
         with staging(folder) as aside:
-            entries, files = _write_blocks(aside, response, scene)
-            write_list(aside / _list(response.model), entries)
+            files, sets = list[str](), list[str]()
+            for k in range(len(response.load_parameter)):
+                grids = blocks(response, scene, k)
+                whole, *parts = _names(model, k, len(grids))
+                for name, grid in zip(parts, grids.values(), strict=True):
+                    write_grid(aside / name, grid, units)
+                fields = {field for grid in grids.values() for field in grid.point_data}
+                there = {field: unit for field, unit in units.items() if field in fields}
+                write_blocks(aside / whole, dict(zip(grids, parts, strict=True)), there)
+                files += [*parts, whole]
+                sets.append(whole)
+            write_list(aside / f"{model}.pvd", zip(response.load_parameter.tolist(), sets, strict=True))
+            series = re.compile(re.escape(model) + r"-\d{4,}(\.vtm|-\d+\.vtu)")
             with interrupts_held():
-                move(aside, folder, [*files, _list(response.model)])
+                earlier = own(folder, (path.name for path in folder.iterdir() if series.fullmatch(path.name)))
+                move(aside, folder, [*files, f"{model}.pvd"])
                 # last, so that no list names a file that is gone
-                for name in _earlier(folder, response.model) - set(files):
+                for name in earlier - set(files):
                     (folder / name).unlink()
-    return [folder / name for _, name in entries]
-
-
-def _set(model: str, k: int) -> str:
-    """Name of the file of all blocks at the load parameter numbered k from 0."""
-    return f"{model}-{k + 1:04d}.vtm"
-
-
-def _file(model: str, k: int, number: int) -> str:
-    """Name of the file of a block, by its number: names of beams may differ in capitals only, which some systems do not tell apart."""
-    return f"{model}-{k + 1:04d}-{number}.vtu"
-
-
-def _list(model: str) -> str:
-    """Name of the list of a series."""
-    return f"{model}.pvd"
-
-
-def _earlier(folder: Path, model: str) -> set[str]:
-    """Names of the sets and blocks of a model that this program wrote in `folder`."""
-    series = re.compile(re.escape(model) + r"-\d{4,}(\.vtm|-\d+\.vtu)")
-    return own(folder, (path.name for path in folder.iterdir() if series.fullmatch(path.name)))
-
-
-def _write_blocks(
-    folder: Path, response: Response, scene: Scene
-) -> tuple[list[tuple[float, str]], list[str]]:
-    """Write every block; return load parameter and name of every set of blocks, and the names of all files."""
-    entries, names = [], []
-    units = field_units(scene)
-    for k, t in enumerate(response.load_parameter):
-        grids = blocks(response, scene, k)
-        files = {name: _file(response.model, k, number) for number, name in enumerate(grids)}
-        for name, grid in grids.items():
-            write_grid(folder / files[name], grid, units)
-        fields = {field for grid in grids.values() for field in grid.point_data}
-        there = {field: unit for field, unit in units.items() if field in fields}
-        write_blocks(folder / _set(response.model, k), files, there)
-        entries.append((float(t), _set(response.model, k)))
-        names += [*files.values(), _set(response.model, k)]
-    return entries, names
+    return [folder / name for name in sets]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Series:
-    """The blocks of a model's answer at s load parameters.
-
-    Attributes
-    ----------
-    title : str
-        What it shows.
-    load_parameter : ndarray, shape (s,)
-        Load parameters.
-    blocks : callable
-        The blocks at load parameter k, as `blocks` gives them.
-    units : mapping of str
-        Units of the fields by name.
-    """
+    """The `blocks` of a model's answer at load parameter k, its load parameters (s,), and the units of the fields by name."""
 
     title: str
     load_parameter: Array
@@ -277,9 +220,8 @@ def read_series(folder: Path) -> list[Series]:
     """
     files = sorted(folder.glob("*.pvd")) or sorted(folder.glob("*/*.pvd"), reverse=True)
     if not files:
-        raise OutputError(
-            f"{folder}: has no PVD file, `crossval solve --vtk` and `crossval compare` write them"
-        )
+        words = "has no PVD file, `crossval solve --vtk` and `crossval compare` write them"
+        raise OutputError(f"{folder}: {words}")
     return [_read(path) for path in files]
 
 

@@ -2,8 +2,8 @@
 
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,8 +21,7 @@ WIDTH = 700
 """Pixels of a panel of a GIF."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Film:
+class Film(NamedTuple):
     """Panels side by side at a row of load parameters, and the scale that they share."""
 
     frames: list[list[Panel]]
@@ -42,12 +41,10 @@ def film(series: Sequence[Series], factor: float = 1.0) -> Film:
     kept = np.unique(np.linspace(0, len(shared) - 1, min(FRAMES, len(shared))).round().astype(int))
     frames = [[_panel(one, shared[k], factor) for one in series] for k in kept]
     units = series[0].units
-    stress = next(
-        (f" [{units[name]}]" for name in ("axial_stress", "axial_stress_left") if name in units), ""
-    )
+    stress = units.get("axial_stress", units.get("axial_stress_left"))
+    label = f"axial stress [{stress}]" if stress else "axial stress"
     every = [item for panels in frames for item in panels]
-    scale = Scale.of(every, f"axial stress{stress}", units.get("contact_force", ""))
-    return Film(frames=frames, scale=scale)
+    return Film(frames, Scale.of(every, label, units.get("contact_force", "")))
 
 
 def _panel(series: Series, t: float, factor: float) -> Panel:
@@ -64,7 +61,7 @@ def write(shown: Film, folder: Path, count: Count = uncounted) -> tuple[list[Pat
 
     last, motion = files = [folder / "view.png", folder / "view.gif"]
     with tempfile.TemporaryDirectory() as scratch:
-        pictures, sentence = render_frames(shown.frames, shown.scale, Path(scratch), count)
+        pictures, sentence = render_frames(*shown, Path(scratch), count)
         images = [Image.open(picture).convert("RGB") for picture in pictures]
     with replacing(last) as temporary:
         images[-1].save(temporary)

@@ -1,8 +1,8 @@
 """The findings of a comparison in sentences, each made from the data."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
-from math import inf, isfinite, log
+from math import inf, isfinite, log, nan
 
 import numpy as np
 
@@ -18,6 +18,12 @@ AGREES = 1e-9
 """Error below which two answers agree."""
 LEAST_PART = 0.05
 """Part of the difference of beams and solid, over the largest part, below which it is not named."""
+STATES = {
+    "-": "Stability is not stated by {}.",
+    "in part": "Stability is stated at a part of the load parameters by {}.",
+    "no": "Unstable equilibria are on the path of {}.",
+}
+"""What is said of the runs by their `stable`."""
 
 
 def findings(
@@ -33,38 +39,37 @@ def findings(
     labelled `reference`, over all runs of a type of elements, with its cause; runs that stopped; what was
     left out, by the family of a run or `BUDGET`; who states no stability; what the referee certified.
     """
-    found = [_compared(scene, rows, reference)]
     others = [row for row in rows if row.label != reference]
+    found = [_compared(scene, rows, others, reference)]
     for family, own in groupby(others, key=lambda row: row.family):
         found += _off(family, list(own), scene, budget, reference)
     return [*found, *_stopped(rows), *_left_out(left_out), *_stability(rows), _certified(rows)]
 
 
-def _compared(scene: Scene, rows: Sequence[Row], reference: str) -> str:
-    models = dict.fromkeys(find(row.response.model).label for row in rows if row.label != reference)
+def _compared(scene: Scene, rows: Sequence[Row], others: Sequence[Row], reference: str) -> str:
+    models = dict.fromkeys(find(row.response.model).label for row in others)
     last = max(float(row.response.load_parameter.max(initial=0.0)) for row in rows)
-    count = f"{len(rows) - 1} run{'' if len(rows) == 2 else 's'}"
+    runs = "1 run of {} is" if len(others) == 1 else f"{len(others)} runs of {{}} are"
     return (
-        f"{count} of {_listed(models)} {'is' if len(rows) == 2 else 'are'} compared with the {reference} on {scene.name} at "
+        f"{runs.format(_listed(models))} compared with the {reference} on {scene.name} at "
         f"{len(scene.times)} load parameters, up to {last:.4g}. Errors of forces and moments are relative to the largest value, "
         "errors of positions to the length."
     )
 
 
-def _off(family: str, rows: list[Row], scene: Scene, budget: Budget | None, reference: str) -> Iterable[str]:
+def _off(family: str, rows: list[Row], scene: Scene, budget: Budget | None, reference: str) -> Iterator[str]:
     """Yield how far the runs of a family are off, and why."""
-    known = [row for row in rows if row.errors is not None and isfinite(_worst(row, scene)[0])]
+    known = [row for row in rows if isfinite(_worst(row, scene)[0])]
     if not known:
         return
     name = f"The {family}" if family[0].islower() else family
-    stated = _stated(known, scene)
     explained = budget is not None and find(known[0].response.model).continuum
     if max(_worst(row, scene)[0] for row in known) < AGREES:
-        yield f"{name} agrees with the {reference} to {stated}."
+        yield f"{name} agrees with the {reference} to {_stated(known, scene)}."
     else:
         cause = "" if explained else next((row.cause for row in known if row.cause), "")
         because = f". Theory expects most of it from this cause: {cause}" if cause else ""
-        yield f"{name} is off by at most {stated}{_falling(known, scene)}{because}."
+        yield f"{name} is off by at most {_stated(known, scene)}{_falling(known, scene)}{because}."
     if explained and budget is not None:
         yield _parts(budget)
     for row in known:
@@ -78,9 +83,8 @@ def _stated(rows: Sequence[Row], scene: Scene) -> str:
     for row in rows:
         error, quantity = _worst(row, scene)
         named = "" if quantity == before else f" ({quantity})"
-        many = "" if row.resolution == 1 else "s"
-        resolved = f" with {row.resolution:.0f} element{many}" if isfinite(row.resolution) else ""
-        words.append(f"{_size(error)}{named}{resolved}")
+        elements = f" with {row.resolution:.0f} element{'' if row.resolution == 1 else 's'}"
+        words.append(f"{_size(error)}{named}{elements if isfinite(row.resolution) else ''}")
         before = quantity
     return _listed(words)
 
@@ -91,7 +95,7 @@ def _worst(row: Row, scene: Scene) -> tuple[float, str]:
     names = {"force": acting, "arc": "arc position", "moment": "support moment", "tip": "tip"}
     path = {} if row.errors is None else row.errors["path"]
     found = [(path[name], words) for name, words in names.items() if isfinite(path.get(name, inf))]
-    return max(found, default=(np.nan, ""))
+    return max(found, default=(nan, ""))
 
 
 def _falling(rows: list[Row], scene: Scene) -> str:
@@ -107,13 +111,11 @@ def _falling(rows: list[Row], scene: Scene) -> str:
 def _parts(budget: Budget) -> str:
     """Return what makes the largest difference between beams and solid, of a force where there is one."""
     names = [name for name in budget.total if "force" in name] or list(budget.total)
-    quantity, k = max(
-        ((name, k) for name in names for k in range(len(TIMES))),
-        key=lambda item: np.nan_to_num(abs(budget.total[item[0]][item[1]])),
-    )
-    largest = np.nan_to_num(abs(budget.total[quantity][k]))
-    if largest < AGREES:
-        return f"In the error budget, beams and solid agree to {_size(largest)}."
+    sizes = np.nan_to_num([np.abs(budget.total[name]) for name in names])
+    number, k = np.unravel_index(np.argmax(sizes), sizes.shape)
+    quantity = names[number]
+    if sizes.max() < AGREES:
+        return f"In the error budget, beams and solid agree to {_size(float(sizes.max()))}."
     parts = {name: float(values[k]) for name, values in budget.parts[quantity].items()}
     greatest = max(map(abs, parts.values()))
     shown = sorted((n for n in parts if abs(parts[n]) > LEAST_PART * greatest), key=lambda n: -abs(parts[n]))
@@ -126,40 +128,32 @@ def _parts(budget: Budget) -> str:
     )
 
 
-def _stopped(rows: Sequence[Row]) -> Iterable[str]:
-    for row in rows:
-        if not row.response.completed:
-            reached = float(row.response.load_parameter.max(initial=0.0))
-            yield (
-                f"{row.label} did not complete ({row.response.status}: {row.response.message}); its errors are those up to load "
-                f"parameter {reached:.4g}."
-            )
+def _stopped(rows: Sequence[Row]) -> Iterator[str]:
+    for response, label in ((row.response, row.label) for row in rows):
+        if not response.completed:
+            reached = float(response.load_parameter.max(initial=0.0))
+            why = f"{response.status}: {response.message}"
+            yield f"{label} did not complete ({why}); its errors are those up to load parameter {reached:.4g}."
 
 
-def _left_out(left_out: Mapping[str, str]) -> Iterable[str]:
-    reasons = dict.fromkeys(reason for name, reason in left_out.items() if name != BUDGET)
-    for reason in reasons:
+def _left_out(left_out: Mapping[str, str]) -> Iterator[str]:
+    for reason in dict.fromkeys(reason for name, reason in left_out.items() if name != BUDGET):
         yield f"Not stated by {_listed(name for name in left_out if left_out[name] == reason)}: {reason}."
     if BUDGET in left_out:
         yield f"There is no error budget: {left_out[BUDGET]}."
 
 
-def _stability(rows: Sequence[Row]) -> Iterable[str]:
-    indices = [(row.family, -1 if row.response.index is None else row.response.index) for row in rows]
-    stated = {family for family, index in indices if np.any(np.greater_equal(index, 0))}
-    unstable = dict.fromkeys(family for family, index in indices if np.any(np.greater(index, 0)))
-    silent = dict.fromkeys(family for family, _ in indices if family not in stated)
-    partial = dict.fromkeys(
-        family
-        for family, index in indices
-        if family in stated and np.any(np.less(index, 0)) and not np.any(np.greater(index, 0))
-    )
-    if silent:
-        yield f"Stability is not stated by {_listed(silent)}."
-    if partial:
-        yield f"Stability is stated at a part of the load parameters by {_listed(partial)}."
-    if unstable:
-        yield f"Unstable equilibria are on the path of {_listed(unstable)}."
+def _stability(rows: Sequence[Row]) -> Iterator[str]:
+    """Yield what is not stable; a family that states an index in one run is not silent."""
+    states = {
+        state: dict.fromkeys(row.family for row in rows if row.stable == state) for state in (*STATES, "yes")
+    }
+    spoken = {*states["in part"], *states["no"], *states["yes"]}
+    left = {"-": spoken, "in part": {*states["no"]}, "no": set[str]()}
+    for state, words in STATES.items():
+        families = [family for family in states[state] if family not in left[state]]
+        if families:
+            yield words.format(_listed(families))
 
 
 def _certified(rows: Sequence[Row]) -> str:

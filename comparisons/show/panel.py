@@ -4,7 +4,8 @@ Beams are ribbons of their height, so that beams and solids are shown on one foo
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +15,10 @@ from comparisons.scene import Scene
 from comparisons.scene.conditions import COMPONENTS
 from comparisons.show.export import CONTACTS, HINGES, POINTS, SUPPORTS, blocks
 from comparisons.show.palette import PIN
-from comparisons.show.symbols import Segments, hinge_symbol, placed, spring_symbol, support_symbol
+from comparisons.show.symbols import SYMBOL, Segments, hinge_symbol, placed, spring_symbol, support_symbol
 
-Body = tuple[Array, NDArray[np.int64], Array]
-"""Deformed positions (n, 2), quadrilaterals (m, 4) and stress (n,) of a body."""
+Body = tuple[Array, Array]
+"""Quadrilaterals (m, 4, 2) of a deformed body, and the stress (m, 4) at their corners."""
 QUARTERS = {
     "quad9": np.array([[0, 4, 8, 7], [4, 1, 5, 8], [8, 5, 2, 6], [7, 8, 6, 3]]),
     "quad": np.array([[0, 1, 2, 3]]),
@@ -27,53 +28,65 @@ PARTS, LAYERS = 8, (4, 8)
 """Quadrilaterals along an element of a beam, and over its height for a stress linear in it or not."""
 THIN = 2e-3
 """Height of a beam whose section has none, over the size of the picture."""
-ARROW = 0.2
-"""Length of the longest arrow over the size of the picture."""
-SYMBOL = 0.03
-"""Size of a support's symbol over the size of the undeformed structure."""
+ARROW, LEAST, POINT = 0.2, 0.02, 0.014
+"""Length of the longest arrow and the least length of one over the size of the picture; radius of a mark over half the size."""
+_TURN = np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False)
+CIRCLE = np.stack([np.cos(_TURN), np.sin(_TURN)], axis=-1)
+SHAFT, HEAD = np.array(
+    [
+        [[-1, -0.025], [-0.25, -0.025], [-0.25, 0.025], [-1, 0.025]],
+        [[-0.25, -0.08], [0, 0], [0, 0], [-0.25, 0.08]],
+    ]
+)
+"""The two parts of an arrow of unit length along the first axis, which ends at the origin."""
 COLOURS = {OPEN: CONTACT_STATES[OPEN], "contact": PIN, **CONTACT_STATES}
 """Colours of contacts by their state, the open ones first, below the others; a closed one without friction is a ``contact``."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Panel:
-    """Deformed bodies as quadrilaterals with a stress at their points, the nodes that touch them, and the supports.
+    """Deformed bodies as m quadrilaterals with a stress at their corners, the p nodes that touch them, and the supports.
 
-    Attributes
-    ----------
-    title : str
-        What it shows.
-    points, quads, stress : ndarray
-        Deformed positions (n, 2), quadrilaterals (m, 4) and stress (n,) of the bodies.
-    pins, radii : ndarray, shape (p, 2) and (p,)
-        Pins, and the ends of beams that touch other beams; their radii, zero for a point.
-    forces : ndarray, shape (p, 2)
-        What they exert on the beams, drawn as arrows; zero where none are to be drawn.
-    states : ndarray of str, shape (p,)
-        Keys of `COLOURS`.
-    supports : ndarray, shape (l, 2, 2)
-        Line segments of the symbols of supports, springs and hinges.
+    The nodes are pins, and ends of beams that touch other beams. `radii` are zero for a point. `forces` are what they exert on the beams,
+    drawn as arrows; zero where none are to be drawn. `states` are keys of `COLOURS`. `supports` are the line segments of the symbols of
+    supports, springs and hinges.
     """
 
     title: str
-    points: Array
-    quads: NDArray[np.int64]
-    stress: Array
-    pins: Array
-    radii: Array
-    forces: Array
-    states: NDArray[np.str_]
-    supports: Segments
+    quads: Array  # (m, 4, 2)
+    stress: Array  # (m, 4)
+    pins: Array  # (p, 2)
+    radii: Array  # (p,)
+    forces: Array  # (p, 2)
+    states: NDArray[np.str_]  # (p,)
+    supports: Segments  # (l, 2, 2)
 
-    def pins_by_state(self) -> dict[str, NDArray[np.int64]]:
-        """Return the numbers of the pins by their states, in the order of drawing."""
-        found = {state: np.flatnonzero(self.states == state) for state in COLOURS}
-        return {state: numbers for state, numbers in found.items() if len(numbers)}
+    def shown(self) -> list[str]:
+        """Return the states of the pins in the order of drawing."""
+        return [state for state in COLOURS if state in self.states]
 
     def outline(self) -> list[Array]:
         """Return points (..., 2) within which all is drawn but the arrows."""
         reach = self.radii[:, None]
-        return [self.points, self.pins + reach, self.pins - reach, self.supports.reshape(-1, 2)]
+        return [
+            part.reshape(-1, 2) for part in (self.quads, self.pins + reach, self.pins - reach, self.supports)
+        ]
+
+    def shapes(self, scale: "Scale") -> Iterator[tuple[str, float, Array]]:
+        """Yield what stands for the pins, from below: colour, opacity and polygons (n, corners, 2) of discs, marks and arrows.
+
+        An arrow ends where a round pin touches.
+        """
+        lengths = scale.force * np.hypot(*self.forces.T)
+        for state in self.shown():
+            own, colour = self.states == state, COLOURS[state]
+            discs, drawn = own & (self.radii > 0.0), own & (lengths > 2.0 * LEAST * scale.half)
+            yield colour, 0.35, self.pins[discs, None] + self.radii[discs, None, None] * CIRCLE
+            yield colour, 1.0, self.pins[own, None] + POINT * scale.half * CIRCLE
+            along = self.forces[drawn] / np.hypot(*self.forces[drawn].T)[:, None]
+            axes = lengths[drawn, None, None] * np.stack([along, along @ [[0.0, 1.0], [-1.0, 0.0]]], axis=1)
+            tips = self.pins[drawn] + self.radii[drawn, None] * along
+            yield colour, 1.0, np.concatenate([tips[:, None] + part @ axes for part in (SHAFT, HEAD)])
 
 
 def mises_panel(response: Response, scene: Scene, ks: Sequence[int], title: str) -> Panel:
@@ -93,16 +106,12 @@ def mises_panel(response: Response, scene: Scene, ks: Sequence[int], title: str)
                 data["axial_stress_right"], data["axial_stress_left"] = direct + bent, direct - bent
                 data["shear_stress"] = 1.5 * data["V"] / area
     panels = [panel(state, title, stress="von_mises") for state in states]
-    starts = np.cumsum([0, *(len(one.points) for one in panels)]).tolist()
-    return Panel(
-        title=title,
-        quads=np.concatenate([one.quads + start for one, start in zip(panels, starts, strict=False)]),
-        forces=0.0 * np.concatenate([one.forces for one in panels]),
-        **{
-            name: np.concatenate([getattr(one, name) for one in panels])
-            for name in ("points", "stress", "pins", "radii", "states", "supports")
-        },
-    )
+    whole: dict[str, Any] = {
+        item.name: np.concatenate([getattr(one, item.name) for one in panels])
+        for item in fields(Panel)
+        if item.name != "title"
+    }
+    return Panel(title=title, **{**whole, "forces": 0.0 * whole["forces"]})
 
 
 def panel(
@@ -120,7 +129,6 @@ def panel(
         _solid(grid, stress, factor) if QUARTERS.keys() & grid.cells.keys() else _ribbon(grid, size, factor)
         for grid in structure
     ]
-    starts = np.cumsum([0, *(len(points) for points, _, _ in bodies[:-1])])
     none = np.zeros((0, 2))
     data = grids[CONTACTS].point_data if CONTACTS in grids else {}
     forces = data.get("contact_force", none)
@@ -128,9 +136,8 @@ def panel(
     symbols = [placed(symbol, place, SYMBOL * size) for place, symbol in _symbols(grids, factor)]
     return Panel(
         title=title if factor == 1.0 else f"{title}, deformation x {factor:g}",
-        points=np.concatenate([points for points, _, _ in bodies]),
-        quads=np.concatenate([quads + start for (_, quads, _), start in zip(bodies, starts, strict=True)]),
-        stress=np.concatenate([values for _, _, values in bodies]),
+        quads=np.concatenate([quads for quads, _ in bodies]),
+        stress=np.concatenate([values for _, values in bodies]),
         pins=data.get("deformed", none) + (factor - 1.0) * data.get("beam_displacement", none),
         radii=data.get("radius", np.zeros(0)),
         forces=forces,
@@ -142,7 +149,8 @@ def panel(
 def _solid(grid: Grid, stress: str, factor: float) -> Body:
     """Return a solid's deformed body with one of its stresses."""
     found = [grid.cells[kind][:, own].reshape(-1, 4) for kind, own in QUARTERS.items() if kind in grid.cells]
-    return _enlarged(grid, factor), np.concatenate(found), grid.point_data[stress]
+    quads = np.concatenate(found)
+    return _enlarged(grid, factor)[quads], grid.point_data[stress][quads]
 
 
 def _enlarged(grid: Grid, factor: float) -> Array:
@@ -152,34 +160,39 @@ def _enlarged(grid: Grid, factor: float) -> Array:
 def _ribbon(grid: Grid, size: float, factor: float) -> Body:
     """Ribbons of a beam's height about the cubics that have the ends and end tangents of the lines; straight lines without rotations."""
     data, ends = grid.point_data, grid.cells["line"]
-    straight, chord = np.diff(grid.points[ends], axis=1), np.diff(data["deformed"][ends], axis=1)
+    before, after, ending = (
+        (points @ [1.0, 1.0j])[ends] for points in (grid.points, data["deformed"], _enlarged(grid, factor))
+    )
+    straight, tangent = (np.repeat(np.diff(points), 2, axis=1) for points in (before, after))
     if "rotation" in data:
-        before = _end_angles(np.arctan2(straight[:, 0, 1], straight[:, 0, 0]))
-        undeformed = np.hypot(*straight.T).T[..., None] * _unit(before)
-        tangent = np.hypot(*chord.T).T[..., None] * _unit(before + data["rotation"][ends])
-    else:
-        undeformed, tangent = (np.repeat(vectors, 2, axis=1) for vectors in (straight, chord))
-    tangent = tangent + (factor - 1.0) * (tangent - undeformed)
+        angles = _end_angles(np.angle(straight[:, 0]))
+        straight = np.abs(straight) * np.exp(1.0j * angles)
+        tangent = np.abs(tangent) * np.exp(1.0j * (angles + data["rotation"][ends]))
+    tangent = tangent + (factor - 1.0) * (tangent - straight)
     u = np.linspace(0.0, 1.0, PARTS + 1)
     blends = np.stack([1 - 3 * u**2 + 2 * u**3, 3 * u**2 - 2 * u**3, u - 2 * u**2 + u**3, u**3 - u**2])
-    line = np.einsum("bu,ebx->eux", blends, np.concatenate([_enlarged(grid, factor)[ends], tangent], axis=1))
-    between = np.stack([1 - u, u])
+    line = np.concatenate([ending, tangent], axis=1) @ blends
 
     def along(name: str) -> Array:
         values = data.get(name, np.zeros(len(grid.points)))[ends]
-        return np.asarray(np.einsum("bu,eb->eu", between, values)[..., None])
+        return np.asarray((values @ np.stack([1 - u, u]))[..., None])
 
-    normal = _unit(np.einsum("bu,eb->eu", between, _angles(tangent)) + np.pi / 2.0)
+    turn = np.angle(tangent[:, 1:] * tangent[:, :1].conj())
+    normal = 1.0j * np.exp(1.0j * (np.angle(tangent[:, :1]) + turn * u))
     half = along("height") / 2.0
     half[half == 0.0] = THIN / 2.0 * size
     across = np.linspace(-1.0, 1.0, LAYERS["shear_stress" in data] + 1)
-    points = line[:, :, None] + half[..., None] * across[:, None] * normal[:, :, None]
+    points = line[..., None] + half * across * normal[..., None]
     stress = along("axial_stress_right") * (1 - across) / 2 + along("axial_stress_left") * (1 + across) / 2
     if "shear_stress" in data:
         stress = np.sqrt(stress**2 + 3.0 * (along("shear_stress") * (1.0 - across**2)) ** 2)
-    number = np.arange(points[..., 0].size).reshape(points.shape[:-1])
-    corners = (number[:, :-1, :-1], number[:, 1:, :-1], number[:, 1:, 1:], number[:, :-1, 1:])
-    return points.reshape(-1, 2), np.stack(corners, axis=-1).reshape(-1, 4), stress.ravel()
+
+    def corners(values: Array) -> Array:
+        found = (values[:, :-1, :-1], values[:, 1:, :-1], values[:, 1:, 1:], values[:, :-1, 1:])
+        return np.stack(found, axis=-1).reshape(-1, 4)
+
+    quads = corners(points)
+    return np.stack([quads.real, quads.imag], axis=-1), corners(stress)
 
 
 def _end_angles(chords: Array) -> Array:
@@ -192,18 +205,6 @@ def _end_angles(chords: Array) -> Array:
     return np.stack([np.append(first, between), np.append(between, last)], axis=1)
 
 
-def _unit(angles: Array) -> Array:
-    return np.stack([np.cos(angles), np.sin(angles)], axis=-1)
-
-
-def _angles(tangent: Array) -> Array:
-    """Return the angles of the tangents at both ends of every line, the second within half a turn of the first."""
-    first = np.arctan2(tangent[:, 0, 1], tangent[:, 0, 0])
-    cross = tangent[:, 0, 0] * tangent[:, 1, 1] - tangent[:, 0, 1] * tangent[:, 1, 0]
-    turn = np.arctan2(cross, np.einsum("ex,ex->e", tangent[:, 0], tangent[:, 1]))
-    return np.stack([first, first + turn], axis=1)
-
-
 def _symbols(grids: Mapping[str, Grid], factor: float) -> Iterator[tuple[Array, Segments]]:
     """Yield the symbols of supports, springs and hinges with their places."""
     for place in _enlarged(grids[HINGES], factor) if HINGES in grids else ():
@@ -211,9 +212,8 @@ def _symbols(grids: Mapping[str, Grid], factor: float) -> Iterator[tuple[Array, 
     if SUPPORTS not in grids:
         return
     data = grids[SUPPORTS].point_data
-    for place, kinds, away in zip(
-        _enlarged(grids[SUPPORTS], factor), data["held"], data["inward"], strict=True
-    ):
+    places = _enlarged(grids[SUPPORTS], factor)
+    for place, kinds, away in zip(places, data["held"], data["inward"], strict=True):
         held = tuple(name for name, kind in zip(COMPONENTS, kinds, strict=True) if kind == 1)
         if held:
             yield place, support_symbol(held, away)
@@ -251,12 +251,12 @@ class Scale:
         largest = max(float(np.hypot(*one.forces.T).max(initial=0.0)) for one in panels)
         force = ARROW * float(np.ptp(points, axis=0).max()) / (largest or 1.0)
         points = np.concatenate([points, *(one.pins - force * one.forces for one in panels)])
-        (left, low), (right, high) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+        low, high = points.min(axis=0), points.max(axis=0)
         top = max(float(np.abs(one.stress).max()) for one in panels)
         signed = any(float(one.stress.min()) < 0.0 for one in panels)
         return cls(
-            centre=((left + right) / 2.0, (low + high) / 2.0),
-            extent=((right - left) / 2.0, (high - low) / 2.0),
+            centre=tuple(((low + high) / 2.0).tolist()),
+            extent=tuple(((high - low) / 2.0).tolist()),
             stress=(-top if signed else 0.0, top),
             force=force if largest else 0.0,
             label=label,

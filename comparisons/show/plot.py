@@ -1,4 +1,4 @@
-"""Pictures by matplotlib: the overlay of deflected shapes, and a stand-in for the rendered picture."""
+"""Pictures by matplotlib: what all of them share, and the overlay of deflected shapes."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,10 +9,10 @@ import numpy as np
 from comparisons.files import replacing
 from comparisons.models import find
 from comparisons.response import Array, Response
+from comparisons.response.table import unit_names
 from comparisons.scene import Scene
 from comparisons.show import palette
-from comparisons.show.panel import COLOURS, Panel, Scale
-from comparisons.show.symbols import draw_symbols
+from comparisons.show.symbols import SYMBOL, draw_symbols
 
 SOLID = {"linewidth": 6.0, "alpha": 0.55, "solid_capstyle": "butt"}
 EXACT = {"linewidth": 1.0}
@@ -30,8 +30,6 @@ SHOWN = (0.2, 0.4, 0.6, 0.8, 1.0)
 """Load parameters of the overlay over the scene's last; the nearest ones of the scene are drawn."""
 LABELS = 0.06
 """Least distance of two labels of pins, over the size of the picture."""
-SYMBOL = 0.03
-"""Size of the symbol of a support, a spring or a hinge, over the size of the picture."""
 WIDTH = 6.3
 """Width of a picture [inch]: 160 mm, so that letters have their size in points on paper, and are legible on a telephone."""
 PIXELS = 1400
@@ -64,12 +62,6 @@ def arrow(axes: Any, tail: Array, tip: Array, colour: str, width: float = 1.2) -
     axes.update_datalim([tail, tip])
 
 
-def ribbon(line: Array, normal: Array, height: Array) -> Array:
-    """Return the outline (2 n, 2) of a beam by its axis (n, 2), unit normals (n, 2) and heights (n,)."""
-    half = height[:, None] / 2.0 * normal
-    return np.concatenate([line + half, (line - half)[::-1]])
-
-
 def nearest_steps(load_parameter: Array, last: float = 1.0) -> list[int]:
     """Return the numbers of the load parameters nearest to those of `SHOWN` on the way to `last`, each once."""
     return sorted({int(np.argmin(np.abs(load_parameter - part * last))) for part in SHOWN})
@@ -84,18 +76,24 @@ def plot_shapes(scene: Scene, responses: dict[str, Response], *paths: Path) -> N
     fig = figure(figsize=(WIDTH, 7.4))
     places = fig.subplot_mosaic([["whole", "whole"], ["detail", "legend"]])
     whole, detail = places["whole"], places["detail"]
+    reached = {label: response for label, response in responses.items() if len(response.load_parameter)}
     for axes in (whole, detail):
-        _draw_shapes(axes, scene, responses)
+        _draw_shapes(axes, scene, reached)
         axes.set_aspect("equal", adjustable="box")
         axes.grid(visible=True, linewidth=0.3)
-    symbols = _draw_symbols(whole, scene, responses)
-    length = scene.units.split(",")[1].strip()
+    last = next(reversed(reached.values()), None)
+    symbols = {}
+    if last is not None:
+        lines = {beam.name: last.axis_line(beam.name, -1)[1] for beam in scene.beams}
+        symbols = draw_symbols(whole, scene, lines, SYMBOL * max(whole.dataLim.width, whole.dataLim.height))
+    length = unit_names(scene.units)["length"]
     whole.set(xlabel=f"x [{length}]", ylabel=f"y [{length}]", title=f"{scene.name}: deflected axes")
     whole.margins(0.06)
     tall = float(np.clip(0.85 * WIDTH * whole.dataLim.height / max(whole.dataLim.width, 1e-300), 1.2, 5.5))
     whole.get_gridspec().set_height_ratios((tall + 0.8, 2.8))
     fig.set_figheight(tall + 3.6)
-    _zoom_on_tip(whole, detail, scene, responses)
+    if last is not None:
+        _zoom_on_tip(whole, detail, scene, last)
     places["legend"].set_axis_off()
     handles, words = whole.get_legend_handles_labels()
     entries = ([*handles, *symbols.values()], [*words, *symbols])
@@ -108,15 +106,13 @@ def _draw_shapes(axes: Any, scene: Scene, responses: dict[str, Response]) -> Non
     drawn: set[float] = set()
     for label, response in responses.items():
         style = {"color": palette.colour(label), **_style(response, scene, beam_styles)}
-        reached = response.load_parameter
-        for k in nearest_steps(reached, scene.times[-1]) if len(reached) else []:
+        for k in nearest_steps(response.load_parameter, scene.times[-1]):
             drawn.add(float(response.load_parameter[k]))
             for beam in scene.beams:
                 _, line = response.axis_line(beam.name, k)
-                every = (
-                    max(1, (len(line) - 1) // _elements(response, scene, k)) if "marker" in style else None
-                )
-                axes.plot(*line.T, label=label, markevery=every, **{"linewidth": 0.8, **style})
+                if "marker" in style:
+                    style["markevery"] = max(1, (len(line) - 1) // _elements(response, scene, k))
+                axes.plot(*line.T, label=label, **{"linewidth": 0.8, **style})
                 label = "_"  # noqa: PLW2901 one entry of the legend per response
     apart = LABELS * max(axes.dataLim.width, axes.dataLim.height)
     first = next((one for one in scene.pins if one.moving), None)
@@ -140,15 +136,6 @@ def _draw_places(axes: Any, places: dict[float, Array], label: str, apart: float
             last = place
 
 
-def _draw_symbols(axes: Any, scene: Scene, responses: dict[str, Response]) -> dict[str, Any]:
-    """Draw supports, springs and hinges at the last state of the last response, and return their entries in a legend."""
-    reached = [response for response in responses.values() if len(response.load_parameter)]
-    if not reached:
-        return {}
-    lines = {beam.name: reached[-1].axis_line(beam.name, -1)[1] for beam in scene.beams}
-    return draw_symbols(axes, scene, lines, SYMBOL * max(axes.dataLim.width, axes.dataLim.height))
-
-
 def _style(response: Response, scene: Scene, beam_styles: Iterator[dict[str, Any]]) -> dict[str, Any]:
     """Return the line of a model; beams with few elements take the next marker, which marks their nodes."""
     model = find(response.model)
@@ -156,21 +143,16 @@ def _style(response: Response, scene: Scene, beam_styles: Iterator[dict[str, Any
         return EXACT
     if model.continuum:
         return SOLID
-    reached = len(response.load_parameter)
-    points = len(response.axis_line(scene.beams[0].name, 0)[1]) if reached else 0
-    return CONTINUOUS if reached and FINE * _elements(response, scene, 0) > points else next(beam_styles)
+    points = len(response.axis_line(scene.beams[0].name, 0)[1])
+    return CONTINUOUS if FINE * _elements(response, scene, 0) > points else next(beam_styles)
 
 
 def _elements(response: Response, scene: Scene, k: int) -> int:
     return len(response.grid(k).cells["line"]) // len(scene.beams)
 
 
-def _zoom_on_tip(whole: Any, detail: Any, scene: Scene, responses: dict[str, Response]) -> None:
-    """Show the surroundings of the last tip of the last response: the models differ by a fraction of the line width."""
-    reached = [response for response in responses.values() if len(response.load_parameter)]
-    if not reached:
-        return
-    exact = reached[-1]
+def _zoom_on_tip(whole: Any, detail: Any, scene: Scene, exact: Response) -> None:
+    """Show the surroundings of the last tip of a response: the models differ by a fraction of the line width."""
     beam = scene.beams[0]
     x, y = exact.tips[beam.name][-1]
     half = 0.02 * beam.length
@@ -183,58 +165,3 @@ def _zoom_on_tip(whole: Any, detail: Any, scene: Scene, responses: dict[str, Res
     detail.locator_params(nbins=3)
     box = whole.indicate_inset(bounds=(x - half, y - half, 2.0 * half, 2.0 * half), edgecolor="0.3")
     box.rectangle.set_zorder(4)
-
-
-def plot_panels(panels: list[Panel], scale: Scale, path: Path) -> None:
-    """Draw deformed bodies side by side, coloured by stress, in place of the rendered picture."""
-    from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
-
-    wide, tall = (1.12 * max(half, 0.25 * scale.half) for half in scale.extent)
-    fig = figure(figsize=(WIDTH, min(WIDTH / len(panels) * tall / wide, 7.0) + 1.7))
-    frames = fig.subplots(1, len(panels), sharex=True, sharey=True, squeeze=False)[0]
-    x, y = scale.centre
-    for axes, panel in zip(frames, panels, strict=True):
-        bodies = PolyCollection(
-            list(panel.points[panel.quads]),
-            array=panel.stress[panel.quads].mean(axis=1),
-            cmap=scale.colours,
-            edgecolors="face",
-            linewidths=0.3,
-        )
-        bodies.set_clim(*scale.stress)
-        axes.add_collection(bodies)
-        axes.add_collection(LineCollection(list(panel.supports), colors="black", linewidths=0.8))
-        for state, numbers in panel.pins_by_state().items():
-            colour = COLOURS[state]
-            pins, diameters = panel.pins[numbers], 2.0 * panel.radii[numbers]
-            axes.add_collection(
-                EllipseCollection(
-                    diameters, diameters, 0.0 * diameters, units="xy", offsets=pins, offset_transform=axes.transData,
-                    facecolors=colour, alpha=0.5,
-                )
-            )  # fmt: skip
-            axes.plot(*pins.T, linestyle="none", marker="o", color=colour, markersize=4)
-            for pin, radius, force in zip(pins, panel.radii[numbers], panel.forces[numbers], strict=True):
-                if force.any():
-                    tip = pin + radius * force / np.hypot(*force)
-                    arrow(axes, tip - scale.force * force, tip, colour, 2.0)
-        axes.set(aspect="equal", xlim=(x - wide, x + wide), ylim=(y - tall, y + tall))
-        axes.set_title(panel.title, fontsize="medium")
-        axes.tick_params(labelsize="small")
-    fig.colorbar(bodies, ax=list(frames), label=scale.label, location="bottom", shrink=0.5)
-    _legend(fig, panels, scale)
-    save(fig, path)
-
-
-def _legend(fig: Any, panels: list[Panel], scale: Scale) -> None:
-    """Name the colours of the contacts, and the longest arrow."""
-    from matplotlib.lines import Line2D
-
-    words = list(dict.fromkeys(state for panel in panels for state in panel.pins_by_state()))
-    dots = [Line2D([], [], linestyle="none", marker="o", color=COLOURS[state]) for state in words]
-    if scale.arrow:
-        dots.append(Line2D([], [], color=COLOURS["contact"], marker=">"))
-        words.append(scale.arrow)
-    fig.legend(
-        dots, words, loc="outside lower center", ncols=len(words) or 1, fontsize="small", frameon=False
-    )

@@ -1,10 +1,10 @@
-"""Symbols of mechanics as line segments of unit size: supports by what they hold, moments as arcs.
+"""Symbols of mechanics as line segments of unit size: supports by what they hold, springs, hinges, moments as arcs.
 
 Every symbol has its node at the origin. A picture turns, enlarges and moves its segments, so that the same symbols are drawn by
 matplotlib and by pyvista, and stand in a legend.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,47 +12,88 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.response import Array
+from comparisons.response.table import unit_names
 from comparisons.scene import HingeSpec, Scene, SpringSpec, SupportSpec
 from comparisons.scene.conditions import COMPONENTS
 from comparisons.show import palette
 
 Segments = NDArray[np.float64]
 """Line segments, shape (n, 2, 2)."""
+SYMBOL = 0.03
+"""Size of a symbol over the size of a picture."""
 LARGEST = 13.0
 """Largest size of a symbol in a legend, so that it stays in its row [point]."""
 HATCHES = 5
 """Strokes below a ground."""
-NAMES = {
-    ("x", "y", "rotation"): "clamped",
-    ("x", "y"): "pinned",
-    ("y",): "roller, free in x",
-    ("x",): "roller, free in y",
-    ("y", "rotation"): "guided, free in x",
-    ("x", "rotation"): "guided, free in y",
-    ("rotation",): "rotation held",
+
+
+def chain(points: Any) -> Segments:
+    """Return the segments between neighbouring points."""
+    points = np.asarray(points, dtype=float)
+    return np.stack([points[:-1], points[1:]], axis=1)
+
+
+def arc(turn: float, points: int = 25, part: float = 0.75) -> Array:
+    """Return a part of a unit circle about the node, shape (points, 2), in the sense of `turn`, anticlockwise if positive."""
+    angle = np.linspace(-part * np.pi, part * np.pi, points)[:: 1 if turn > 0.0 else -1]
+    return np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+
+def _ground(y: float, half: float) -> Segments:
+    """Return a line with hatches below it."""
+    hatches = [((at, y), (at - 0.3, y - 0.35)) for at in np.linspace(-half, half, HATCHES + 1)[1:].tolist()]
+    return np.array([((-half, y), (half, y)), *hatches])
+
+
+_TRIANGLE = chain([(0, 0), (-0.6, -1), (0.6, -1), (0, 0)])
+_ROLLER = np.concatenate([_TRIANGLE, _ground(-1.25, 0.9)])
+_GUIDE = np.concatenate(
+    [chain([(-0.9, 0), (0.9, 0)]), chain([(-0.9, -0.25), (0.9, -0.25)]), _ground(-0.25, 0.9)]
+)
+_SQUARE = chain([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5)])
+_COIL = chain([(0, 0), (0, -0.4), (0.4, -0.6), (-0.4, -1), (0.4, -1.4), (-0.4, -1.8), (0, -2), (0, -2.4)])
+SUPPORTS: dict[tuple[str, ...], tuple[str, Segments]] = {
+    ("x", "y", "rotation"): ("clamped", _ground(0.0, 1.0)),
+    ("x", "y"): ("pinned", np.concatenate([_TRIANGLE, _ground(-1.0, 0.9)])),
+    ("y",): ("roller, free in x", _ROLLER),
+    ("x",): ("roller, free in y", _ROLLER),
+    ("y", "rotation"): ("guided, free in x", _GUIDE),
+    ("x", "rotation"): ("guided, free in y", _GUIDE),
+    ("rotation",): ("rotation held", _SQUARE),
 }
-"""Names of supports by the components that they hold."""
+"""Names and symbols of supports by the components that they hold."""
+
+
+def _turned(segments: Segments, held: tuple[str, ...], away: Array) -> Segments:
+    """Return segments turned such that their second axis points from the ground to the node: along the beam at a clamp, else along an axis."""
+    up = away
+    if held != COMPONENTS:
+        up = np.array([1.0, 0.0] if held in (("x",), ("x", "rotation")) else [0.0, 1.0])
+        up = -up if away @ up < -0.5 else up
+    return np.asarray(segments @ np.array([[up[1], -up[0]], [up[0], up[1]]]))
 
 
 def support_symbol(held: tuple[str, ...], away: Array) -> Segments:
-    """Return the segments of the symbol of a support by what it holds, a key of `NAMES`.
+    """Return the symbol of a support by what it holds, a key of `SUPPORTS`.
 
     The unit vector `away` (2,) points from the support into its beam; the ground is on the other side.
     """
-    return turned(_SHAPES[held], _up(held, away))
+    return _turned(SUPPORTS[held][1], held, away)
 
 
-def _up(held: tuple[str, ...], away: Array) -> Array:
-    """Return the unit vector from the ground to the node: along the beam at a clamp, else along an axis."""
-    if held == ("x", "y", "rotation"):
-        return away
-    axis = np.array([1.0, 0.0]) if held in (("x",), ("x", "rotation")) else np.array([0.0, 1.0])
-    return -axis if away @ axis < -0.5 else axis
+def spring_symbol(component: str, away: Array) -> Segments:
+    """Return the symbol of a spring against one of `COMPONENTS`; the unit vector `away` (2,) points from the spring into its beam."""
+    if component == "rotation":
+        angle = np.linspace(0.0, 4.0 * np.pi, 41)
+        return chain(
+            (0.25 + 0.15 * angle / np.pi)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        )
+    return _turned(np.concatenate([_COIL, _ground(-2.4, 0.7)]), (component,), away)
 
 
-def turned(segments: Segments, up: Array) -> Segments:
-    """Return segments turned such that their second axis points along the unit vector `up`."""
-    return np.asarray(segments @ np.array([[up[1], -up[0]], [up[0], up[1]]]))
+def hinge_symbol() -> Segments:
+    """Return a small circle."""
+    return chain(0.35 * arc(1.0, points=17, part=1.0))
 
 
 def placed(segments: Segments, at: Array, size: float) -> Segments:
@@ -75,31 +116,28 @@ class Symbol:
 
 def end_symbols(scene: Scene) -> list[Symbol]:
     """Return the symbols of the supports, springs and hinges of a scene."""
-    force, length = (unit.strip() for unit in scene.units.split(","))
-    found = []
+    units = unit_names(scene.units)
+    stiff = f"{units['moment']}/rad"
+    found: list[tuple[SupportSpec | SpringSpec | HingeSpec, str, Segments]] = []
     for one in scene.all_supports:
         held = tuple(name for name in COMPONENTS if name in one.held)
-        segments = support_symbol(held, inward(scene, one))
-        found.append(Symbol(item=one, words=NAMES[held], segments=segments))
+        found.append((one, SUPPORTS[held][0], support_symbol(held, inward(scene, one))))
     for spring in scene.springs:
-        stiffness = dict(zip(COMPONENTS, (*spring.stiffness, spring.rotation), strict=True))
-        for name in spring.held:
-            unit = f"{force} {length}/rad" if name == "rotation" else f"{force}/{length}"
-            words = f"spring of {stiffness[name]:.6g} {unit} in {name}"
-            segments = spring_symbol(name, inward(scene, spring))
-            found.append(Symbol(item=spring, words=words, segments=segments))
+        for name, stiffness in zip(COMPONENTS, (*spring.stiffness, spring.rotation), strict=True):
+            if name in spring.held:
+                unit = stiff if name == "rotation" else f"{units['force']}/{units['length']}"
+                words = f"spring of {stiffness:.6g} {unit} in {name}"
+                found.append((spring, words, spring_symbol(name, inward(scene, spring))))
     for hinge in scene.hinges:
-        unit = f"{force} {length}/rad"
-        words = f"hinge with a spring of {hinge.stiffness:.6g} {unit}" if hinge.stiffness else "hinge"
-        found.append(Symbol(item=hinge, words=words, segments=hinge_symbol()))
-    return found
+        words = f"hinge with a spring of {hinge.stiffness:.6g} {stiff}" if hinge.stiffness else "hinge"
+        found.append((hinge, words, hinge_symbol()))
+    return [Symbol(item=item, words=words, segments=segments) for item, words, segments in found]
 
 
 def draw_symbols(axes: Any, scene: Scene, lines: Mapping[str, Array], size: float) -> dict[str, Any]:
     """Draw the symbols of supports, springs and hinges at their ends; return their entries in a legend.
 
-    The `lines` (m, 2) are the deformed axes by beam. The `size` of a symbol is a length. The axes reach
-    around the symbols.
+    The `lines` (m, 2) are the deformed axes by beam. The `size` of a symbol is a length. The axes reach around the symbols.
     """
     from matplotlib.collections import LineCollection
 
@@ -111,35 +149,8 @@ def draw_symbols(axes: Any, scene: Scene, lines: Mapping[str, Array], size: floa
     return {one.words: legend_symbol(one.segments) for one in symbols}
 
 
-def inward(scene: Scene, support: SupportSpec | SpringSpec) -> Array:
-    """Return the unit vector from a support or a spring into its beam."""
-    beam = scene.beam(support.beam)
-    return np.array(beam.tangent(0.0)) if support.end == "start" else -np.array(beam.tangent(1.0))
-
-
-def spring_symbol(component: str, away: Array) -> Segments:
-    """Return the segments of a spring against one of `COMPONENTS`; the ground is away from the beam.
-
-    The unit vector `away` (2,) points from the spring into its beam.
-    """
-    if component == "rotation":
-        angle = np.linspace(0.0, 4.0 * np.pi, 41)
-        spiral = (0.25 + 0.15 * angle / np.pi)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-        return chain(spiral)
-    coil = np.array(
-        [(0, 0), (0, -0.4), (0.4, -0.6), (-0.4, -1.0), (0.4, -1.4), (-0.4, -1.8), (0, -2.0), (0, -2.4)]
-    )
-    return turned(np.concatenate([chain(coil), _ground(-2.4, 0.7)]), _up((component,), away))
-
-
-def hinge_symbol() -> Segments:
-    """Return a small circle."""
-    angle = np.linspace(0.0, 2.0 * np.pi, 17)
-    return chain(0.35 * np.stack([np.cos(angle), np.sin(angle)], axis=1))
-
-
 def legend_symbol(segments: Segments, colour: str = palette.BLACK) -> Any:
-    """Return a symbol as an entry of a legend."""
+    """Return an entry of a legend that shows segments of unit size."""
     from matplotlib.lines import Line2D
     from matplotlib.path import Path
 
@@ -147,43 +158,16 @@ def legend_symbol(segments: Segments, colour: str = palette.BLACK) -> Any:
     vertices = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2
     marker = Path(vertices, [Path.MOVETO, Path.LINETO] * len(segments))
     size = min(13 * float(np.abs(vertices).max()), LARGEST)  # matplotlib enlarges all markers to one size
-    return Line2D(
-        [], [], color=colour, marker=marker, markersize=size, markerfacecolor="none", linestyle="none"
-    )
+    style: dict[str, Any] = {
+        "marker": marker,
+        "markersize": size,
+        "markerfacecolor": "none",
+        "linestyle": "none",
+    }
+    return Line2D([], [], color=colour, **style)
 
 
-def chain(points: Array) -> Segments:
-    """Return the segments between neighbouring points."""
-    return np.stack([points[:-1], points[1:]], axis=1)
-
-
-def arc(turn: float, points: int = 25) -> Array:
-    """Return three quarters of a unit circle about the node, shape (points, 2), in the sense of `turn`, anticlockwise if positive."""
-    angle = np.linspace(-0.75 * np.pi, 0.75 * np.pi, points)
-    angle = angle if turn > 0.0 else angle[::-1]
-    return np.stack([np.cos(angle), np.sin(angle)], axis=1)
-
-
-def _lines(*ends: Sequence[float]) -> Segments:
-    return np.array(ends, dtype=float).reshape(-1, 2, 2)
-
-
-def _ground(y: float, half: float) -> Segments:
-    """Return a line with hatches below it."""
-    x = np.linspace(-half, half, HATCHES + 1)[1:].tolist()
-    return _lines((-half, y, half, y), *((at, y, at - 0.3, y - 0.35) for at in x))
-
-
-_TRIANGLE = _lines((0, 0, -0.6, -1), (-0.6, -1, 0.6, -1), (0.6, -1, 0, 0))
-_ROLLER = np.concatenate([_TRIANGLE, _ground(-1.25, 0.9)])
-_GUIDE = np.concatenate([_lines((-0.9, 0, 0.9, 0), (-0.9, -0.25, 0.9, -0.25)), _ground(-0.25, 0.9)])
-_SHAPES: dict[tuple[str, ...], Segments] = {
-    ("x", "y", "rotation"): _ground(0.0, 1.0),
-    ("x", "y"): np.concatenate([_TRIANGLE, _ground(-1.0, 0.9)]),
-    ("x",): _ROLLER,
-    ("y",): _ROLLER,
-    ("x", "rotation"): _GUIDE,
-    ("y", "rotation"): _GUIDE,
-    ("rotation",): chain(0.5 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)])),
-}
-"""Symbols of supports by the components that they hold."""
+def inward(scene: Scene, support: SupportSpec | SpringSpec) -> Array:
+    """Return the unit vector from a support or a spring into its beam."""
+    beam = scene.beam(support.beam)
+    return np.array(beam.tangent(0.0)) if support.end == "start" else -np.array(beam.tangent(1.0))

@@ -9,6 +9,10 @@ from comparisons.output import aligned, csv_text
 from comparisons.quantities import KEPT, PATH, SCOPES
 from comparisons.response import Response
 
+SHOWN = {"force": "force", "arc": "arc position", "moment": "moment", "tip": "tip", "friction": "friction"}
+"""The quantities of the middle columns and their names."""
+HEADER = ("model", "unknowns", *SHOWN.values(), "stable", "iterations", "seconds")
+
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
@@ -35,21 +39,13 @@ class Row:
     resolution: float = np.nan
     cause: str = ""
 
-
-HEADER = (
-    "model",
-    "unknowns",
-    "force",
-    "arc position",
-    "moment",
-    "tip",
-    "friction",
-    "stable",
-    "iterations",
-    "seconds",
-)
-SHOWN = ("force", "arc", "moment", "tip", "friction")
-"""The quantities of the middle columns."""
+    @property
+    def stable(self) -> str:
+        """Yes, no, a dash where the model states no index, or that it states one at a part of the load parameters."""
+        index = self.response.index
+        if index is None or not np.any(index >= 0):
+            return "-"
+        return "no" if np.any(index > 0) else "yes" if np.all(index >= 0) else "in part"
 
 
 def table_text(rows: list[Row], reference: str) -> str:
@@ -70,36 +66,21 @@ def cells(row: Row) -> tuple[str, ...]:
     response = row.response
     label = row.label if response.completed else f"{row.label} ({response.status})"
     iterations, seconds = str(response.iterations), f"{response.wall_seconds:.3f}"
-    return label, str(response.unknowns), *shown, _stable(response), iterations, seconds
-
-
-def _stable(response: Response) -> str:
-    """Return yes, no, a dash where the model states no index, or that it states one at a part of the load parameters."""
-    if response.index is None or not np.any(response.index >= 0):
-        return "-"
-    if np.any(response.index > 0):
-        return "no"
-    return "yes" if np.all(response.index >= 0) else "in part"
+    return label, str(response.unknowns), *shown, row.stable, iterations, seconds
 
 
 def table_csv(rows: list[Row]) -> str:
     """Return the table as CSV text: errors over all load parameters and at the last, empty for the reference."""
-    records = [
-        {
-            "label": row.label,
-            "model": row.response.model,
-            "status": row.response.status,
-            "unknowns": row.response.unknowns,
-            **{
-                f"error_{scope}_{name}": row.errors and row.errors[scope].get(name)
-                for scope in SCOPES
-                for name in (*KEPT, *PATH)
-            },
-            "stable": _stable(row.response),
-            "newton_iterations": row.response.iterations,
-            "cutbacks": row.response.cutbacks,
-            "wall_seconds": row.response.wall_seconds,
+    records = []
+    for row in rows:
+        response, errors = row.response, row.errors
+        found = {
+            f"error_{scope}_{name}": errors and errors[scope].get(name)
+            for scope in SCOPES
+            for name in (*KEPT, *PATH)
         }
-        for row in rows
-    ]
+        first = {"label": row.label, "model": response.model, "status": response.status}
+        spent = {"newton_iterations": response.iterations, "cutbacks": response.cutbacks}
+        last = {"stable": row.stable, **spent, "wall_seconds": response.wall_seconds}
+        records.append({**first, "unknowns": response.unknowns, **found, **last})
     return csv_text(records)

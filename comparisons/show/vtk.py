@@ -25,30 +25,21 @@ def write_grid(path: Path, grid: Grid, units: Mapping[str, str]) -> None:
     """Write a grid, undeformed, as a VTU file with the units of its fields by name; the third component is 0."""
     from meshio import Mesh, vtu
 
-    data = {name: _in_space(values) for name, values in grid.point_data.items()}
-    mesh = Mesh(_in_space(grid.points), grid.cells, point_data=data)
+    def in_space(values: Any) -> Any:
+        return np.pad(values, ((0, 0), (0, 1))) if values.shape[1:] == (2,) else np.asarray(values)
 
     def labelled(array: re.Match[str]) -> str:
         unit = units.get(array[2])
         return array[0] if unit is None else array[1] + LABEL.format(escape(unit))
 
+    data = {name: in_space(values) for name, values in grid.point_data.items()}
     with replacing(path) as temporary:
-        vtu.write(temporary, mesh)
+        vtu.write(temporary, Mesh(in_space(grid.points), grid.cells, point_data=data))
         temporary.write_text(ARRAY.sub(labelled, temporary.read_text("utf-8")), encoding="utf-8")
 
 
-def _in_space(values: Any) -> Any:
-    return np.pad(values, ((0, 0), (0, 1))) if values.shape[1:] == (2,) else np.asarray(values)
-
-
 def read_grid(path: Path) -> Grid:
-    """Return the grid of a VTU file in the plane.
-
-    Raises
-    ------
-    OutputError
-        One line, if it cannot be read.
-    """
+    """Return the grid of a VTU file in the plane; `OutputError`, one line, if it cannot be read."""
     from meshio import ReadError, vtu
 
     try:
@@ -56,11 +47,11 @@ def read_grid(path: Path) -> Grid:
     except (OSError, ReadError, ET.ParseError) as error:
         raise OutputError(f"{path}: cannot be read: {error or 'not a VTU file'}") from None
     # the components that a support holds are the one field with three numbers that is no vector
+    columns = {3: np.s_[:, :2], 1: np.s_[:, 0]}
     data = {
-        name: values[:, :2] if values.shape[1:] == (3,) and name != "held" else values
+        name: values if name == "held" or values.ndim == 1 else values[columns[values.shape[1]]]
         for name, values in mesh.point_data.items()
     }
-    data = {name: values[:, 0] if values.shape[1:] == (1,) else values for name, values in data.items()}
     return Grid(points=mesh.points[:, :2], cells=dict(mesh.cells_dict), point_data=data)
 
 
@@ -68,9 +59,8 @@ def write_blocks(path: Path, files: Mapping[str, str], units: Mapping[str, str])
     """Write a VTM file: VTU files by the names of their blocks, and the units of all fields."""
     words = [f"{name} [{unit}]" for name, unit in units.items()]
     codes = " ".join(str(code) for word in words for code in (*word.encode(), 0))
-    sets = (
-        f'index="{k}" name={quoteattr(name)} file={quoteattr(files[name])}' for k, name in enumerate(files)
-    )
+    named = enumerate(files.items())
+    sets = (f'index="{k}" name={quoteattr(name)} file={quoteattr(file)}' for k, (name, file) in named)
     field = f'<Array type="String" Name="units" NumberOfTuples="{len(words)}" format="ascii">{codes}</Array>'
     _write(path, "vtkMultiBlockDataSet", sets, f"<FieldData>\n{field}\n</FieldData>\n")
 
@@ -88,10 +78,9 @@ def _write(path: Path, kind: str, sets: Iterable[str], more: str = "") -> None:
 
 def read_entries(path: Path, attribute: str) -> list[tuple[str, Path]]:
     """Return an attribute and the file of every entry of a PVD or VTM file; it may raise `OutputError`."""
+    sets = [one.attrib for one in _parsed(path).iter("DataSet")]
     try:
-        return [
-            (one.attrib[attribute], path.parent / one.attrib["file"]) for one in _parsed(path).iter("DataSet")
-        ]
+        return [(one[attribute], path.parent / one["file"]) for one in sets]
     except KeyError as error:
         raise OutputError(f"{path}: cannot be read: an entry has no {error}") from None
 

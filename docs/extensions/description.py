@@ -10,18 +10,7 @@ ELSEWHERE = "Pictures and pages that this text names are in the folders `.figure
 
 
 def description(readme: str) -> str:
-    r"""Return Markdown without relative addresses: a link is replaced by its text, and a picture is left out.
-
-    Examples
-    --------
-    >>> print(description("See [one](docs/one.md), [two](https://example.org).\n\n![A beam](beam.png)\n\n1<!--mark-->2"))
-    See one, [two](https://example.org).
-    <BLANKLINE>
-    12
-    <BLANKLINE>
-    Pictures and pages that this text names are in the folders `.figures` and `docs` of the source distribution.
-    <BLANKLINE>
-    """
+    """Return Markdown without relative addresses: a link is replaced by its text, and a picture is left out."""
     text = re.sub(r"<!--.*?-->", "", readme)
     text = re.sub(r"^!\[[^\]]*\]\((?!https:)[^)]*\)\n+", "", text, flags=re.MULTILINE)
     text = re.sub(r"\[([^\]]*)\]\((?!https:)[^)]*\)", r"\1", text)
@@ -33,5 +22,5 @@ class Description(MetadataHookInterface):
 
     def update(self, metadata: dict[str, Any]) -> None:
         """Add the key ``readme``."""
-        text = description((Path(self.root) / "README.md").read_text(encoding="utf-8"))
-        metadata["readme"] = {"content-type": "text/markdown", "text": text}
+        readme = (Path(self.root) / "README.md").read_text(encoding="utf-8")
+        metadata["readme"] = {"content-type": "text/markdown", "text": description(readme)}

@@ -1,7 +1,6 @@
-"""The pictures of the README, the tutorial and the pages, drawn by the commands that the pages show: ``make figures``."""
+"""The pictures of the README and the pages, drawn by the commands that the pages show: ``python -m docs.extensions.figures``."""
 
 import re
-import shutil
 import sys
 import tempfile
 from contextlib import chdir
@@ -15,19 +14,12 @@ ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / ".figures"
 COLOURS = 200
 """Colours of a picture in the repository, which keep it small."""
+COMPARED = ("shapes", "side-by-side", "budget")
 COMMANDS = {
     "check mine.toml --out check.png": {"check.png": "mine-check.png"},
     "solve mine.toml --plot solve.png": {"solve.png": "mine-solve.png"},
-    "compare mine.toml --out mine --quiet": {
-        "mine/shapes.png": "mine-shapes.png",
-        "mine/side-by-side.png": "mine-side-by-side.png",
-        "mine/budget.png": "mine-budget.png",
-    },
-    "compare ks-cantilever --out ks --quiet": {
-        "ks/shapes.png": "ks-shapes.png",
-        "ks/side-by-side.png": "ks-side-by-side.png",
-        "ks/budget.png": "ks-budget.png",
-    },
+    "compare mine.toml --out mine --quiet": {f"mine/{name}.png": f"mine-{name}.png" for name in COMPARED},
+    "compare ks-cantilever --out ks --quiet": {f"ks/{name}.png": f"ks-{name}.png" for name in COMPARED},
     "run fig9 --out paper": {"paper/fig9.png": "double-beam.png"},
     "run fig7b --out paper": {"paper/fig7b-floor.png": "critical-area-floor.png"},
     "run trade ks-cantilever --out trade": {"trade/end-seconds.png": "ks-trade.png"},
@@ -35,34 +27,22 @@ COMMANDS = {
 """What each command draws, and the names in the repository."""
 
 
-def tutorial_scene() -> str:
-    """Return the scene of the tutorial."""
-    page = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
-    found = re.search(r"^```toml\n# mine.toml\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
-    assert found, "the tutorial has a scene"
-    return found[1]
-
-
 def draw(commands: dict[str, dict[str, str]], folder: Path) -> list[Path]:
-    """Run commands in a folder of their own, and write their pictures with few colours to `folder`."""
+    """Run commands in a folder of their own with the scene of the tutorial; write their pictures with few colours to `folder`."""
+    page = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
+    scene = re.search(r"^```toml\n# mine.toml\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
+    assert scene, "the tutorial has a scene"
     written = []
     with tempfile.TemporaryDirectory() as scratch, chdir(scratch):
-        Path("mine.toml").write_text(tutorial_scene(), encoding="utf-8")
+        Path("mine.toml").write_text(scene[1], encoding="utf-8")
         for command, pictures in commands.items():
-            status = main(command.split())
-            assert status == 0, command
+            assert main(command.split()) == 0, command
             for drawn, name in pictures.items():
-                shutil.copy(drawn, folder / name)
-                written.append(small(folder / name))
+                with Image.open(drawn) as picture:
+                    few = picture.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
+                few.save(folder / name, optimize=True)
+                written.append(folder / name)
     return written
-
-
-def small(path: Path) -> Path:
-    """Write a picture again with `COLOURS` colours."""
-    with Image.open(path) as picture:
-        few = picture.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
-    few.save(path, optimize=True)
-    return path
 
 
 if __name__ == "__main__":

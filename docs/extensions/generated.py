@@ -1,18 +1,203 @@
-"""The pages that are made from the code, before every build: nothing in them can go out of date."""
+"""The pages that are made from the code before every build."""
 
+import json
+import re
+import tomllib
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from dataclasses import MISSING, dataclass, fields
 from pathlib import Path
+from typing import Any
 
-from sphinx.application import Sphinx
+import fem_reference
+import tsm
+from comparisons.models import MODELS
+from comparisons.models.cantilever import STOPS
+from comparisons.models.outside.child import ProgramStatus
+from comparisons.referee import Verdict
+from comparisons.scene import Scene, load_scene, read_scene
+from comparisons.scene.read import LISTS
+from comparisons.scene.record import Record, lists_of, rule_of
+from comparisons.scene.stages import StageSpec
+from comparisons.scene.values import toml_value
+from comparisons.scene.words import NOT_MODELLED
+from docs.extensions.messages import REFERENCE, changed, groups
 
-from docs.extensions import messages, response, scene_file, scope, statuses
+STATUSES: dict[str, dict[str, str]] = {
+    title: kind if isinstance(kind, dict) else {one.name: one.value for one in kind}
+    for title, kind in (
+        ("Beams", tsm.Status),
+        ("Solid", fem_reference.Status),
+        ("Exact rods", STOPS),
+        ("Certificates", Verdict),
+        ("Programs of others", ProgramStatus),
+    )
+}
+"""Statuses with their sentences, by where they come from."""
+SCHEMAS: dict[str, dict[str, Any]] = {
+    name: json.loads((REFERENCE / f"{name}.schema.json").read_text(encoding="utf-8"))
+    for name in ("response", "resolved-scene")
+}
 
-PAGES = {
-    "scene-file.md": scene_file.page,
-    "messages.md": messages.page,
-    "scope.md": scope.page,
-    "statuses.md": statuses.page,
-    "response.md": response.page,
-    "resolved-scene.md": response.scene_page,
+
+def line(docstring: str) -> str:
+    r"""Return one line of Markdown for a docstring's text: code marks and what Markdown would read as its own.
+
+    Examples
+    --------
+    >>> line("a name, ``pin->beam``, of `Beam` * 2")
+    'a name, `pin->beam`, of `Beam` \\* 2'
+    """
+    parts = re.split(r"(``[^`]+``|`[^`]+`)", " ".join(docstring.split()))
+    return "".join(
+        f"`{part.strip('`')}`" if part.startswith("`") else re.sub(r"([*_<\[{$|\\])", r"\\\1", part)
+        for part in parts
+    )
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a Markdown table; cells are Markdown in one line."""
+    lines = (
+        " | ".join(re.sub(r"(?<!\\)\|", r"\\|", cell) for cell in row)
+        for row in (head, ["---"] * len(head), *rows)
+    )
+    return "\n".join(f"| {text} |" for text in lines)
+
+
+def scene_file() -> str:
+    """Return one section for every table of a scene file, with a row for every key, from the records that read them."""
+    kinds = {f"[[{name}]]": kind for name, kind in LISTS.items()}
+    moves = {f"{name} of [[stage]]": kind for name, kind in lists_of(StageSpec).items()}
+    kinds |= {header: kind for header, kind in moves.items() if kind not in LISTS.values()}
+    sections = [_record("[scene]", Scene, lists_of(Scene))]
+    return "\n\n".join([*sections, *(_record(header, kind) for header, kind in kinds.items())])
+
+
+def _record(header: str, kind: type[Record], leave: Collection[str] = ()) -> str:
+    said = (kind.__doc__ or "").partition("\n\nParameters\n")[0].split("\n\n")
+    rows = [
+        (
+            f"`{item.name}`",
+            line(rule_of(item).accepts),
+            _default(item.default),
+            line(item.metadata["meaning"]),
+        )
+        for item in fields(kind)
+        if item.name not in leave
+    ]
+    parts = [f"## `{header}`", *map(line, said), table(("key", "value", "default", "meaning"), rows)]
+    return "\n\n".join(parts)
+
+
+def _default(value: Any) -> str:
+    if value is MISSING:
+        return "required"
+    return "" if value is None else f"`{toml_value(value)}`"
+
+
+def messages() -> str:
+    """Return one section for every group of messages: an example of each line, then its cure."""
+    parts = []
+    for title, group in groups().items():
+        parts.append(f"## {title}")
+        parts += [
+            f"```{{code-block}} text\n:class: message\n\n{one.example}\n```\n\n{one.cure}" for one in group
+        ]
+    return "\n\n".join(parts)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Question:
+    """Something that a scene can say: see ``docs/reference/scope.toml``."""
+
+    wish: str
+    keys: str
+    limits: str = ""
+    built_in: str = ""
+    change: Sequence[str] = ()
+    append: str = ""
+
+    @property
+    def scene(self) -> Scene:
+        """A scene that says it."""
+        if self.built_in:
+            return load_scene(self.built_in)
+        return read_scene(changed("strip", self.change, self.append), self.wish)
+
+
+def questions() -> dict[str, list[Question]]:
+    """Return what a scene can say, by kinds of question."""
+    found = tomllib.loads((REFERENCE / "scope.toml").read_text(encoding="utf-8"))["group"]
+    return {group["title"]: [Question(**entry) for entry in group["question"]] for group in found}
+
+
+def scope() -> str:
+    """Return one table for every kind of question with the models that answer it, and the table of what is not modelled."""
+    head, parts = ("you want", "you write", *MODELS, "limits"), []
+    for title, group in questions().items():
+        rows = [(one.wish, one.keys, *_answers(one.scene), one.limits) for one in group]
+        parts.append(f"## {title}\n\n{table(head, rows)}")
+    rows = [
+        (one.title, line(one.answer), ", ".join(f"`{word}`" for word in one.words)) for one in NOT_MODELLED
+    ]
+    return "\n\n".join([*parts, "## What is not modelled\n\n" + table(("topic", "answer", "words"), rows)])
+
+
+def _answers(scene: Scene) -> Iterator[str]:
+    """Yield for every model whether it states the scene."""
+    for model in MODELS.values():
+        yield "yes" if (model.unstated(scene) or model.refusal(scene)) is None else "no"
+
+
+def statuses() -> str:
+    """Return the statuses with their sentences, by where they come from."""
+    return "\n\n".join(
+        f"### {title}\n\n"
+        + table(("status", "meaning"), [(f"`{one}`", line(why)) for one, why in rows.items()])
+        for title, rows in STATUSES.items()
+    )
+
+
+def keys(name: str) -> str:
+    """Return a table with a row for every key of a JSON text, from its schema in `SCHEMAS`."""
+    return table(("key", "type", "meaning"), _keys(SCHEMAS[name], SCHEMAS[name], ""))
+
+
+def _keys(schema: dict[str, Any], inside: dict[str, Any], prefix: str) -> Iterator[tuple[str, str, str]]:
+    """Yield the rows of the keys of a table, and below each those of what it holds: tables by name, a list of tables, a table."""
+    for key, item in inside.get("properties", {}).items():
+        yield f"`{prefix}{key}`", _sort(_resolved(schema, item)), line(item["description"])
+        for held, between in (
+            (item.get("additionalProperties"), ".NAME."),
+            (item.get("items"), "[]."),
+            (item, "."),
+        ):
+            if isinstance(held, dict):
+                yield from _keys(schema, _resolved(schema, held), f"{prefix}{key}{between}")
+
+
+def _resolved(schema: dict[str, Any], item: dict[str, Any]) -> dict[str, Any]:
+    found: dict[str, Any] = schema["$defs"][item["$ref"].rpartition("/")[2]] if "$ref" in item else item
+    return found
+
+
+def _sort(item: dict[str, Any]) -> str:
+    """Return what a value is: by the title of its definition, its values or its types."""
+    if "title" in item:
+        return str(item["title"])
+    if "enum" in item:
+        return " or ".join(f"`{value}`" for value in item["enum"])
+    names = {"object": "table", "array": "list", "string": "text", "boolean": "truth value"}
+    kinds = item["type"] if isinstance(item["type"], list) else [item["type"]]
+    return " or ".join(names.get(kind, kind) for kind in kinds)
+
+
+PAGES: dict[str, Callable[[], str]] = {
+    "scene-file.md": scene_file,
+    "messages.md": messages,
+    "scope.md": scope,
+    "statuses.md": statuses,
+    "response.md": lambda: keys("response"),
+    "resolved-scene.md": lambda: keys("resolved-scene"),
 }
 """What makes the text of each page."""
 
@@ -21,16 +206,6 @@ def write_pages(folder: Path) -> None:
     """Write every page into `folder`; a page that has not changed keeps its time."""
     folder.mkdir(exist_ok=True)
     for name, page in PAGES.items():
-        path, text = folder / name, page()
+        path, text = folder / name, page() + "\n"
         if not path.is_file() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")
-
-
-def _on_start(app: Sphinx) -> None:
-    write_pages(Path(app.srcdir) / "_generated")
-
-
-def setup(app: Sphinx) -> dict[str, bool]:
-    """Write the pages when a build starts."""
-    app.connect("builder-inited", _on_start)
-    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,34 +1,31 @@
 """The messages of the scene reader with their cures, from ``docs/reference/messages.toml``."""
 
 import tomllib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-FILE = Path(__file__).parents[1] / "reference" / "messages.toml"
-FENCE = "```{code-block} text\n:class: message\n\n"
+REFERENCE = Path(__file__).parents[1] / "reference"
+FILE = REFERENCE / "messages.toml"
 _DATA: dict[str, Any] = tomllib.loads(FILE.read_text(encoding="utf-8"))
 SCENES: dict[str, str] = _DATA["scenes"]
 """Good scenes, each wrong after a change."""
 
 
+def changed(base: str, change: Sequence[str], append: str) -> str:
+    """Return a scene of `SCENES` with words replaced, given as old, new, old, new, and with what is appended."""
+    text = SCENES[base]
+    for old, new in zip(change[::2], change[1::2], strict=True):
+        if old and text.count(old) != 1:
+            raise ValueError(f"{old!r} must stand once in scene {base}")
+        text = text.replace(old, new)
+    return text + append
+
+
 @dataclass(frozen=True, kw_only=True)
 class Message:
-    """One sentence of the reader, how it comes about and what to do.
-
-    Attributes
-    ----------
-    sentence : str
-        With ``{}`` for every value in it.
-    example : str
-        A whole line as it is printed.
-    cure : str
-        In Markdown.
-    base, change, append, encoding : str, (str, str), str, str
-        The scene of `SCENES`, what is replaced in it and by what, what is added, and how the file is encoded.
-    arguments, python : tuple of str, str
-        Arguments of the command; or Python code that provokes the message where no file does.
-    """
+    """One sentence of the reader, ``{}`` for its values; a whole line as it is printed; the cure in Markdown; what provokes it."""
 
     sentence: str
     example: str
@@ -37,38 +34,20 @@ class Message:
     change: tuple[str, str] = ("", "")
     append: str = ""
     encoding: str = "utf-8"
-    arguments: tuple[str, ...] | None = None
+    arguments: Sequence[str] | None = None
     python: str | None = None
 
     @property
     def text(self) -> str:
         """The file that provokes the message."""
-        old, new = self.change
-        good = SCENES[self.base]
-        if old and good.count(old) != 1:
-            raise ValueError(f"{FILE.name}: {old!r} must stand once in scene {self.base}")
-        return (good.replace(old, new) if old else good) + self.append
+        return changed(self.base, self.change, self.append)
 
 
 def groups() -> dict[str, tuple[Message, ...]]:
     """Return the messages by the titles of their groups."""
-    return {group["title"]: tuple(_message(entry) for entry in group["message"]) for group in _DATA["group"]}
+    return {one["title"]: tuple(Message(**entry) for entry in one["message"]) for one in _DATA["group"]}
 
 
 def messages() -> tuple[Message, ...]:
     """Return all messages in order."""
     return tuple(message for group in groups().values() for message in group)
-
-
-def _message(entry: dict[str, Any]) -> Message:
-    given = {("base" if key == "in" else key): value for key, value in entry.items()}
-    return Message(**{key: tuple(item) if isinstance(item, list) else item for key, item in given.items()})
-
-
-def page() -> str:
-    """Return one section for every group: an example of each line, then its cure."""
-    parts = []
-    for title, group in groups().items():
-        parts.append(f"## {title}")
-        parts += [f"{FENCE}{message.example}\n```\n\n{message.cure}" for message in group]
-    return "\n\n".join(parts) + "\n"

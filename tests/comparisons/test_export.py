@@ -2,7 +2,6 @@
 
 import contextlib
 import re
-import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -59,8 +58,9 @@ def test_every_block_reads_back_in_meshio_and_pyvista(written):
     force = pin.point_data["contact_force"][0]
     assert force == pytest.approx(-response.supports["cantilever.start"].force[0], rel=1e-6)
     assert force[1] > 0.0
-    place = np.array([RUBBED.pins[0].position(1 / 3)])
-    assert pin.points + pin.point_data["displacement"] == pytest.approx(place)
+    assert pin.points + pin.point_data["displacement"] == pytest.approx(
+        np.array([RUBBED.pins[0].position(1 / 3)])
+    )
     if response.model == "solid":
         # VTK integrates its own biquadratic cells: a wrong order of points gives another area
         view = pyvista.read(folder / "solid-0001-0.vtu")
@@ -109,18 +109,17 @@ def test_a_load_parameter_has_named_blocks_with_units_and_components(tmp_path):
 
 
 def test_forces_between_beams_balance_the_supports():
-    """Beams that touch: what acts on the lower beam is what its clamp carries, at the tip of the upper beam too."""
+    """What acts on the lower beam is what its clamp carries, at the tip of the upper beam too."""
     scene = replace(load_scene("double-beam-friction"), load_parameters=4)
     found = blocks(solve(scene, "tsm"), scene, 3)
     contacts, supports = found[CONTACTS].point_data, found[SUPPORTS].point_data
     on_lower = contacts["contact_force"][1:].sum(axis=0)
-    assert contacts["contact_force"][1, 1] < 0.0
     assert on_lower == pytest.approx(-supports["reaction_force"][1], rel=1e-6)
     assert contacts["slip"][1] == -1.0
 
 
-def listed(file: Path, name: str = "file") -> list[str]:
-    return [item.attrib[name] for item in ET.parse(file).getroot().iter("DataSet")]  # noqa: S314 our own file
+def listed(file: Path) -> list[str]:
+    return re.findall(r' file="(.*?)"', file.read_text())
 
 
 def all_files(folder: Path) -> set[str]:
@@ -133,36 +132,25 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.name != ".crossval"}
 
 
-def test_a_series_removes_what_it_wrote_before_and_nothing_else(tmp_path):
+def test_a_series_removes_what_it_wrote_before_and_replaces_no_file_of_a_user(tmp_path):
     beams, longer = solve(SCENE, "tsm"), replace(SCENE, load_parameters=4)
     write_series(tmp_path, solve(longer, "tsm"), longer)
     mine = ("pin-head.vtu", "tsm-mine.vtu", "pin-0001.vtu", "tsm-0009.vtm", "tsm-0009-0.vtu")
     for name in mine:
         (tmp_path / name).write_text("mine")
     sets = write_series(tmp_path, beams, SCENE)
-    assert [float(t) for t in listed(tmp_path / "tsm.pvd", "timestep")] == list(SCENE.times)
+    assert pyvista.get_reader(tmp_path / "tsm.pvd").time_values == sorted(SCENE.times)
     assert [path.name for path in sets] == [f"tsm-{k:04d}.vtm" for k in (1, 2, 3)]
     assert contents(tmp_path).keys() == {*all_files(tmp_path), *mine}
     assert all(contents(tmp_path)[name] == b"mine" for name in mine)
-    assert pyvista.get_reader(tmp_path / "tsm.pvd").time_values == sorted(SCENE.times)
-
-
-def test_a_file_in_the_way_ends_the_run_before_anything_is_written(tmp_path):
-    """A file of somebody else's, or one that crossval wrote and that was changed since."""
-    beams = solve(SCENE, "tsm")
     for name in ("tsm-0002.vtm", "tsm-0003-1.vtu", "tsm.pvd"):
-        folder = tmp_path / name
-        folder.mkdir()
-        for _ in ("foreign", "changed"):
-            (folder / name).write_text("mine")
-            there = contents(folder)
-            with pytest.raises(
-                ValueError, match=f"{name}: is there already, and is not as crossval wrote it"
-            ):
-                write_series(folder, beams, SCENE)
-            assert contents(folder) == there
-            (folder / name).unlink()
-            write_series(folder, beams, SCENE)
+        (tmp_path / name).write_text("changed")
+        there = contents(tmp_path)
+        with pytest.raises(ValueError, match=f"{name}: is there already, and is not as crossval wrote it"):
+            write_series(tmp_path, beams, SCENE)
+        assert contents(tmp_path) == there, "nothing is written"
+        (tmp_path / name).unlink()
+        write_series(tmp_path, beams, SCENE)
 
 
 @pytest.mark.slow

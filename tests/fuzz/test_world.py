@@ -27,7 +27,7 @@ from tests.fuzz.world_judge import BEAMS, Judged, Row, findings, judged, wrong
     ids=["world", "friction", "special", "more"],
 )
 def test_answers_to_drawn_scenes_are_right(kind: str, seeds: range, least: float) -> None:
-    """No completed answer is wrong, and not too many solutions stop; `make fuzz` draws thousands, with many numbers of load parameters."""
+    """No completed answer is wrong, and not too many solutions stop; `python -m tests.fuzz world 0 5000` draws thousands, with many numbers of load parameters."""
     found = [judged(DRAW[kind](seed), BEAMS) for seed in seeds]
     faults = [item.report() for item in found if list(wrong(item))]
     assert not faults, f"{len(faults)} of {len(found)} scenes\n" + "\n\n".join(faults)

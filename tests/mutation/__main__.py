@@ -3,6 +3,7 @@
 import argparse
 import ast
 import os
+import resource
 import shutil
 import signal
 import subprocess
@@ -132,6 +133,8 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--only", type=int, nargs="*", help="numbers of the drawn faults to try")
     given = parser.parse_args()
+    # a fault may collect without end
+    resource.setrlimit(resource.RLIMIT_AS, (6_000_000 * 1024,) * 2)
     left = 0
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

@@ -18,6 +18,7 @@ os.environ["PATH"] = os.pathsep.join([*map(str, PYENV.glob("versions/3.*/bin")),
 # a Python that is not here is skipped with a line, and a failure where continuous integration runs
 nox.options.error_on_missing_interpreters = os.environ.get("CI") == "true"
 nox.options.default_venv_backend = "venv"
+nox.options.envdir = str(ROOT / ".nox")
 
 
 def lowest(python):

@@ -14,20 +14,6 @@ from comparisons.show.pages.page import (
 from comparisons.show.pages.states import states_section
 
 __all__ = [
-    "Section",
-    "Track",
-    "definitions",
-    "folded",
-    "motion_section",
-    "page",
-    "picture",
-    "provenance",
-    "states_section",
-    "table",
-    "tracks",
+    "Section", "Track", "definitions", "folded", "motion_section", "page", "picture", "provenance", "states_section", "table", "tracks",
     "write_page",
-]
-
-
-def __dir__() -> list[str]:
-    return sorted(__all__)
+]  # fmt: skip

@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
+from string import Template
 from typing import Any
 
 import numpy as np
@@ -9,22 +11,30 @@ import numpy as np
 from comparisons.errors import error_columns, forces, moments, size
 from comparisons.response import Array, Response
 from comparisons.response.material import frictions, frictions_found
+from comparisons.response.table import unit_names
 from comparisons.scene import Scene
 from comparisons.show import palette
-from comparisons.show.pages.page import Section, scrolling, text
-from comparisons.show.symbols import end_symbols
+from comparisons.show.pages.page import Section, markup, part, scrolling, text
+from comparisons.show.symbols import SYMBOL, end_symbols
 
 POINTS = 61
 """Points of a deformed axis."""
 ARC = 25
 """Points of an undeformed axis that is an arc."""
-SYMBOL = 0.03
-"""Size of the symbol of a support, a spring or a hinge over the size of the scene."""
 DIGITS = 5
 """Decimals of the coordinates, over the size of the scene."""
 DASHES = ("7 3", "2 3", "9 3 2 3", "12 3", "5 2 1 2 1 2", "3 2", "9 2 2 2 2 2", "4 4", "14 2 2 2")
 """Dashes of the lines of runs, which distinguish runs without colour."""
 INKS = {palette.BLACK: "var(--ink)", palette.GREY: "var(--grey)"}
+"""Colours of the page that are light on a dark screen, in place of black and grey."""
+SWATCH = (
+    '<label class="switch"><input type="checkbox" checked data-switch="{}"><svg class="swatch" viewBox="0 0 40 10" aria-hidden="true">'
+    '<line x1="1" y1="5" x2="39" y2="5" style="stroke:{colour};stroke-width:{width};stroke-dasharray:{dash}"/></svg>{}</label>'
+)
+CHART = (
+    '<figure><figcaption>{title}</figcaption><svg class="chart" data-track="{}" data-kind="{}" tabindex="0" role="img" '
+    'aria-label="{title} against the load parameter"></svg></figure>'
+)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -48,25 +58,21 @@ def tracks(responses: Mapping[str, Response], reference: str, scene: Scene) -> l
     The errors are those of `comparisons.errors`. A scene without contact has the forces of its supports. What
     vanishes in all responses is left out.
     """
-    force, length = _units(scene)
+    units = unit_names(scene.units)
     shown = {label: response for label, response in responses.items() if len(response.load_parameter)}
     rubbed = any(frictions_found(response, scene) for response in shown.values())
     spurious = not any(contact.friction for contact in scene.contacts)
     friction = "friction found" if rubbed else "spurious friction" if spurious else "friction"
+    rubbing = partial(frictions_found if rubbed else frictions, scene=scene)
     acting = "contact force" if scene.contacts else "support force"
-    quantities: dict[str, tuple[str, str, str, Callable[[Response], Mapping[str, Array]]]] = {
-        "force": (acting, force, "the largest force", forces),
-        "arc": ("arc position", length, "the length", _arcs),
-        "moment": ("support moment", f"{force} {length}", "the largest moment", moments),
-        "friction": (
-            friction,
-            "1",
-            "the contact forces",
-            lambda response: (frictions_found if rubbed else frictions)(response, scene),
-        ),
-    }
+    quantities: tuple[tuple[str, str, str, str, Callable[[Response], Mapping[str, Array]]], ...] = (
+        ("force", acting, units["force"], "the largest force", forces),
+        ("arc", "arc position", units["length"], "the length", _arcs),
+        ("moment", "support moment", units["moment"], "the largest moment", moments),
+        ("friction", friction, "1", "the contact forces", rubbing),
+    )
     found = []
-    for quantity, (title, unit, scale, read) in quantities.items():
+    for quantity, title, unit, scale, read in quantities:
         values = {label: read(response) for label, response in shown.items()}
         errors = {
             label: error_columns(response, responses[reference], scene, quantity)
@@ -120,11 +126,16 @@ def motion_section(
     # the wide solid below, the exact answers on top
     ordered = sorted(labels, key=lambda label: -palette.style(label).width)
     first, ends = scene.beams[0], np.array([[beam.start, beam.end] for beam in scene.beams]).reshape(-1, 2)
-    size = float(np.ptp(ends, axis=0).max())
-    decimals = DIGITS - int(np.floor(np.log10(size)))
+    extent = float(np.ptp(ends, axis=0).max())
+    decimals, steps = DIGITS - int(np.floor(np.log10(extent))), range(len(times))
+    axes = {label: _lines(scene, response, decimals) for label, response in responses.items()}
+    runs = [
+        {"label": label, **_line_style(label, number), "lines": axes.get(label, [])}
+        for number, label in enumerate(ordered)
+    ]
     data = {
         "load_parameter": times,
-        "length": {"unit": _units(scene)[1], "beam": first.length},
+        "length": {"unit": unit_names(scene.units)["length"], "beam": first.length},
         "beams": [
             [beam.place(part) for part in np.linspace(0.0, 1.0, ARC if beam.turn else 2)]
             for beam in scene.beams
@@ -140,28 +151,20 @@ def motion_section(
         ],
         "symbols": [
             {
-                "lines": np.round(SYMBOL * size * one.segments, decimals),
+                "lines": np.round(SYMBOL * extent * one.segments, decimals),
                 "at": np.round(
-                    [one.at(_axis(scene, responses[focus], one.item.beam, k)) for k in range(len(times))],
-                    decimals,
+                    [one.at(_axis(scene, responses[focus], one.item.beam, k)) for k in steps], decimals
                 ),
             }
             for one in end_symbols(scene)
         ],
         "tip": responses[focus].tips[first.name],
         "focus": focus,
-        "runs": [
-            {
-                "label": label,
-                **_line_style(label, number),
-                "lines": _lines(scene, responses.get(label), decimals),
-            }
-            for number, label in enumerate(ordered)
-        ],
+        "runs": runs,
         "tracks": shown,
         "vtu": vtu or {},
     }
-    return Section(title=title, html=_markup(data, len(times)), data=data)
+    return Section(title=title, html=_markup(runs, shown, len(times)), data=data)
 
 
 def _axis(scene: Scene, response: Response, beam: str, k: int) -> Array:
@@ -173,81 +176,41 @@ def _axis(scene: Scene, response: Response, beam: str, k: int) -> Array:
 
 
 def _line_style(label: str, number: int) -> dict[str, Any]:
-    """Colour, dashes and width. The page replaces black and grey by colours that are light on a dark screen."""
+    """Colour, dashes and width."""
     style = palette.style(label)
     dash = "none" if style.unbroken else DASHES[number % len(DASHES)]
     return {"colour": INKS.get(style.colour, style.colour), "dash": dash, "width": style.width}
 
 
-def _lines(scene: Scene, response: Response | None, decimals: int) -> list[list[Array]]:
+def _lines(scene: Scene, response: Response, decimals: int) -> list[list[Array]]:
     """Return the deformed axes (POINTS, 2) of all beams at every load parameter, rounded to what a screen can show."""
 
     def thinned(arc: Array, line: Array) -> Array:
         at = np.linspace(arc[0], arc[-1], POINTS)
         return np.asarray(np.round([np.interp(at, arc, line[:, i]) for i in (0, 1)], decimals).T)
 
-    if response is None:
-        return []
     steps = range(len(response.load_parameter))
     return [[thinned(*response.axis_line(beam.name, k)) for beam in scene.beams] for k in steps]
 
 
-def _units(scene: Scene) -> tuple[str, str]:
-    force, length = (unit.strip() for unit in scene.units.split(","))
-    return force, length
-
-
-def _markup(data: Mapping[str, Any], steps: int) -> str:
+def _markup(runs: Sequence[Mapping[str, Any]], shown: Sequence[Track], steps: int) -> str:
     """Return the frame that the script fills: switches, slider, drawings, charts and the table of values."""
-    runs = list(enumerate(data["runs"]))
-    switches = "\n".join(
-        f'<label class="switch"><input type="checkbox" checked data-switch="{number}">'
-        f'<svg class="swatch" viewBox="0 0 40 10" aria-hidden="true"><line x1="1" y1="5" x2="39" y2="5" '
-        f'style="stroke:{run["colour"]};stroke-width:{run["width"]};stroke-dasharray:{run["dash"]}"/></svg>'
-        f"{text(run['label'])}</label>"
-        for number, run in runs
-    )
     # every track has a chart and a column of its values, and of its errors where there are some
     columns = []
-    for number, track in enumerate(data["tracks"]):
-        columns.append((number, "values", f"{track.title} [{track.unit}]", f"{track.title} [{track.unit}]"))
+    for number, track in enumerate(shown):
+        titled = f"{track.title} [{track.unit}]"
+        columns.append((number, "values", titled, titled))
         if track.errors:
             columns.append((number, "errors", "error", f"{track.title}, {track.error_title}"))
-    charts = "\n".join(
-        f'<figure><figcaption>{text(title)}</figcaption><svg class="chart" data-track="{number}" '
-        f'data-kind="{kind}" tabindex="0" role="img" aria-label="{text(title)} against the load parameter">'
-        "</svg></figure>"
-        for number, kind, _, title in columns
-    )
-    head = "".join(f'<th scope="col">{text(name)}</th>' for name in ("model", *(one[2] for one in columns)))
-    cells = "".join(f'<td data-track="{one[0]}" data-kind="{one[1]}">-</td>' for one in columns)
-    rows = "\n".join(
-        f'<tr data-run="{number}"><th scope="row">{text(run["label"])}</th>{cells}</tr>'
-        for number, run in runs
-    )
-    values = f'<table class="values">\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n</table>'
-    bands = (
-        "; bands reach from a model to the reference" if any(one[1] == "errors" for one in columns) else ""
-    )
-    return f"""<noscript><p>The drawings of this section take a script; the files below hold the same numbers.</p></noscript>
-<div class="controls" data-moving>
-<label class="slider">load parameter <input type="range" min="0" max="{steps - 1}" step="1" value="{steps - 1}"></label>
-<output aria-live="polite"></output>
-<button type="button" class="play" aria-pressed="false">play</button>
-</div>
-<fieldset class="switches"><legend>shown</legend>
-{switches}
-</fieldset>
-<div class="drawings">
-<figure><svg class="shapes" role="img" aria-label="deformed axes at the load parameter of the slider"></svg>
-<figcaption>Deformed axes, with the symbols of supports, springs and hinges; stars are pins, circles their true radii, dotted lines their paths; thin grey: other load parameters.</figcaption></figure>
-<figure><svg class="zoom" role="img" aria-label="the surroundings of the tip, enlarged"></svg>
-<figcaption>The tip, enlarged.</figcaption></figure>
-</div>
-<p class="vtu"></p>
-<p class="caption now"></p>
-{scrolling("values at the load parameter of the slider", values)}
-<div class="charts">
-{charts}
-</div>
-<p class="hint">Charts: point at them, or move along them with the arrow keys{bands}.</p>"""
+    cells = "".join(f'<td data-track="{number}" data-kind="{kind}">-</td>' for number, kind, _, _ in columns)
+    rows = ((f' data-run="{number}"', run["label"], cells) for number, run in enumerate(runs))
+    table = markup(["model", *(name for _, _, name, _ in columns)], rows, "values")
+    bands = any(kind == "errors" for _, kind, _, _ in columns)
+    template = Template(part("motion.html"))
+    return template.substitute(
+        last=steps - 1,
+        switches="\n".join(SWATCH.format(k, text(run["label"]), **run) for k, run in enumerate(runs)),
+        table=scrolling("values at the load parameter of the slider", table),
+        charts="\n".join(CHART.format(k, kind, title=text(title)) for k, kind, _, title in columns),
+        bands="; bands reach from a model to the reference" if bands else "",
+    ).rstrip("\n")

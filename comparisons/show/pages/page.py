@@ -38,6 +38,12 @@ class Section:
         """The section's anchor: its title in lower case, with hyphens."""
         return re.sub(r"[^a-z0-9]+", "-", self.title.lower()).strip("-")
 
+    @property
+    def markup(self) -> str:
+        """The section as HTML."""
+        heading = f'<h2 id="{self.ident}-heading">{text(self.title)}</h2>'
+        return f'<section id="{self.ident}" aria-labelledby="{self.ident}-heading">\n{heading}\n{self.html}\n</section>'
+
 
 def page(title: str, lead: str, sections: Sequence[Section]) -> str:
     """Return sections as one HTML file without external resources, below a title and a lead in plain text.
@@ -48,22 +54,19 @@ def page(title: str, lead: str, sections: Sequence[Section]) -> str:
     if len(set(idents)) < len(idents):
         raise ValueError(f"sections = {idents}: must have different titles")
     data = {section.ident: plain(section.data) for section in sections if section.data is not None}
-    return Template(_part("page.html")).substitute(
+    return Template(part("page.html")).substitute(
         title=text(title),
         lead=text(lead),
-        style=_part("style.css"),
-        script=_part("script.js"),
+        style=part("style.css"),
+        script=part("script.js"),
         data=json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c"),
         links="\n".join(f'<a href="#{one.ident}">{text(one.title)}</a>' for one in sections),
-        sections="\n".join(
-            f'<section id="{one.ident}" aria-labelledby="{one.ident}-heading">\n'
-            f'<h2 id="{one.ident}-heading">{text(one.title)}</h2>\n{one.html}\n</section>'
-            for one in sections
-        ),
+        sections="\n".join(section.markup for section in sections),
     )
 
 
-def _part(name: str) -> str:
+def part(name: str) -> str:
+    """Return a file of this folder."""
     return (resources.files("comparisons.show.pages") / name).read_text(encoding="utf-8")
 
 
@@ -102,14 +105,19 @@ def table(caption: str, header: Sequence[str], rows: Iterable[Sequence[Any]], *,
 
     Its caption stands above it and names it; the cells of `prose` break their lines.
     """
+    cells = (("", first, "".join(f"<td>{text(one)}</td>" for one in rest)) for first, *rest in rows)
+    inner = markup(header, cells, "prose" if prose else "")
+    return f'<p class="caption">{text(caption)}</p>\n{scrolling(caption, inner)}'
+
+
+def markup(header: Sequence[str], rows: Iterable[tuple[str, Any, str]], kind: str = "") -> str:
+    """Return a table of a class of `style.css`, from the attributes, the head and the markup of the other cells of every row."""
     head = "".join(f'<th scope="col">{text(name)}</th>' for name in header)
     body = "\n".join(
-        f'<tr><th scope="row">{text(first)}</th>{"".join(f"<td>{text(one)}</td>" for one in rest)}</tr>'
-        for first, *rest in rows
+        f'<tr{attributes}><th scope="row">{text(first)}</th>{cells}</tr>' for attributes, first, cells in rows
     )
-    kind = ' class="prose"' if prose else ""
-    inner = f"<table{kind}>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>"
-    return f'<p class="caption">{text(caption)}</p>\n{scrolling(caption, inner)}'
+    named = f' class="{kind}"' if kind else ""
+    return f"<table{named}>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>"
 
 
 def scrolling(label: str, inner: str) -> str:

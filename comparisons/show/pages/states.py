@@ -8,9 +8,10 @@ import numpy as np
 from comparisons.response import CONTACT_STATES, SLIPS, Response
 from comparisons.show.pages.page import Section, scrolling, text
 
-HATCHED = SLIPS[-1]
-"""The state whose bands are hatched, which distinguishes it in grey print."""
 HATCH = "repeating-linear-gradient(135deg,#16181d 0 1px,{} 1px 5px)"
+COLOURS = {**CONTACT_STATES, SLIPS[-1]: HATCH.format(CONTACT_STATES[SLIPS[-1]])}
+"""Backgrounds of the bands; one is hatched, which distinguishes it in grey print."""
+CAPTION = "What each contact with friction does, over the load parameter."
 
 
 def states_section(responses: Mapping[str, Response]) -> Section | None:
@@ -27,19 +28,22 @@ def states_section(responses: Mapping[str, Response]) -> Section | None:
     if not bands:
         return None
     last = max(parts[-1][2] for parts in bands.values())
-    rows = "\n".join(
-        f"<p>{text(label)}</p>\n<div>{''.join(_part(*part, last) for part in parts)}</div>"
-        for label, parts in bands.items()
-    )
+    rows = ""
+    for label, parts in bands.items():
+        drawn = (
+            f'<span title="{text(state)} from {begin:.6g} to {end:.6g}" '
+            f'style="width:{100 * (end - begin) / last:.3f}%;background:{COLOURS[state]}"></span>'
+            for state, begin, end in parts
+        )
+        rows += f"<p>{text(label)}</p>\n<div>{''.join(drawn)}</div>\n"
     axis = "".join(f"<span>{part * last:g}</span>" for part in (0.0, 0.25, 0.5, 0.75, 1.0))
     legend = " ".join(
-        f'<span class="switch"><i class="swatch" style="{_colour(state)}"></i>{text(state)}</span>'
-        for state in CONTACT_STATES
+        f'<span class="switch"><i class="swatch" style="background:{colour}"></i>{text(state)}</span>'
+        for state, colour in COLOURS.items()
     )
-    caption = "What each contact with friction does, over the load parameter."
-    drawn = f'<div class="states">\n{rows}\n<div class="scale">{axis}</div>\n</div>'
-    html = f"<p>{caption}</p>\n<p>{legend}</p>\n{scrolling('contact states over the load parameter', drawn)}"
-    return Section(title="Stick and slip", html=html)
+    drawing = f'<div class="states">\n{rows}<div class="scale">{axis}</div>\n</div>'
+    scrolled = scrolling("contact states over the load parameter", drawing)
+    return Section(title="Stick and slip", html=f"<p>{CAPTION}</p>\n<p>{legend}</p>\n{scrolled}")
 
 
 def band(response: Response, pair: str) -> list[tuple[str, float, float]]:
@@ -59,13 +63,3 @@ def band(response: Response, pair: str) -> list[tuple[str, float, float]]:
         parts.append((state, begin, end))
         begin = end
     return parts
-
-
-def _part(state: str, begin: float, end: float, last: float) -> str:
-    words = f"{text(state)} from {begin:.6g} to {end:.6g}"
-    return f'<span title="{words}" style="width:{100 * (end - begin) / last:.3f}%;{_colour(state)}"></span>'
-
-
-def _colour(state: str) -> str:
-    colour = CONTACT_STATES[state]
-    return f"background:{HATCH.format(colour) if state == HATCHED else colour}"

@@ -27,7 +27,7 @@ from comparisons.scene import (
 from comparisons.scene.read import LISTS
 from comparisons.scene.record import optional
 from comparisons.scene.toml import json_schema
-from docs.extensions.scene_file import page
+from docs.extensions.generated import scene_file
 
 SCHEMA = json_schema()
 HEAD = '[scene]\nname = "s"\nload_parameters = 4\n'
@@ -126,7 +126,9 @@ def test_a_new_key_is_one_declaration(monkeypatch):
             read_scene(f"{text}{line}\n", "s")
     schema = json_schema()["properties"]["contact"]["items"]["properties"]["wear"]
     assert (schema["exclusiveMaximum"], schema["default"]) == (1, 0.25)
-    assert "| `wear` | a number between zero and one | `0.25` | Share of the surface worn off. |" in page()
+    assert (
+        "| `wear` | a number between zero and one | `0.25` | Share of the surface worn off. |" in scene_file()
+    )
 
 
 def ends(name: str, start: str, end: str, clamped: str = "[]") -> str:

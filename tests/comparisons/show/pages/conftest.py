@@ -6,7 +6,7 @@ import re
 import shutil
 import subprocess
 from contextlib import redirect_stderr, redirect_stdout
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from html import escape, unescape
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -39,8 +39,7 @@ def compared(tmp_path_factory: pytest.TempPathFactory) -> Compared:
     return Compared(folder, out.getvalue(), err.getvalue())
 
 
-@dataclass(frozen=True, kw_only=True)
-class Browser:
+class Browser(NamedTuple):
     """Chromium without a window."""
 
     program: str
@@ -75,7 +74,5 @@ class Browser:
 @pytest.fixture
 def browser(tmp_path: Path) -> Browser:
     """Chromium, or a skipped test."""
-    program = shutil.which("chromium")
-    if program is None:
-        pytest.skip("Chromium is not installed")
-    return Browser(program=program, folder=tmp_path)
+    program = shutil.which("chromium") or pytest.skip("Chromium is not installed")
+    return Browser(program, tmp_path)
