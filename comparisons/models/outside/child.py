@@ -10,9 +10,10 @@ from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from enum import Enum
+from os import getpid, kill, waitpid
 from pathlib import Path
-from time import perf_counter
-from typing import Any
+from time import perf_counter, sleep
+from typing import Any, NamedTuple
 
 from comparisons.files import one_line, printable
 
@@ -30,8 +31,9 @@ ENVIRONMENT = (
 LINUX = sys.platform == "linux"
 ADOPT = 36
 """PR_SET_CHILD_SUBREAPER: a process becomes the parent of its descendants whose own parents have ended."""
-ROUNDS = 20
+ROUNDS = 5000
 """How often the processes that a program leaves behind are looked for and ended."""
+KILL = 9
 
 
 class ProgramStatus(Enum):
@@ -88,7 +90,7 @@ class Limits:
     seconds : float
         Wall time [s].
     memory : float
-        Resident memory [byte].
+        Resident memory [byte], where the system tells that of all processes (Linux).
     environment : tuple of str
         Variables of the environment that it gets beside those of `ENVIRONMENT`.
     """
@@ -139,27 +141,25 @@ def run(command: Sequence[str], folder: Path, text: str, limits: Limits) -> tupl
 
 def _finished(command: list[str], streams: dict[str, Any], written: tuple[Path, ...], limits: Limits) -> int:
     """Return the exit status of a command that keeps its limits."""
-    import psutil
+    import subprocess
 
-    others = set(psutil.Process().children())
+    others = {pid for pid, one in _processes().items() if one.parent == getpid()}
     _adopt(1)
     try:
-        process = psutil.Popen(command, **streams)
+        process = subprocess.Popen(command, **streams)  # noqa: S603 the program that the user names
     except (OSError, ValueError) as error:
         _adopt(0)
         reason = getattr(error, "strerror", None) or str(error)
         raise ProgramError(ProgramStatus.NOT_STARTED, f"{command[0]}: {reason}") from None
-    began, look, family = perf_counter(), FIRST_LOOK, {process}
+    began, look = perf_counter(), FIRST_LOOK
     try:
         while True:
-            try:
+            with suppress(subprocess.TimeoutExpired):
                 return int(process.wait(timeout=look))
-            except psutil.TimeoutExpired:
-                look = min(2.0 * look, LAST_LOOK)
+            look = min(2.0 * look, LAST_LOOK)
             if perf_counter() - began > limits.seconds:
                 raise ProgramError(ProgramStatus.TIMED_OUT, f"ran longer than {limits.seconds:g} s")
-            family |= _started(process, others)
-            if sum(map(_memory, family)) > limits.memory:
+            if sum(one.memory for one in _started(others).values()) > limits.memory:
                 raise ProgramError(
                     ProgramStatus.OUT_OF_MEMORY, f"took more than {limits.memory / 1e6:g} MB of memory"
                 )
@@ -168,7 +168,7 @@ def _finished(command: list[str], streams: dict[str, Any], written: tuple[Path, 
                     ProgramStatus.TOO_MUCH_OUTPUT, f"wrote more than {LARGEST_OUTPUT / 1e6:g} MB"
                 )
     finally:
-        _end(process, family, others)
+        _end(process, others)
         _adopt(0)
 
 
@@ -178,43 +178,64 @@ def _adopt(adopts: int) -> None:
         ctypes.CDLL(None).prctl(ADOPT, adopts, 0, 0, 0)
 
 
-def _started(process: Any, others: set[Any]) -> set[Any]:
-    """Return the processes that a program has started, itself among them, and those of them that this process has adopted.
+class _Process(NamedTuple):
+    """Parent, session and resident memory [byte] of a process."""
 
-    Only what a program starts is in another session than this process; `others` are children from before.
-    """
-    import psutil
+    parent: int
+    session: int
+    memory: int
 
-    found = set()
-    for child in psutil.Process().children():
-        with suppress(psutil.Error, ProcessLookupError):
-            if child == process or (LINUX and child not in others and os.getsid(child.pid) != os.getsid(0)):
-                found |= {child, *child.children(recursive=True)}
+
+def _processes() -> dict[int, _Process]:
+    """Return all processes by their identifiers; none where the system has no ``/proc``."""
+    found = {}
+    for file in Path("/proc").glob("[0-9]*/stat") if LINUX else ():
+        with suppress(OSError):
+            values = file.read_text(errors="replace").rpartition(") ")[2].split()
+            memory = int(values[21]) * os.sysconf("SC_PAGE_SIZE")
+            found[int(file.parent.name)] = _Process(int(values[1]), int(values[3]), memory)
     return found
 
 
-def _memory(process: Any) -> int:
-    """Return the resident memory of a process [byte], zero if it has ended."""
-    import psutil
+def _started(others: set[int]) -> dict[int, _Process]:
+    """Return what descends from the children of this process in other sessions: what a program starts, adopted or not.
 
-    try:
-        return int(process.memory_info().rss)
-    except psutil.Error:
-        return 0
+    The sessions are other ones for programs alone; `others` are children from before.
+    """
+    every = _processes()
+    found = {
+        pid
+        for pid, one in every.items()
+        if one.parent == getpid() and one.session != every[getpid()].session and pid not in others
+    }
+    while more := {pid for pid, one in every.items() if one.parent in found} - found:
+        found |= more
+    return {pid: every[pid] for pid in found}
 
 
-def _end(process: Any, family: set[Any], others: set[Any]) -> None:
-    """End whatever a program has started, and wait for its end. What is seen is ended first, then what that leaves to this process."""
-    import psutil
+def _end(process: Any, others: set[int]) -> None:
+    """End whatever a program has started, and wait for its end; an ended process leaves its children to this one."""
+    if LINUX:
+        for _ in range(ROUNDS):
+            process.poll()
+            family = _started(others)
+            for pid in family:
+                with suppress(ProcessLookupError, PermissionError):
+                    kill(pid, KILL)
+                if pid != process.pid:
+                    with suppress(ChildProcessError):
+                        waitpid(pid, os.WNOHANG)
+            if not family and not _started(others):  # not while a parent ended during the look
+                return
+            sleep(FIRST_LOOK)
+    elif os.name == "nt":
+        import subprocess
 
-    for _ in range(ROUNDS):
-        family = {member for member in family | _started(process, others) if member.is_running()}
-        for member in family:
-            with suppress(psutil.Error):
-                member.kill()
-        if not family:
-            return
-        psutil.wait_procs(family, timeout=1.0)
+        subprocess.run(["taskkill", "/T", "/F", "/PID", str(process.pid)], capture_output=True, check=False)  # noqa: S603, S607
+    else:
+        with suppress(ProcessLookupError, PermissionError):
+            getattr(os, "killpg", kill)(process.pid, KILL)
+    process.wait()
 
 
 def _ending(code: int) -> str:
