@@ -8,7 +8,7 @@ import numpy as np
 
 from comparisons.models.base import Model
 from comparisons.response import Array, ContactHistory, CriticalPoint, Response, SupportHistory
-from comparisons.scene import Scene
+from comparisons.scene import BeamSpec, Scene
 
 ENDS = ("start", "end")
 POINTS = 401
@@ -27,14 +27,20 @@ def joints(scene: Scene) -> list[list[str]]:
     return [ends for ends in meeting.values() if len(ends) > 1]
 
 
-def weights(scene: Scene) -> Iterator[tuple[str, int, tuple[Force, ...]]]:
-    """Yield the weights as name of the beam, stage, and coefficients of the force per length along the beam."""
+def line_loads(scene: Scene) -> Iterator[tuple[BeamSpec, int, tuple[Force, ...], Force]]:
+    """Yield the forces per length, then the weights: beam, stage, coefficients along the beam, and the part of its length."""
+    for stage, load in scene.numbered_loads():
+        if load.force_per_length is not None:
+            yield scene.beam(load.beam), stage, (load.force_per_length,), load.span
     for beam in scene.beams:
-        if beam.density is None:
-            continue
         for stage, (gx, gy) in enumerate(scene.stage_gravities):
-            if gx or gy:
-                yield beam.name, stage, tuple((gx * mass, gy * mass) for mass in beam.mass_coefficients())
+            if beam.density is not None and (gx or gy):
+                yield (
+                    beam,
+                    stage,
+                    tuple((gx * mass, gy * mass) for mass in beam.mass_coefficients()),
+                    (0.0, 1.0),
+                )
 
 
 def rows(found: Any, width: int) -> Array:

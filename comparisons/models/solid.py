@@ -72,9 +72,8 @@ class Solid(Model):
         )
         return f"{_order(scene)} {'+'.join(names)}{given}"
 
-    def family(self, scene: Scene, options: Options) -> str:
+    def family(self, scene: Scene, options: Options) -> str:  # noqa: ARG002 - the scene has the order
         """Return the order of the elements, as ``solid Q2``."""
-        del options
         return f"{self.label} {_order(scene)}"
 
     def resolutions(self, *, quick: bool) -> Iterator[Options]:
@@ -119,17 +118,13 @@ def _solved(scene: Scene, options: Options, watch: Watch) -> Response:
         return fem_reference.axis_stations(result, beam), fem_reference.axis_line(result, beam, k)
 
     def grid(k: int) -> Grid:
-        displacement = result.displacement[k]
-        xx, yy, xy = fem_reference.nodal_stress(result, k).T
-        data = {"displacement": displacement, "deformed": result.mesh_points + displacement, "beam": beam}
-        data |= {"stress_xx": xx, "stress_yy": yy, "stress_xy": xy}
-        data["von_mises"] = np.sqrt(xx**2 - xx * yy + yy**2 + 3.0 * xy**2)
-        data["axial_stress"] = fem_reference.fibre_stress(result, k)
+        displacement, (xx, yy, xy) = result.displacement[k], fem_reference.nodal_stress(result, k).T
+        data = {
+            "displacement": displacement, "deformed": result.mesh_points + displacement, "beam": beam,
+            "stress_xx": xx, "stress_yy": yy, "stress_xy": xy, "von_mises": np.sqrt(xx**2 - xx * yy + yy**2 + 3.0 * xy**2),
+            "axial_stress": fem_reference.fibre_stress(result, k),
+        }  # fmt: skip
         return Grid(points=result.mesh_points, cells=result.mesh_cells, point_data=data)
-
-    def friction(item: Any) -> FrictionHistory:
-        forces = {"tangential": item.tangential_force, "normal": item.normal_force}
-        return FrictionHistory(slip=item.direction, dissipated=item.dissipated, **forces)
 
     def half_turns(beam: str) -> Array:
         """Largest angle between neighbouring chords of the axis; a quadratic element has two chords."""
@@ -137,16 +132,15 @@ def _solved(scene: Scene, options: Options, watch: Watch) -> Response:
         chords = [np.diff(line, axis=0) @ (1, 1j) for line in lines]
         return np.array([np.abs(np.angle(chord[1:] / chord[:-1])).max() for chord in chords])
 
-    contacts = {
-        spec.name: history(
-            item,
-            compliance=1.0 / problem.penalty(spec) if spec.penetration is None else 0.0,
-            slip_off=item.slip_off,
-            vector=item.vector,
-            friction=friction(item) if spec.friction else None,
-        )
-        for spec, item in ((spec, result.contacts[spec.name]) for spec in problem.contacts)
-    }
+    contacts = {}
+    for spec in problem.contacts:
+        item, friction = result.contacts[spec.name], None
+        if spec.friction:
+            forces = {"tangential": item.tangential_force, "normal": item.normal_force}
+            friction = FrictionHistory(slip=item.direction, dissipated=item.dissipated, **forces)
+        soft = 1.0 / problem.penalty(spec) if spec.penetration is None else 0.0
+        more = {"slip_off": item.slip_off, "vector": item.vector, "friction": friction}
+        contacts[spec.name] = history(item, compliance=soft, **more)
     turn = 2 * np.max([half_turns(beam.name) for beam in scene.beams], axis=0)
     return of_result(
         SOLID,
@@ -170,17 +164,12 @@ def _events(result: Any) -> tuple[ContactEvent, ...]:
     """Return the events of a scene with friction, whose load parameters are located; no element owns a contact."""
     from comparisons.response import ContactEvent
 
-    found = [
-        ContactEvent(
-            pair=pair,
-            element=-1,
-            released=0.0,
-            stage=max(1, ceil(event.load_parameter)),
-            **{name: getattr(event, name) for name in ("kind", "load_parameter", "arc_position", "force")},
-        )
-        for pair, contact in result.contacts.items()
-        for event in contact.events
-    ]
+    found = []
+    for pair, contact in result.contacts.items():
+        for event in contact.events:
+            own = {name: getattr(event, name) for name in ("kind", "load_parameter", "arc_position", "force")}
+            stage = max(1, ceil(event.load_parameter))
+            found.append(ContactEvent(pair=pair, element=-1, released=0.0, stage=stage, **own))
     return tuple(sorted(found, key=lambda event: event.load_parameter))
 
 
@@ -190,14 +179,10 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> SolidProbl
     Parameters
     ----------
     scene : Scene
-        Any scene whose supports, with the pins that touch at the start, hold every structure.
+        Any scene whose supports, with the pins that touch at the start, hold every structure; a `ValueError` says in one line why the
+        solid cannot state another.
     mesh : (int, int), optional
         Elements along and across of every beam, in place of the scene's.
-
-    Raises
-    ------
-    ValueError
-        If the solid cannot state the scene, in one line.
     """
     import fem_reference as fem
 
@@ -323,17 +308,15 @@ def _end_loads(scene: Scene, joints: _Joints) -> Iterator[EndLoad]:
 
 
 def _inner_loads(scene: Scene) -> Iterator[PointLoad | LineLoad]:
-    """Yield the forces and moments inside the beams and the forces per length, then the weights."""
-    from comparisons.models.shared import weights
+    """Yield the forces and moments inside the beams, then the forces per length and the weights."""
+    from comparisons.models.shared import line_loads
     from fem_reference import LineLoad, PointLoad
 
     for stage, load in scene.numbered_loads():
-        if load.force_per_length is not None:
-            yield LineLoad(strip=load.beam, force=(load.force_per_length,), part=load.span, stage=stage)
-        elif load.at is not None:
+        if load.at is not None:
             yield PointLoad(strip=load.beam, at=load.at, force=load.force, moment=load.moment, stage=stage)
-    for beam, stage, weight in weights(scene):
-        yield LineLoad(strip=beam, force=weight, stage=stage)
+    for beam, stage, force, part in line_loads(scene):
+        yield LineLoad(strip=beam.name, force=force, part=part, stage=stage)
 
 
 def rectangle(beam: BeamSpec) -> tuple[float, float]:

@@ -17,7 +17,8 @@ from typing import Any, NamedTuple
 
 from comparisons.files import one_line, printable
 
-LARGEST_OUTPUT = 200_000_000
+MB = 1e6
+LARGEST_OUTPUT = 200 * MB
 """Largest size of what a program writes [byte]."""
 TAIL = 300
 """Characters of a program's messages that are shown."""
@@ -50,15 +51,7 @@ class ProgramStatus(Enum):
 
 
 class ProgramError(Exception):
-    """The run of another program gave no answer.
-
-    Attributes
-    ----------
-    status : ProgramStatus
-        What failed.
-    reported_success : bool
-        Whether the program stated success all the same.
-    """
+    """The run of another program gave no answer: what failed, and whether the program stated success all the same."""
 
     def __init__(self, status: ProgramStatus, message: str, *, reported_success: bool = False) -> None:
         super().__init__(one_line(message))
@@ -66,15 +59,7 @@ class ProgramError(Exception):
 
 
 class CalculixError(RuntimeError):
-    """CalculiX is not installed, took too long or stopped early; the message is one line.
-
-    Attributes
-    ----------
-    reason : str
-        The message without the program's name.
-    started : bool
-        Whether CalculiX ran.
-    """
+    """CalculiX is not installed, took too long or stopped early: the reason in one line, and whether CalculiX ran."""
 
     def __init__(self, reason: str, *, started: bool = False) -> None:
         super().__init__(f"CalculiX {reason}")
@@ -83,17 +68,7 @@ class CalculixError(RuntimeError):
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """Limits of a program with all its child processes.
-
-    Parameters
-    ----------
-    seconds : float
-        Wall time [s].
-    memory : float
-        Resident memory [byte], where the system tells that of all processes (Linux).
-    environment : tuple of str
-        Variables of the environment that it gets beside those of `ENVIRONMENT`.
-    """
+    """Limits of a program with all its child processes: wall time [s], resident memory [byte] on Linux, and further variables that it gets."""
 
     seconds: float = 600.0
     memory: float = 4e9
@@ -114,12 +89,7 @@ def environment(more: Iterable[str] = ()) -> dict[str, str]:
 def run(command: Sequence[str], folder: Path, text: str, limits: Limits) -> tuple[bytes, float]:
     """Run a command in `folder` with `text` as its standard input; return its standard output and the wall time [s].
 
-    The program and all its child processes have ended on return.
-
-    Raises
-    ------
-    ProgramError
-        If the program does not start, exceeds a limit or fails.
+    The program and all its child processes have ended on return. `ProgramError` names what failed.
     """
     program = found(command[0], folder)
     if program is None:
@@ -130,12 +100,14 @@ def run(command: Sequence[str], folder: Path, text: str, limits: Limits) -> tupl
         began = perf_counter()
         with given.open("rb") as stdin, out.open("wb") as stdout, err.open("wb") as stderr:
             streams = {"stdin": stdin, "stdout": stdout, "stderr": stderr, "cwd": folder}
-            streams |= {"env": environment(limits.environment), "start_new_session": True}
             code = _finished([program, *command[1:]], streams, (out, err), limits)
         seconds = perf_counter() - began
         if code:
+            ended = f"ended with exit status {code}"
+            if code < 0 and os.name != "nt":
+                ended = f"was ended by {signal.Signals(-code).name}"
             words = _tail(err) or _tail(out) or "no message"
-            raise ProgramError(ProgramStatus.CRASHED, f"{_ending(code)}: {words}")
+            raise ProgramError(ProgramStatus.CRASHED, f"{ended}: {words}")
         return out.read_bytes(), seconds
 
 
@@ -146,7 +118,9 @@ def _finished(command: list[str], streams: dict[str, Any], written: tuple[Path, 
     others = {pid for pid, one in _processes().items() if one.parent == getpid()}
     _adopt(1)
     try:
-        process = subprocess.Popen(command, **streams)  # noqa: S603 the program that the user names
+        process = subprocess.Popen(  # noqa: S603 the program that the user names
+            command, env=environment(limits.environment), start_new_session=True, **streams
+        )
     except (OSError, ValueError) as error:
         _adopt(0)
         reason = getattr(error, "strerror", None) or str(error)
@@ -157,16 +131,20 @@ def _finished(command: list[str], streams: dict[str, Any], written: tuple[Path, 
             with suppress(subprocess.TimeoutExpired):
                 return int(process.wait(timeout=look))
             look = min(2.0 * look, LAST_LOOK)
-            if perf_counter() - began > limits.seconds:
-                raise ProgramError(ProgramStatus.TIMED_OUT, f"ran longer than {limits.seconds:g} s")
-            if sum(one.memory for one in _started(others).values()) > limits.memory:
-                raise ProgramError(
-                    ProgramStatus.OUT_OF_MEMORY, f"took more than {limits.memory / 1e6:g} MB of memory"
-                )
-            if sum(path.stat().st_size for path in written) > LARGEST_OUTPUT:
-                raise ProgramError(
-                    ProgramStatus.TOO_MUCH_OUTPUT, f"wrote more than {LARGEST_OUTPUT / 1e6:g} MB"
-                )
+            memory = sum(one.memory for one in _started(others).values())
+            size = sum(path.stat().st_size for path in written)
+            for status, used, most, words in (
+                (ProgramStatus.TIMED_OUT, perf_counter() - began, limits.seconds, "ran longer than {:g} s"),
+                (
+                    ProgramStatus.OUT_OF_MEMORY,
+                    memory / MB,
+                    limits.memory / MB,
+                    "took more than {:g} MB of memory",
+                ),
+                (ProgramStatus.TOO_MUCH_OUTPUT, size / MB, LARGEST_OUTPUT / MB, "wrote more than {:g} MB"),
+            ):
+                if used > most:
+                    raise ProgramError(status, words.format(most))
     finally:
         _end(process, others)
         _adopt(0)
@@ -236,12 +214,6 @@ def _end(process: Any, others: set[int]) -> None:
         with suppress(ProcessLookupError, PermissionError):
             getattr(os, "killpg", kill)(process.pid, KILL)
     process.wait()
-
-
-def _ending(code: int) -> str:
-    if code > 0 or os.name == "nt":
-        return f"ended with exit status {code}"
-    return f"was ended by {signal.Signals(-code).name}"
 
 
 def _tail(path: Path) -> str:

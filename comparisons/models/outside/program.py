@@ -15,7 +15,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from comparisons.models.base import Model, Style, counted
+from comparisons.models.base import Model, Style
 from comparisons.models.options import ModelError, Options
 from comparisons.models.outside.child import Limits, ProgramError, ProgramStatus, found, run
 from comparisons.scene.keys import PROGRAMS
@@ -68,13 +68,7 @@ class Source(ABC):
 
     @abstractmethod
     def ask(self, text: str) -> tuple[bytes, float]:
-        """Return the answer to a scene and the wall time [s].
-
-        Raises
-        ------
-        ProgramError
-            If there is no answer.
-        """
+        """Return the answer to a scene and the wall time [s]; raise `ProgramError` if there is none."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,8 +98,7 @@ class Command(Source):
 
     def digest(self) -> str:
         """Return a digest of the command and of the files among its words."""
-        words = [self.folder / word for word in self.command]
-        files = [hashlib.sha256(path.read_bytes()).hexdigest() for path in words if path.is_file()]
+        files = [_digest(self.folder / word) for word in self.command]
         return hashlib.sha256(json.dumps([self.command, files]).encode()).hexdigest()
 
     def missing(self) -> str | None:
@@ -148,8 +141,7 @@ class Functions(Source):
 
     def digest(self) -> str:
         """Return a digest of the file that defines the states."""
-        file = Path(self.states.__code__.co_filename)
-        return hashlib.sha256(file.read_bytes() if file.is_file() else b"").hexdigest()
+        return _digest(Path(self.states.__code__.co_filename))
 
     def refused(self, text: str) -> str | None:
         """Return what the function says."""
@@ -169,6 +161,11 @@ class Functions(Source):
         return output, perf_counter() - began
 
 
+def _digest(file: Path) -> str:
+    """Return a digest of a file, empty if there is none."""
+    return hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else ""
+
+
 class Program(Model):
     """A program of others.
 
@@ -185,15 +182,12 @@ class Program(Model):
         self.name, self.label = source.name, source.label or source.name
         self.continuum = source.continuum
         self.options = ("elements",) if source.elements else ()
+        self.missing = source.missing
 
     @property
     def identity(self) -> str:
         """Name of the program, and a digest of what its answers depend on."""
         return f"{self.name} {self.source.digest()}"
-
-    def missing(self) -> str | None:
-        """Return what must be installed to run the program; None if it can be found."""
-        return self.source.missing()
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why the program cannot state the scene, or what is missing to run it."""
@@ -219,13 +213,9 @@ class Program(Model):
         """Return one style."""
         return {self.label: Style(colour=self.source.colour, marker="D")}
 
-    def run_label(self, options: Options) -> str:
-        """Return the label of one run, as ``mine, 20 elements``."""
-        return self.label + counted(options.elements)
-
     def setting(self, scene: Scene, options: Options) -> str:
         """Return the numbers of elements; empty if the program chooses its resolution itself."""
-        counts = {options.elements or beam.elements for beam in scene.beams} if self.options else set()
+        counts = {options.elements or beam.divisions for beam in scene.beams} if self.options else set()
         return "+".join(map(str, sorted(counts)))
 
     def resolutions(self, *, quick: bool) -> tuple[Options, ...]:

@@ -70,5 +70,5 @@ def _beam(scene: Scene, beam: BeamSpec, options: Options) -> dict[str, Any]:
         "area": area,
         "second_moment": second_moment,
         "shear_area": shear_area,
-        "elements": options.elements or beam.elements,
+        "elements": options.elements or beam.divisions,
     }

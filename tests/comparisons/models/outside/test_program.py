@@ -170,8 +170,8 @@ def test_solve_and_gate_have_it(program, tmp_path, capsys, monkeypatch):
     bounds = ["--max-error", "force=1e-9"]
     assert main(["solve", "ks.toml", "--model", "liar.toml", "--json", "a.json", "--vtk", "vtk"]) == 0
     assert main(["compare", "ks.toml", "--model", "liar.toml", *bounds]) == 0
-    assert main(["compare", "ks.toml", "--model", "tsm", "--against", "liar.toml", *bounds]) == 1
-    assert "tsm against liar" in capsys.readouterr().out
+    assert main(["compare", "ks.toml", "--elements", "20", "--against", "liar.toml", *bounds]) == 1
+    assert "tsm mixed 20 against liar" in capsys.readouterr().out
     data = json.loads((tmp_path / "a.json").read_text())
     assert (data["model"], data["status"], data["reported_success"]) == ("liar", "COMPLETED", True)
     assert (tmp_path / "vtk" / "liar-0005.vtm").is_file()
