@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from comparisons.models.base import Model, Style
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Reached, Watch
+from comparisons.models.shared import history, joints, kept, line_loads, of_result, result_of
 from comparisons.scene.conditions import COMPONENTS
 from comparisons.scene.keys import STRIPS, unstated
 
@@ -24,8 +25,11 @@ REFINED = ((25, 1), (50, 2), (100, 4), (200, 8))
 COARSE = ((8, 1), (12, 1), (16, 1), (25, 2))
 LEAST_RATIO = -0.999
 """Least Poisson's ratio. There the shear modulus is 500 times Young's modulus; a solid that is stiffer in shear locks."""
-CONTACT = ("node", "side", "surface", "penalty", "penetration", "keep", "friction")
-"""What the solid takes of a contact as it is."""
+CONTACT, STRIP = (
+    "node side surface penalty penetration keep friction",
+    "name start end turn youngs_modulus material",
+)
+"""What the solid takes of a contact and of a beam as it is."""
 SLENDER = 0.125
 """Largest height over length of the rectangle that replaces a section given by area and second moment."""
 
@@ -97,21 +101,15 @@ def _solved(scene: Scene, options: Options, watch: Watch) -> Response:
 
     import fem_reference
     from comparisons.models.sections import j_integrals, section_forces
-    from comparisons.models.shared import history, of_result
     from comparisons.response import Deformation, FrictionHistory, Grid
     from comparisons.response.deferred import Deferred
-
-    problem = to_solid(scene, mesh=options.mesh)
-    settings = fem_reference.Settings(branch=options.branch or "stop")
 
     def report(step: Any) -> None:
         touching = (f"{touch.pair.name} at {float(touch.projection.zeta):.4g}" for touch in step.state.closed)
         watch(Reached(step.load_parameter, step.iterations, tuple(touching)))
 
-    try:
-        result = fem_reference.solve(problem, np.array(scene.times), settings, watch=report)
-    except fem_reference.SolveError as error:
-        result = error.result
+    problem = to_solid(scene, mesh=options.mesh)
+    result = result_of(fem_reference, problem, scene, options, report)
     beam = np.repeat(np.arange(len(scene.beams)), [part.stop - part.start for part in result.model.parts])
 
     def axis_line(beam: str, k: int) -> tuple[Array, Array]:
@@ -167,7 +165,7 @@ def _events(result: Any) -> tuple[ContactEvent, ...]:
     found = []
     for pair, contact in result.contacts.items():
         for event in contact.events:
-            own = {name: getattr(event, name) for name in ("kind", "load_parameter", "arc_position", "force")}
+            own = kept(event, "kind load_parameter arc_position force")
             stage = max(1, ceil(event.load_parameter))
             found.append(ContactEvent(pair=pair, element=-1, released=0.0, stage=stage, **own))
     return tuple(sorted(found, key=lambda event: event.load_parameter))
@@ -205,10 +203,7 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> SolidProbl
             for pin in scene.pins
             for path, *onward in [pin.stage_points]
         ),
-        contacts=tuple(
-            fem.Contact(strip=item.beam, **{name: getattr(item, name) for name in CONTACT})
-            for item in scene.contacts
-        ),
+        contacts=tuple(fem.Contact(strip=item.beam, **kept(item, CONTACT)) for item in scene.contacts),
     )
 
 
@@ -216,7 +211,6 @@ class _Joints:
     """The ends that meet, joint by joint, and the hinges among them with the stiffness of their springs."""
 
     def __init__(self, scene: Scene) -> None:
-        from comparisons.models.shared import joints
 
         self.meeting = joints(scene)
         self.hinges = {hinge.node: hinge.stiffness for hinge in scene.hinges}
@@ -309,12 +303,11 @@ def _end_loads(scene: Scene, joints: _Joints) -> Iterator[EndLoad]:
 
 def _inner_loads(scene: Scene) -> Iterator[PointLoad | LineLoad]:
     """Yield the forces and moments inside the beams, then the forces per length and the weights."""
-    from comparisons.models.shared import line_loads
     from fem_reference import LineLoad, PointLoad
 
     for stage, load in scene.numbered_loads():
         if load.at is not None:
-            yield PointLoad(strip=load.beam, at=load.at, force=load.force, moment=load.moment, stage=stage)
+            yield PointLoad(strip=load.beam, stage=stage, **kept(load, "at force moment"))
     for beam, stage, force, part in line_loads(scene):
         yield LineLoad(strip=beam.name, force=force, part=part, stage=stage)
 
@@ -359,22 +352,17 @@ def _strip(beam: BeamSpec, clamps: set[str], mesh: tuple[int, int] | None) -> St
     if (mesh or beam.mesh)[0] < 2:
         raise ModelError("the solid model needs at least 2 elements along the beam")
     return Strip(
-        name=beam.name,
-        start=beam.start,
-        end=beam.end,
-        turn=beam.turn,
+        **kept(beam, STRIP),
         height=height,
         width=width,
         end_height=beam.height[1] if isinstance(beam.height, tuple) else None,
         end_width=beam.width[1] if isinstance(beam.width, tuple) else None,
-        youngs_modulus=beam.youngs_modulus,
         poissons_ratio=nu,
         clamped=tuple(end for end in ("start", "end") if f"{beam.name}.{end}" in clamps),
         clamp=beam.solid_clamp,
         element=beam.solid_element,
         mesh_file=beam.solid_mesh_file if mesh is None else None,
         mesh=mesh or beam.mesh,
-        material=beam.material,
     )
 
 

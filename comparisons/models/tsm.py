@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from comparisons.models.base import Model, Style
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Reached, Watch
+from comparisons.models.shared import history, kept, line_loads, of_result, result_of, rows
 from comparisons.scene.keys import BEAMS, unstated
 
 if TYPE_CHECKING:
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from comparisons.scene.stages import PrescribedMotion
     from tsm import Beam, ContactPair, Load, Structure, Support
     from tsm.elements import ElementType
-    from tsm.structure import End
 
 
 EXACT, MIXED, PAPER = "exact", "mixed", "timoshenko"
@@ -122,23 +122,16 @@ class Tsm(Model):
 
 def _solved(scene: Scene, options: Options, kind: ElementType, watch: Watch) -> Response:
     """Return the response of the tangent stiffness method; a tolerance is for elements that integrate."""
-    import numpy as np
-
     import tsm
-    from comparisons.models.shared import history, of_result, rows
     from comparisons.response import ContactEvent, Deformation, FrictionHistory, Sections
 
     structure = to_structure(scene, elements=options.elements, element=kind.name)
-    settings, tolerance = tsm.Settings(branch=options.branch or "stop"), options.integration_tolerance
-    if tolerance is not None:
-        if kind.meshed:
-            integrated = ", ".join(name for name, other in tsm.ELEMENTS.items() if not other.meshed)
-            raise ModelError(f"integration_tolerance = {tolerance:g}: belongs to element = {integrated}")
-        settings = replace(settings, integration_tolerance=tolerance)
-    try:
-        result = tsm.solve(structure, np.array(scene.times), settings, watch=_reporter(structure, watch))
-    except tsm.SolveError as error:
-        result = error.result
+    tolerance = options.integration_tolerance
+    if tolerance is not None and kind.meshed:
+        integrated = ", ".join(name for name, other in tsm.ELEMENTS.items() if not other.meshed)
+        raise ModelError(f"integration_tolerance = {tolerance:g}: belongs to element = {integrated}")
+    settings = {} if tolerance is None else {"integration_tolerance": tolerance}
+    result = result_of(tsm, structure, scene, options, _reporter(structure, watch), **settings)
 
     def sections(beam: str, k: int) -> Sections:
         stations = result.stations(beam, k)
@@ -235,7 +228,6 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
         Key of `tsm.ELEMENTS`, `mixed` if not given.
     """
     import tsm
-    from comparisons.models.shared import line_loads
 
     refused = beams_refusal(scene)
     if refused is not None:
@@ -251,13 +243,10 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
             )
             for beam, stage, force, (start, end) in line_loads(scene)
         ),
-        hinges=tuple(
-            tsm.Hinge(beam=item.beam, end=_end(item.end), stiffness=item.stiffness) for item in scene.hinges
-        ),
+        hinges=tuple(tsm.Hinge(**kept(item, "beam end stiffness")) for item in scene.hinges),
         springs=tuple(
-            tsm.Spring(beam=item.beam, end=_end(item.end), x=x, y=y, rotation=item.rotation)
+            tsm.Spring(x=item.stiffness[0], y=item.stiffness[1], **kept(item, "beam end rotation"))
             for item in scene.springs
-            for x, y in [item.stiffness]
         ),
         pins=tuple(
             tsm.Pin(name=pin.name, path=path, onward=tuple(points[1:] for points in onward))
@@ -293,24 +282,17 @@ def _pair(scene: Scene, contact: ContactSpec) -> ContactPair:
     steep, beam, radius = _face_slope(scene, contact), scene.beam(contact.beam), scene.radius(contact)
     tapered = radius + beam.height_at(0.0) / 2.0 * sqrt(1.0 - steep**2)
     offset = tapered if steep else scene.offset(contact)
-    return ContactPair(
-        node=contact.node,
-        beam=contact.beam,
-        side="left" if contact.side == "left" else "right",
-        offset=offset,
-        end_offset=offset + steep * beam.length if steep else None,
-        keep=contact.keep,
-        friction=contact.friction,
-        radius=radius,
-    )
+    end = offset + steep * beam.length if steep else None
+    own = kept(contact, "node beam side keep friction")
+    return ContactPair(offset=offset, end_offset=end, radius=radius, **own)
 
 
 def _support(motion: PrescribedMotion) -> Support:
     from tsm import Support
 
-    spec, onward = motion.support, motion.increments[1:]
-    ux, uy, rotation = spec.motion
-    return Support(beam=spec.beam, end=_end(spec.end), ux=ux, uy=uy, rotation=rotation, onward=onward)
+    ux, uy, rotation = motion.support.motion
+    own = kept(motion.support, "beam end")
+    return Support(ux=ux, uy=uy, rotation=rotation, onward=motion.increments[1:], **own)
 
 
 def _beam(scene: Scene, spec: BeamSpec, elements: int | None, kind: ElementType) -> Beam:
@@ -327,20 +309,13 @@ def _beam(scene: Scene, spec: BeamSpec, elements: int | None, kind: ElementType)
     ends = [part for load in own if load.force_per_length is not None for part in load.span]
     places = [load.at for load in own if load.at is not None]
     return Beam(
-        name=spec.name,
-        start=spec.start,
-        end=spec.end,
+        **kept(spec, "name start end turn"),
         section=section(0.0 if spec.tapers else 0.5),
         end_section=section(1.0) if spec.tapers else None,
-        turn=spec.turn,
         elements=count,
         element=kind.name,
         nodes=nodes,
     ).divided(*(part * spec.length for part in (*ends, *places)))
-
-
-def _end(end: str | None) -> End:
-    return "start" if end == "start" else "end"
 
 
 def _loads(scene: Scene) -> Iterator[Load]:
@@ -352,7 +327,7 @@ def _loads(scene: Scene) -> Iterator[Load]:
             place: Any = (
                 {"end": load.end} if load.at is None else {"arc": load.at * scene.beam(load.beam).length}
             )
-            yield Load(beam=load.beam, force=load.force, moment=load.moment, stage=stage, **place)
+            yield Load(stage=stage, **kept(load, "beam force moment"), **place)
 
 
 TSM = Tsm()

@@ -8,7 +8,6 @@ import sys
 import tempfile
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from enum import Enum
 from os import getpid, kill, waitpid
 from pathlib import Path
@@ -17,9 +16,8 @@ from typing import Any, NamedTuple
 
 from comparisons.files import one_line, printable
 
-MB = 1e6
-LARGEST_OUTPUT = 200 * MB
-"""Largest size of what a program writes [byte]."""
+MB, LARGEST_OUTPUT = 1e6, 200.0
+"""A megabyte [byte], and the largest size of what a program writes [MB]."""
 TAIL = 300
 """Characters of a program's messages that are shown."""
 FIRST_LOOK, LAST_LOOK = 0.002, 0.1
@@ -50,6 +48,14 @@ class ProgramStatus(Enum):
     NOT_FINITE = "a number of the response is missing or not finite"
 
 
+LIMITS = {
+    ProgramStatus.TIMED_OUT: "ran longer than {:g} s",
+    ProgramStatus.OUT_OF_MEMORY: "took more than {:g} MB of memory",
+    ProgramStatus.TOO_MUCH_OUTPUT: "wrote more than {:g} MB",
+}
+"""What is said of a program that exceeds a limit."""
+
+
 class ProgramError(Exception):
     """The run of another program gave no answer: what failed, and whether the program stated success all the same."""
 
@@ -66,15 +72,6 @@ class CalculixError(RuntimeError):
         self.reason, self.started = reason, started
 
 
-@dataclass(frozen=True, kw_only=True)
-class Limits:
-    """Limits of a program with all its child processes: wall time [s], resident memory [byte] on Linux, and further variables that it gets."""
-
-    seconds: float = 600.0
-    memory: float = 4e9
-    environment: tuple[str, ...] = ()
-
-
 def found(program: str, folder: Path) -> str | None:
     """Return the path of a program: a name on the path, or a path relative to `folder`; None if there is none."""
     own = folder / program
@@ -86,10 +83,13 @@ def environment(more: Iterable[str] = ()) -> dict[str, str]:
     return {name: os.environ[name] for name in (*ENVIRONMENT, *more) if name in os.environ}
 
 
-def run(command: Sequence[str], folder: Path, text: str, limits: Limits) -> tuple[bytes, float]:
+def run(
+    command: Sequence[str], folder: Path, text: str, seconds: float, memory: float, more: Iterable[str] = ()
+) -> tuple[bytes, float]:
     """Run a command in `folder` with `text` as its standard input; return its standard output and the wall time [s].
 
-    The program and all its child processes have ended on return. `ProgramError` names what failed.
+    Its limits are wall time [s] and, on Linux, resident memory [MB] with all its child processes, which have ended on return; it gets
+    `more` variables of the environment. `ProgramError` names what failed.
     """
     program = found(command[0], folder)
     if program is None:
@@ -99,28 +99,29 @@ def run(command: Sequence[str], folder: Path, text: str, limits: Limits) -> tupl
         given.write_text(text, encoding="utf-8")
         began = perf_counter()
         with given.open("rb") as stdin, out.open("wb") as stdout, err.open("wb") as stderr:
-            streams = {"stdin": stdin, "stdout": stdout, "stderr": stderr, "cwd": folder}
-            code = _finished([program, *command[1:]], streams, (out, err), limits)
-        seconds = perf_counter() - began
+            streams = {"stdin": stdin, "stdout": stdout, "stderr": stderr}
+            how = {"cwd": folder, "env": environment(more), **streams}
+            code = _finished([program, *command[1:]], how, (out, err), (seconds, memory, LARGEST_OUTPUT))
+        took = perf_counter() - began
         if code:
             ended = f"ended with exit status {code}"
             if code < 0 and os.name != "nt":
                 ended = f"was ended by {signal.Signals(-code).name}"
             words = _tail(err) or _tail(out) or "no message"
             raise ProgramError(ProgramStatus.CRASHED, f"{ended}: {words}")
-        return out.read_bytes(), seconds
+        return out.read_bytes(), took
 
 
-def _finished(command: list[str], streams: dict[str, Any], written: tuple[Path, ...], limits: Limits) -> int:
+def _finished(
+    command: list[str], how: dict[str, Any], written: tuple[Path, ...], limits: tuple[float, ...]
+) -> int:
     """Return the exit status of a command that keeps its limits."""
     import subprocess
 
     others = {pid for pid, one in _processes().items() if one.parent == getpid()}
     _adopt(1)
     try:
-        process = subprocess.Popen(  # noqa: S603 the program that the user names
-            command, env=environment(limits.environment), start_new_session=True, **streams
-        )
+        process = subprocess.Popen(command, start_new_session=True, **how)  # noqa: S603 the program that the user names
     except (OSError, ValueError) as error:
         _adopt(0)
         reason = getattr(error, "strerror", None) or str(error)
@@ -133,17 +134,9 @@ def _finished(command: list[str], streams: dict[str, Any], written: tuple[Path, 
             look = min(2.0 * look, LAST_LOOK)
             memory = sum(one.memory for one in _started(others).values())
             size = sum(path.stat().st_size for path in written)
-            for status, used, most, words in (
-                (ProgramStatus.TIMED_OUT, perf_counter() - began, limits.seconds, "ran longer than {:g} s"),
-                (
-                    ProgramStatus.OUT_OF_MEMORY,
-                    memory / MB,
-                    limits.memory / MB,
-                    "took more than {:g} MB of memory",
-                ),
-                (ProgramStatus.TOO_MUCH_OUTPUT, size / MB, LARGEST_OUTPUT / MB, "wrote more than {:g} MB"),
-            ):
-                if used > most:
+            used = perf_counter() - began, memory / MB, size / MB
+            for value, most, (status, words) in zip(used, limits, LIMITS.items(), strict=True):
+                if value > most:
                     raise ProgramError(status, words.format(most))
     finally:
         _end(process, others)

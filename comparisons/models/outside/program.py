@@ -7,7 +7,7 @@ import json
 import sys
 from abc import ABC, abstractmethod
 from contextlib import redirect_stdout
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
 from importlib.util import find_spec
@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.models.base import Model, Style
 from comparisons.models.options import ModelError, Options
-from comparisons.models.outside.child import Limits, ProgramError, ProgramStatus, found, run
+from comparisons.models.outside.child import ProgramError, ProgramStatus, found, run
 from comparisons.scene.keys import PROGRAMS
 
 if TYPE_CHECKING:
@@ -26,33 +26,21 @@ if TYPE_CHECKING:
     from comparisons.response import Response
     from comparisons.scene import Scene
 
-COLOUR = "#AA3377"
-"""Default colour of a program's lines."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class Source(ABC):
-    """What reads the text of a resolved scene and writes the text of a response.
-
-    Parameters
-    ----------
-    name : str
-        Name of the model.
-    label : str
-        Name in figures and texts; the name of the model if empty.
-    elements : tuple of int
-        Numbers of elements along a beam that comparisons of cost run; empty if the program chooses its resolution itself.
-    colour : str
-        Colour of its lines, in hexadecimal digits.
-    continuum : bool
-        Whether it computes a two-dimensional body.
-    """
+    """What reads the text of a resolved scene and writes the text of a response."""
 
     name: str
+    """Name of the model."""
     label: str = ""
+    """Name in figures and texts; the name of the model if empty."""
     elements: tuple[int, ...] = ()
-    colour: str = COLOUR
+    """Numbers of elements along a beam that comparisons of cost run; empty if the program chooses its resolution itself."""
+    colour: str = "#AA3377"
+    """Colour of its lines, in hexadecimal digits."""
     continuum: bool = False
+    """Whether it computes a two-dimensional body."""
 
     @abstractmethod
     def digest(self) -> str:
@@ -73,28 +61,24 @@ class Source(ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class Command(Source):
-    """A command in a child process: the resolved scene goes to its standard input, a response comes from its standard output.
-
-    Parameters
-    ----------
-    command : tuple of str
-        The program and its arguments. A program with a separator in its path is relative to `folder`.
-    folder : Path
-        Working directory of the program.
-    limits : Limits
-        Limits on time and memory.
-    requires, needs : str
-        Python module or program without which `command` cannot run, by default its program, and how to install it.
-    module : str
-        Python module whose function ``refusal(scene)`` says what the command refuses; without one, the command itself is asked.
-    """
+    """A command in a child process: the resolved scene goes to its standard input, a response comes from its standard output."""
 
     command: tuple[str, ...]
+    """The program and its arguments. A program with a separator in its path is relative to `folder`."""
     folder: Path
-    limits: Limits = field(default_factory=Limits)
+    """Working directory of the program."""
+    seconds: float = 600.0
+    """Limit on the wall time [s]."""
+    memory: float = 4000.0
+    """Limit on the resident memory of the program and all its child processes [MB], on Linux."""
+    environment: tuple[str, ...] = ()
+    """Variables of the environment that it gets beside the usual ones."""
     requires: str = ""
+    """Python module or program without which `command` cannot run, by default its program."""
     needs: str = ""
+    """How to install what it requires."""
     module: str = ""
+    """Python module whose function ``refusal(scene)`` says what the command refuses; without one, the command itself is asked."""
 
     def digest(self) -> str:
         """Return a digest of the command and of the files among its words."""
@@ -121,7 +105,7 @@ class Command(Source):
 
     def ask(self, text: str) -> tuple[bytes, float]:
         """Run the command."""
-        return run(self.command, self.folder, text, self.limits)
+        return run(self.command, self.folder, text, self.seconds, self.memory, self.environment)
 
 
 @dataclass(frozen=True, kw_only=True)

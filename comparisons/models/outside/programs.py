@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 from comparisons.extras import install
 from comparisons.models.base import Model
 from comparisons.models.options import ModelError
-from comparisons.models.outside.child import Limits
 from comparisons.models.outside.program import Command, Program
 from comparisons.scene import rules
 from comparisons.scene.rules import RecordError, Rule, RuleError
@@ -104,7 +103,7 @@ class ProgramFileError(InputError):
 def read_program(path: Path) -> Program:
     """Return the program that the TOML file `path` states in its table ``[program]`` by the keys of `RULES`; it runs in the file's folder.
 
-    ``docs/how-to/program.md`` has the keys. The memory is in MB. A `ProgramFileError` has all mistakes in the order of the file.
+    ``docs/how-to/program.md`` has the keys. A `ProgramFileError` has all mistakes in the order of the file.
     """
     source = str(path)
     text = read_text(source, "no such file", ProgramFileError)
@@ -113,10 +112,7 @@ def read_program(path: Path) -> Program:
     mistakes += check_keys(tables, ("program",), required=("program",))
     if mistakes:
         raise ProgramFileError(source, RecordError(in_order(mistakes, text, tables)))
-    limits = {name: given.pop(name) for name in ("seconds", "memory", "environment") if name in given}
-    if "memory" in limits:
-        limits["memory"] *= 1e6
-    return Program(Command(folder=path.resolve().parent, limits=Limits(**limits), **given))
+    return Program(Command(folder=path.resolve().parent, **given))
 
 
 def _each(rule: Rule) -> Rule:
