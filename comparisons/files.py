@@ -3,6 +3,7 @@
 The hidden list `WRITTEN` of a folder has the digests of the files that this program wrote there.
 """
 
+import errno
 import hashlib
 import os
 import signal
@@ -10,6 +11,7 @@ import stat
 import tempfile
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from pathlib import Path
 
 try:
@@ -161,22 +163,36 @@ def write_text(path: Path, text: str) -> None:
 def alone_in(folder: Path) -> Iterator[None]:
     """Hold the lock of `folder`: other runs that write a set of files there wait, so that two sets never mix.
 
-    The lock is on the folder itself, so it adds no file, and it ends with its process. Systems without `fcntl` can lock files only.
-    On such a system the lock is a file in the folder, which is removed when the lock ends.
+    The lock is on the folder itself, so it adds no file, and it ends with its process. Windows can lock files only.
+    There the lock is a file in the folder, which is removed when the lock ends.
     """
-    if not LOCKS_FOLDERS:
-        from filelock import FileLock
-
-        with FileLock(folder / ".crossval.lock"):
-            yield
-        return
-    place = os.open(folder, os.O_RDONLY)
+    file = folder / ".crossval.lock"
+    place = os.open(folder, os.O_RDONLY) if LOCKS_FOLDERS else os.open(file, os.O_RDWR | os.O_CREAT)
     try:
         with suppress(OSError):  # a file system without locks
-            flock(place, LOCK_EX)
+            if LOCKS_FOLDERS:
+                flock(place, LOCK_EX)
+            else:
+                _lock_file(place)
         yield
     finally:
         os.close(place)
+        if not LOCKS_FOLDERS:
+            with suppress(OSError):  # another run waits for it
+                file.unlink()
+
+
+def _lock_file(place: int) -> None:
+    """Lock a file of Windows, which waits for ten seconds at most."""
+    windows = import_module("msvcrt")
+    while True:
+        try:
+            windows.locking(place, windows.LK_LOCK, 1)
+        except OSError as error:
+            if error.errno == errno.EDEADLOCK:
+                continue
+            raise
+        return
 
 
 @contextmanager

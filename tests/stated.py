@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_HALF_EVEN, Decimal
 from pathlib import Path
 
-from filelock import FileLock
+from comparisons.files import alone_in
 
 ROOT = Path(__file__).parents[1]
 MARK = re.compile(r"<!--([a-z][\w.-]*)(?: x\d+)?-->")
@@ -123,7 +123,7 @@ def check(
         measured = tuple(max(abs(value), 0.0 if part else EPS) for value in measured)
     least = 0.0 if part else 1.0 / LOOSE if bound else None
     up = least is not None
-    with FileLock(ROOT / "out" / "pages.lock"):
+    with alone_in(ROOT / "docs"):
         for path in pages():
             text = path.read_text(encoding="utf-8")
             for mark in reversed([mark for mark in MARK.finditer(text) if mark[1] == name]):

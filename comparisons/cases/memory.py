@@ -16,7 +16,8 @@ def with_peak_memory(action: Callable[[], T]) -> tuple[T, int]:
     """Return what `action` returns, and by how many bytes the resident memory rose above its start at most.
 
     Freed memory is given back to the system before the start, where the C library can do that. On Linux the process's own
-    peak is reset and read again; elsewhere it cannot be reset, and a rise below an earlier peak is counted as zero.
+    peak is reset and read again; elsewhere it cannot be reset, and a rise below an earlier peak is counted as zero, as every rise on
+    Windows.
     """
     gc.collect()
     if sys.platform == "linux" and hasattr(ctypes.CDLL(None), "malloc_trim"):
@@ -40,13 +41,10 @@ def _kibibytes(field: str) -> int:
 
 
 def _largest_so_far() -> int:
-    """Largest resident memory of the process so far, in bytes; what it is now where the system keeps no peak."""
+    """Largest resident memory of the process so far, in bytes; zero where Python does not tell it."""
     try:
         import resource
     except ImportError:  # Windows
-        import psutil
-
-        memory = psutil.Process().memory_info()
-        return int(getattr(memory, "peak_wset", memory.rss))
+        return 0
     largest = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return largest if sys.platform == "darwin" else 1024 * largest

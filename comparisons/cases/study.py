@@ -11,7 +11,7 @@ from typing import Any
 from comparisons.cases import settings
 from comparisons.cases.case import Case
 from comparisons.cases.ranges import values
-from comparisons.models import find
+from comparisons.models import TSM, find
 from comparisons.models.options import BRANCHES, ModelError, Options
 from comparisons.scene import Scene, built_in_scenes, load_scene, rules
 from comparisons.scene.read import LISTS
@@ -154,9 +154,11 @@ def _model(value: object, folder: Path) -> str:
 
 
 def _element(value: object) -> str:
-    from tsm import ELEMENTS
-
-    return str(rules.choice(*ELEMENTS)(value))
+    name = rules.text(value)
+    try:
+        return TSM.element(Options(element=name)).name
+    except ModelError as error:
+        raise RuleError(str(error).partition(": ")[2]) from None
 
 
 OPTION_RULES: dict[str, Rule] = {

@@ -83,7 +83,7 @@ def gate(
     """
     other = find(ROD.name if against is None else against)
     exact = other.reference or Options()
-    if find(model).name == other.name and options in (exact, Options(element=exact.element)):
+    if find(model).name == other.name and other.setting(scene, options) == other.setting(scene, exact):
         raise ModelError(f"{model}: is measured against itself; --against names another model")
     if "friction" in bounds and not clamped(scene):
         raise ModelError(f"friction: {UNDEFINED}")

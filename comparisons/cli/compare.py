@@ -151,7 +151,8 @@ def _held(scene: Scene, given: argparse.Namespace) -> int:
     found = gate(scene, given.model or TSM.name, chosen(given), dict(given.max_error), given.against)
     if file is not None:
         write_text(file, found.junit())
-    print(f"{scene.name}: {found.response.model} against {found.reference.model}")
+    what = f"{found.response.model} {found.response.setting}".rstrip()
+    print(f"{scene.name}: {what} against {found.reference.model}")
     for item in found.bounds:
         sign = "<=" if item.holds else "> "
         print(

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from comparisons.extras import EXTRAS
 
-NEEDED = ("numpy", "scipy", "scikit-fem", "meshio", "matplotlib", "filelock", "psutil")
+NEEDED = ("numpy", "scipy", "scikit-fem", "meshio", "matplotlib")
 PROGRAMS = {"ccx": "Debian's calculix-ccx: --model calculix, crossval run peers"}
 
 

@@ -155,9 +155,9 @@ def _solved(scene: "Scene", given: "argparse.Namespace") -> "tuple[Response, str
 
     name = given.model or TSM.name
     model = find(name)
-    options, rule = model.suited(chosen(given))
+    options = chosen(given)
     with watching(model.name, quiet=given.quiet) as watch:
-        return solve(scene, name, options, watch), rule
+        return solve(scene, name, options, watch), model.rule(scene, options)
 
 
 def _write(given: "argparse.Namespace", response: "Response", scene: "Scene", more: dict[str, Any]) -> None:

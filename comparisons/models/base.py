@@ -19,19 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Style:
-    """How figures draw the answers of a model.
-
-    Parameters
-    ----------
-    colour : str
-        Colour in hexadecimal digits.
-    marker : str
-        Marker of matplotlib in diagrams of costs, and of nodes.
-    width : float
-        Width of a deflected axis on a page [px].
-    unbroken : bool
-        Whether a line on a page has no dashes.
-    """
+    """How figures draw the answers of a model: colour in hexadecimal digits, marker of matplotlib, width of a line on a page [px], no dashes."""
 
     colour: str
     marker: str = "d"
@@ -39,45 +27,27 @@ class Style:
     unbroken: bool = False
 
 
-def counted(elements: int | None) -> str:
-    """Return a number of elements for a label, as ``, 20 elements``; empty if the scene gives the number."""
-    return "" if elements is None else f", {elements} element{'s' if elements > 1 else ''}"
-
-
 class Model(ABC):
-    """A way to solve scenes.
-
-    Attributes
-    ----------
-    name : str
-        Key of `comparisons.models.MODELS`, used on the command line, in files and in tables.
-    label : str
-        Name in figures and texts.
-    options : tuple of str
-        Fields of `Options` that belong to the model.
-    libraries : tuple of str
-        Modules that a solution imports. They are loaded before a solution is timed.
-    meshed : bool
-        Whether a finer resolution makes it more accurate. A model without a mesh can be a reference.
-    continuum : bool
-        Whether the model is a two-dimensional body, which converges to another limit than the rod.
-    refinable : bool
-        Whether `crossval solve --accuracy` can choose its resolution.
-    rod : bool
-        Whether the model has the stretch and the shear of Reissner's rod.
-    keys : frozenset of str
-        The keys of `comparisons.scene.SPECIAL` that the model states; a scene with another one is refused.
-    """
+    """A way to solve scenes."""
 
     name: str
+    """Key of `comparisons.models.MODELS`, used on the command line, in files and in tables."""
     label: str
+    """Name in figures and texts."""
     options: tuple[str, ...] = ()
+    """Fields of `Options` that belong to the model."""
     libraries: ClassVar[tuple[str, ...]] = ()
+    """Modules that a solution imports. They are loaded before a solution is timed."""
     meshed: ClassVar[bool] = True
-    refinable: ClassVar[bool] = False
+    """Whether a finer resolution makes it more accurate. A model without a mesh can be a reference."""
     continuum: bool = False
+    """Whether the model is a two-dimensional body, which converges to another limit than the rod."""
+    refinable: ClassVar[bool] = False
+    """Whether `crossval solve --accuracy` can choose its resolution."""
     rod: ClassVar[bool] = True
+    """Whether the model has the stretch and the shear of Reissner's rod."""
     keys: ClassVar[frozenset[str]] = frozenset()
+    """The keys of `comparisons.scene.SPECIAL` that the model states; a scene with another one is refused."""
 
     @property
     def reference(self) -> Options | None:
@@ -126,13 +96,14 @@ class Model(ABC):
         """Text by which stored studies know the model; it changes with whatever outside this package changes its answers."""
         return self.name
 
-    def suited(self, options: Options) -> tuple[Options, str]:
-        """Return the options of one answer where some are left to the model, and the rule by which it chose; nothing is chosen here."""
-        return options, ""
+    def rule(self, scene: Scene, options: Options) -> str:  # noqa: ARG002 - one model has one
+        """Return what the model chooses where the options leave it open, and why; empty if nothing."""
+        return ""
 
-    def run_label(self, options: Options) -> str:  # noqa: ARG002 - others have settings
+    def run_label(self, options: Options) -> str:
         """Return the label of one run, as ``TSM mixed, 20 elements``."""
-        return self.label
+        count = options.elements
+        return self.label + (f", {count} element{'s' if count > 1 else ''}" if count else "")
 
     def setting(self, scene: Scene, options: Options) -> str:  # noqa: ARG002 - others have settings
         """Return the setting of one run in short, as ``mixed 20``; empty if the model has no settings."""

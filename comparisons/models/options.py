@@ -14,24 +14,15 @@ class ModelError(ValueError):
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """Options of one run. None keeps the value of the scene, or the default of the model.
-
-    Parameters
-    ----------
-    elements : int, optional
-        TSM elements of every beam.
-    element : str, optional
-        Type of the TSM elements.
-    integration_tolerance : float, optional
-        Bound on the error of the integration inside exact TSM elements.
-    mesh : (int, int), optional
-        Elements of the solid along and across.
-    branch : {"stop", "stable", "primary"}, optional
-        What happens at a critical point: the path ends there by name, turns to the stable branch of least energy, or goes on unstable.
-    """
+    """Options of one run. None keeps the value of the scene, or the default of the model."""
 
     elements: int | None = None
+    """TSM elements of every beam."""
     element: str | None = None
+    """Type of the TSM elements; without one, `mixed` where the options or the scene give a number of elements, else `exact`."""
     integration_tolerance: float | None = None
+    """Bound on the error of the integration inside exact TSM elements."""
     mesh: tuple[int, int] | None = None
+    """Elements of the solid along and across."""
     branch: Branch | None = None
+    """At a critical point the path ends by name, turns to the stable branch of least energy, or goes on unstable."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from importlib import import_module
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from comparisons.extras import EXTRAS, install
 from comparisons.models.options import ModelError, Options
@@ -64,16 +64,12 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
         raise ModelError(unknown)
     try:
         response = _as_registered(chosen.solve(scene, given, watch), chosen)
+        more: dict[str, Any] = {"setting": chosen.setting(scene, given), "definition": scene}
+        more["reported_success"] = response.completed or response.reported_success
         if not response.continuum:
             forces = material_forces(response, scene, strains=chosen.rod)
             response = replace(response, material_force=forces)
-        reported = response.completed or response.reported_success
-        return replace(
-            verified(response, scene),
-            reported_success=reported,
-            setting=chosen.setting(scene, given),
-            definition=scene,
-        )
+        return replace(verified(response, scene), **more)
     except ValueError as error:
         raise ModelError(f"{chosen.name}: {error}") from error
     except ImportError as error:
@@ -112,13 +108,13 @@ def certified(
 ) -> Response:
     """Return `response` with its certificate. The verdict becomes the status of a refused answer, which is not completed.
 
+    An answer that stopped keeps its status, and its certificate says no more than how far off it is there. One that is made of the
+    referee's own equilibria is not judged.
+
     Parameters
     ----------
-    response : Response
-        The answer of a model. One that stopped keeps its status, and its certificate says no more than how far off it is there. One
-        that is made of the referee's own equilibria is not judged.
-    scene : Scene
-        The scene that was solved.
+    response, scene : Response, Scene
+        The answer of a model, and the scene that was solved.
     which : {"last", "all", "none"}
         Load parameters to certify. With ``last`` they are the last one, the neighbours of events, and the one with the largest
         contact force; a program of others, which does not state its events, is judged at all.
@@ -138,19 +134,18 @@ def certified(
     allowed += 0.0 if allowance is None else allowance - ALLOWED
     if model is not None and model.by_referee(scene):
         reason = f"{model.setting(scene, Options())}, found by the referee itself"
-        found = Certificate(
-            verdict=Verdict.NOT_JUDGED, reason=reason, allowance=allowed, judged=(), path=(), seconds=0.0
-        )
+        unjudged: dict[str, Any] = {"verdict": Verdict.NOT_JUDGED, "judged": (), "path": (), "seconds": 0.0}
+        found = Certificate(reason=reason, allowance=allowed, **unjudged)
     else:
         found = certify(response, scene, at=every, allowance=allowed)
     if not response.completed and found.certified:
-        refused = response.status == CHECK_FAILED
-        stop = f"{response.status}, {found.reason.partition(',')[0]} where it was judged"
-        found = replace(
-            found,
-            verdict=Verdict.INADMISSIBLE if refused else Verdict.NOT_JUDGED,
-            reason=response.message if refused else f"the answer stopped: {stop}",
-        )
+        if response.status == CHECK_FAILED:
+            found = replace(found, verdict=Verdict.INADMISSIBLE, reason=response.message)
+        else:
+            reason = (
+                f"the answer stopped: {response.status}, {found.reason.partition(',')[0]} where it was judged"
+            )
+            found = replace(found, verdict=Verdict.NOT_JUDGED, reason=reason)
     response = replace(response, certificate=found)
     if not response.completed or found.verdict in {Verdict.CERTIFIED, Verdict.NOT_JUDGED}:
         return response

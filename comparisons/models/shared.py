@@ -1,19 +1,22 @@
 """What several models state alike: ends that meet, weights, and the histories in the results of both solvers."""
 
+from __future__ import annotations
+
 from collections import defaultdict
-from collections.abc import Callable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
 
-from comparisons.models.base import Model
-from comparisons.response import Array, ContactHistory, CriticalPoint, Response, SupportHistory
-from comparisons.scene import Scene
+    from comparisons.models.base import Model
+    from comparisons.models.options import Options
+    from comparisons.response import Array, ContactHistory, Response
+    from comparisons.scene import BeamSpec, Scene
 
 ENDS = ("start", "end")
 POINTS = 401
 """Points of a deflected axis in pictures. The exact solutions do not depend on this number."""
-Axis = tuple[Array, Array]
+Axis = tuple[Any, Any]
 """Arc lengths (m,) and positions (m, 2) of a deformed axis."""
 Force = tuple[float, float]
 
@@ -27,24 +30,52 @@ def joints(scene: Scene) -> list[list[str]]:
     return [ends for ends in meeting.values() if len(ends) > 1]
 
 
-def weights(scene: Scene) -> Iterator[tuple[str, int, tuple[Force, ...]]]:
-    """Yield the weights as name of the beam, stage, and coefficients of the force per length along the beam."""
+def line_loads(scene: Scene) -> Iterator[tuple[BeamSpec, int, tuple[Force, ...], Force]]:
+    """Yield the forces per length, then the weights: beam, stage, coefficients along the beam, and the part of its length."""
+    for stage, load in scene.numbered_loads():
+        if load.force_per_length is not None:
+            yield scene.beam(load.beam), stage, (load.force_per_length,), load.span
     for beam in scene.beams:
-        if beam.density is None:
-            continue
         for stage, (gx, gy) in enumerate(scene.stage_gravities):
-            if gx or gy:
-                yield beam.name, stage, tuple((gx * mass, gy * mass) for mass in beam.mass_coefficients())
+            if beam.density is not None and (gx or gy):
+                yield (
+                    beam,
+                    stage,
+                    tuple((gx * mass, gy * mass) for mass in beam.mass_coefficients()),
+                    (0.0, 1.0),
+                )
+
+
+def kept(record: object, names: str) -> dict[str, Any]:
+    """Return what a record has under some names, which are the same where it goes."""
+    return {name: getattr(record, name) for name in names.split()}
 
 
 def rows(found: Any, width: int) -> Array:
     """Return a list of vectors as an array (n, width), also where the list is empty."""
+    import numpy as np
+
     return np.array(found, dtype=np.float64).reshape(-1, width)
+
+
+def result_of(
+    solver: Any, problem: Any, scene: Scene, options: Options, report: Callable[[Any], None], **settings: Any
+) -> Any:
+    """Return the result of one of the solvers, a package, also where it stopped; `report` receives every accepted step."""
+    import numpy as np
+
+    given = solver.Settings(branch=options.branch or "stop", **settings)
+    try:
+        return solver.solve(problem, np.array(scene.times), given, watch=report)
+    except solver.SolveError as error:
+        return error.result
 
 
 def history(item: Any, **more: Any) -> ContactHistory:
     """Return the contact history of a solver's result, with what else the model states."""
-    return ContactHistory(force=item.force, arc_position=item.arc_position, gap=item.gap, **more)
+    from comparisons.response import ContactHistory
+
+    return ContactHistory(**kept(item, "force arc_position gap"), **more)
 
 
 def of_result(
@@ -56,32 +87,28 @@ def of_result(
     **more: Any,
 ) -> Response:
     """Return the response of one of the solvers; `line(beam, k)` has the positions at both ends of the axis, `more` what is its own."""
+    from comparisons.response import CriticalPoint, Response, SupportHistory
+
     tips = {beam.name: 0 if scene.tip(beam.name) == "start" else -1 for beam in scene.beams}
     steps = range(len(result.load_parameter))
     supports = {item.node: result.supports[item.node] for item in scene.all_supports}
     held, springs = (
-        {end: SupportHistory(force=one.force, moment=one.moment) for end, one in items.items()}
+        {end: SupportHistory(**kept(one, "force moment")) for end, one in items.items()}
         for items in (supports, result.springs)
     )
     return Response(
+        **kept(result, "message load_parameter newton_iterations cutbacks unknowns wall_seconds index"),
         model=model.name,
         continuum=model.continuum,
         scene=scene.name,
         status=result.status.name,
-        message=result.message,
         completed=result.status.name == "COMPLETED",
-        load_parameter=result.load_parameter,
         supports=held,
         springs=springs,
         tips={beam: rows([line(beam, k)[end] for k in steps], 2) for beam, end in tips.items()},
-        newton_iterations=result.newton_iterations,
-        cutbacks=result.cutbacks,
-        unknowns=result.unknowns,
-        wall_seconds=result.wall_seconds,
         axis_line=axis_line,
-        index=result.index,
         critical=tuple(
-            CriticalPoint(kind=str(point.kind), load_parameter=point.load_parameter, mode=point.mode)
+            CriticalPoint(kind=str(point.kind), **kept(point, "load_parameter mode"))
             for point in result.critical
         ),
         **more,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from comparisons.models.base import Model, Style
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Reached, Watch
+from comparisons.models.shared import history, joints, kept, line_loads, of_result, result_of
 from comparisons.scene.conditions import COMPONENTS
 from comparisons.scene.keys import STRIPS, unstated
 
@@ -24,8 +25,11 @@ REFINED = ((25, 1), (50, 2), (100, 4), (200, 8))
 COARSE = ((8, 1), (12, 1), (16, 1), (25, 2))
 LEAST_RATIO = -0.999
 """Least Poisson's ratio. There the shear modulus is 500 times Young's modulus; a solid that is stiffer in shear locks."""
-CONTACT = ("node", "side", "surface", "penalty", "penetration", "keep", "friction")
-"""What the solid takes of a contact as it is."""
+CONTACT, STRIP = (
+    "node side surface penalty penetration keep friction",
+    "name start end turn youngs_modulus material",
+)
+"""What the solid takes of a contact and of a beam as it is."""
 SLENDER = 0.125
 """Largest height over length of the rectangle that replaces a section given by area and second moment."""
 
@@ -72,9 +76,8 @@ class Solid(Model):
         )
         return f"{_order(scene)} {'+'.join(names)}{given}"
 
-    def family(self, scene: Scene, options: Options) -> str:
+    def family(self, scene: Scene, options: Options) -> str:  # noqa: ARG002 - the scene has the order
         """Return the order of the elements, as ``solid Q2``."""
-        del options
         return f"{self.label} {_order(scene)}"
 
     def resolutions(self, *, quick: bool) -> Iterator[Options]:
@@ -98,38 +101,28 @@ def _solved(scene: Scene, options: Options, watch: Watch) -> Response:
 
     import fem_reference
     from comparisons.models.sections import j_integrals, section_forces
-    from comparisons.models.shared import history, of_result
     from comparisons.response import Deformation, FrictionHistory, Grid
     from comparisons.response.deferred import Deferred
-
-    problem = to_solid(scene, mesh=options.mesh)
-    settings = fem_reference.Settings(branch=options.branch or "stop")
 
     def report(step: Any) -> None:
         touching = (f"{touch.pair.name} at {float(touch.projection.zeta):.4g}" for touch in step.state.closed)
         watch(Reached(step.load_parameter, step.iterations, tuple(touching)))
 
-    try:
-        result = fem_reference.solve(problem, np.array(scene.times), settings, watch=report)
-    except fem_reference.SolveError as error:
-        result = error.result
+    problem = to_solid(scene, mesh=options.mesh)
+    result = result_of(fem_reference, problem, scene, options, report)
     beam = np.repeat(np.arange(len(scene.beams)), [part.stop - part.start for part in result.model.parts])
 
     def axis_line(beam: str, k: int) -> tuple[Array, Array]:
         return fem_reference.axis_stations(result, beam), fem_reference.axis_line(result, beam, k)
 
     def grid(k: int) -> Grid:
-        displacement = result.displacement[k]
-        xx, yy, xy = fem_reference.nodal_stress(result, k).T
-        data = {"displacement": displacement, "deformed": result.mesh_points + displacement, "beam": beam}
-        data |= {"stress_xx": xx, "stress_yy": yy, "stress_xy": xy}
-        data["von_mises"] = np.sqrt(xx**2 - xx * yy + yy**2 + 3.0 * xy**2)
-        data["axial_stress"] = fem_reference.fibre_stress(result, k)
+        displacement, (xx, yy, xy) = result.displacement[k], fem_reference.nodal_stress(result, k).T
+        data = {
+            "displacement": displacement, "deformed": result.mesh_points + displacement, "beam": beam,
+            "stress_xx": xx, "stress_yy": yy, "stress_xy": xy, "von_mises": np.sqrt(xx**2 - xx * yy + yy**2 + 3.0 * xy**2),
+            "axial_stress": fem_reference.fibre_stress(result, k),
+        }  # fmt: skip
         return Grid(points=result.mesh_points, cells=result.mesh_cells, point_data=data)
-
-    def friction(item: Any) -> FrictionHistory:
-        forces = {"tangential": item.tangential_force, "normal": item.normal_force}
-        return FrictionHistory(slip=item.direction, dissipated=item.dissipated, **forces)
 
     def half_turns(beam: str) -> Array:
         """Largest angle between neighbouring chords of the axis; a quadratic element has two chords."""
@@ -137,16 +130,15 @@ def _solved(scene: Scene, options: Options, watch: Watch) -> Response:
         chords = [np.diff(line, axis=0) @ (1, 1j) for line in lines]
         return np.array([np.abs(np.angle(chord[1:] / chord[:-1])).max() for chord in chords])
 
-    contacts = {
-        spec.name: history(
-            item,
-            compliance=1.0 / problem.penalty(spec) if spec.penetration is None else 0.0,
-            slip_off=item.slip_off,
-            vector=item.vector,
-            friction=friction(item) if spec.friction else None,
-        )
-        for spec, item in ((spec, result.contacts[spec.name]) for spec in problem.contacts)
-    }
+    contacts = {}
+    for spec in problem.contacts:
+        item, friction = result.contacts[spec.name], None
+        if spec.friction:
+            forces = {"tangential": item.tangential_force, "normal": item.normal_force}
+            friction = FrictionHistory(slip=item.direction, dissipated=item.dissipated, **forces)
+        soft = 1.0 / problem.penalty(spec) if spec.penetration is None else 0.0
+        more = {"slip_off": item.slip_off, "vector": item.vector, "friction": friction}
+        contacts[spec.name] = history(item, compliance=soft, **more)
     turn = 2 * np.max([half_turns(beam.name) for beam in scene.beams], axis=0)
     return of_result(
         SOLID,
@@ -170,17 +162,12 @@ def _events(result: Any) -> tuple[ContactEvent, ...]:
     """Return the events of a scene with friction, whose load parameters are located; no element owns a contact."""
     from comparisons.response import ContactEvent
 
-    found = [
-        ContactEvent(
-            pair=pair,
-            element=-1,
-            released=0.0,
-            stage=max(1, ceil(event.load_parameter)),
-            **{name: getattr(event, name) for name in ("kind", "load_parameter", "arc_position", "force")},
-        )
-        for pair, contact in result.contacts.items()
-        for event in contact.events
-    ]
+    found = []
+    for pair, contact in result.contacts.items():
+        for event in contact.events:
+            own = kept(event, "kind load_parameter arc_position force")
+            stage = max(1, ceil(event.load_parameter))
+            found.append(ContactEvent(pair=pair, element=-1, released=0.0, stage=stage, **own))
     return tuple(sorted(found, key=lambda event: event.load_parameter))
 
 
@@ -190,14 +177,10 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> SolidProbl
     Parameters
     ----------
     scene : Scene
-        Any scene whose supports, with the pins that touch at the start, hold every structure.
+        Any scene whose supports, with the pins that touch at the start, hold every structure; a `ValueError` says in one line why the
+        solid cannot state another.
     mesh : (int, int), optional
         Elements along and across of every beam, in place of the scene's.
-
-    Raises
-    ------
-    ValueError
-        If the solid cannot state the scene, in one line.
     """
     import fem_reference as fem
 
@@ -220,10 +203,7 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> SolidProbl
             for pin in scene.pins
             for path, *onward in [pin.stage_points]
         ),
-        contacts=tuple(
-            fem.Contact(strip=item.beam, **{name: getattr(item, name) for name in CONTACT})
-            for item in scene.contacts
-        ),
+        contacts=tuple(fem.Contact(strip=item.beam, **kept(item, CONTACT)) for item in scene.contacts),
     )
 
 
@@ -231,7 +211,6 @@ class _Joints:
     """The ends that meet, joint by joint, and the hinges among them with the stiffness of their springs."""
 
     def __init__(self, scene: Scene) -> None:
-        from comparisons.models.shared import joints
 
         self.meeting = joints(scene)
         self.hinges = {hinge.node: hinge.stiffness for hinge in scene.hinges}
@@ -323,17 +302,14 @@ def _end_loads(scene: Scene, joints: _Joints) -> Iterator[EndLoad]:
 
 
 def _inner_loads(scene: Scene) -> Iterator[PointLoad | LineLoad]:
-    """Yield the forces and moments inside the beams and the forces per length, then the weights."""
-    from comparisons.models.shared import weights
+    """Yield the forces and moments inside the beams, then the forces per length and the weights."""
     from fem_reference import LineLoad, PointLoad
 
     for stage, load in scene.numbered_loads():
-        if load.force_per_length is not None:
-            yield LineLoad(strip=load.beam, force=(load.force_per_length,), part=load.span, stage=stage)
-        elif load.at is not None:
-            yield PointLoad(strip=load.beam, at=load.at, force=load.force, moment=load.moment, stage=stage)
-    for beam, stage, weight in weights(scene):
-        yield LineLoad(strip=beam, force=weight, stage=stage)
+        if load.at is not None:
+            yield PointLoad(strip=load.beam, stage=stage, **kept(load, "at force moment"))
+    for beam, stage, force, part in line_loads(scene):
+        yield LineLoad(strip=beam.name, force=force, part=part, stage=stage)
 
 
 def rectangle(beam: BeamSpec) -> tuple[float, float]:
@@ -376,22 +352,17 @@ def _strip(beam: BeamSpec, clamps: set[str], mesh: tuple[int, int] | None) -> St
     if (mesh or beam.mesh)[0] < 2:
         raise ModelError("the solid model needs at least 2 elements along the beam")
     return Strip(
-        name=beam.name,
-        start=beam.start,
-        end=beam.end,
-        turn=beam.turn,
+        **kept(beam, STRIP),
         height=height,
         width=width,
         end_height=beam.height[1] if isinstance(beam.height, tuple) else None,
         end_width=beam.width[1] if isinstance(beam.width, tuple) else None,
-        youngs_modulus=beam.youngs_modulus,
         poissons_ratio=nu,
         clamped=tuple(end for end in ("start", "end") if f"{beam.name}.{end}" in clamps),
         clamp=beam.solid_clamp,
         element=beam.solid_element,
         mesh_file=beam.solid_mesh_file if mesh is None else None,
         mesh=mesh or beam.mesh,
-        material=beam.material,
     )
 
 

@@ -105,7 +105,7 @@ def element_lengths(scene: Scene, options: Options) -> tuple[float, float]:
     """Return the longest and the shortest beam element of the first beam, over the length."""
     beam = scene.beams[0]
     if options.elements or not beam.nodes:
-        count = options.elements or beam.elements
+        count = options.elements or beam.divisions
         return 1 / count, 1 / count
     lengths = np.diff([0.0, *beam.nodes, 1.0])
     return float(lengths.max()), float(lengths.min())

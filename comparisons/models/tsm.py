@@ -8,9 +8,10 @@ from itertools import accumulate
 from math import hypot, nan, sqrt
 from typing import TYPE_CHECKING, Any
 
-from comparisons.models.base import Model, Style, counted
+from comparisons.models.base import Model, Style
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Reached, Watch
+from comparisons.models.shared import history, kept, line_loads, of_result, result_of, rows
 from comparisons.scene.keys import BEAMS, unstated
 
 if TYPE_CHECKING:
@@ -20,13 +21,16 @@ if TYPE_CHECKING:
     from comparisons.response import Grid, Response
     from comparisons.scene import BeamSpec, ContactSpec, Scene
     from comparisons.scene.stages import PrescribedMotion
-    from tsm import Beam, ContactPair, LineLoad, Load, Structure, Support
+    from tsm import Beam, ContactPair, Load, Structure, Support
     from tsm.elements import ElementType
-    from tsm.structure import End
+
+
+EXACT, MIXED, PAPER = "exact", "mixed", "timoshenko"
+"""The elements of `tsm` that a comparison runs: without a mesh error, recommended, and the paper's."""
 
 
 class Tsm(Model):
-    """Beams by the tangent stiffness method, with any type of element that `tsm.ELEMENTS` has."""
+    """Beams by the tangent stiffness method, with any type of element that `tsm.ELEMENTS` or another package has."""
 
     name = "tsm"
     label = "TSM"
@@ -34,39 +38,36 @@ class Tsm(Model):
     libraries = ("tsm",)
     refinable = True
     keys = BEAMS
+    reference = Options(element=EXACT)
 
     def element(self, options: Options) -> ElementType:
-        """Return the type of the elements, `mixed` if none is chosen.
+        """Return the type of the elements, `mixed` if none is chosen; raise `ModelError` if there is no such type."""
+        from tsm.elements import ELEMENTS, ElementType
 
-        Raises
-        ------
-        ModelError
-            If there is no such type.
-        """
-        from tsm.elements import ELEMENTS, MIXED
-
-        name = options.element or MIXED.name
+        name = options.element or MIXED
         if name not in ELEMENTS:
-            raise ModelError(f"element = {name}: must be one of {', '.join(ELEMENTS)}")
+            from comparisons.models.outside.programs import loaded, offered
+
+            others = offered("crossval.elements")
+            if name not in others:
+                raise ModelError(f"element = {name}: must be one of {', '.join({**ELEMENTS, **others})}")
+            ELEMENTS[name] = loaded(others[name], ElementType)
         return ELEMENTS[name]
 
-    def suited(self, options: Options) -> tuple[Options, str]:
-        """Return the options with the element that suits: `exact`, unless a number of elements is asked for."""
-        from tsm.elements import EXACT, MIXED
-
+    def rule(self, scene: Scene, options: Options) -> str:
+        """Return the element that suits and why: `exact`, unless the options or the scene give a number of elements."""
         if options.element is not None:
-            return options, ""
-        if options.elements is not None:
-            return replace(options, element=MIXED.name), f"{MIXED.name}, since a number of elements is given"
-        rule = f"{EXACT.name}, since no number of elements is given: one a beam, without a mesh error"
-        return replace(options, element=EXACT.name), rule
+            return ""
+        if options.integration_tolerance is not None:
+            return f"{EXACT}, since a tolerance of the integration is given"
+        if options.elements or any(beam.elements or beam.nodes for beam in scene.beams):
+            return f"{MIXED}, since a number of elements is given"
+        return f"{EXACT}, since no number of elements is given: one a beam, without a mesh error"
 
-    @property
-    def reference(self) -> Options:
-        """Exact elements."""
-        from tsm.elements import EXACT
-
-        return Options(element=EXACT.name)
+    def kind(self, scene: Scene, options: Options) -> ElementType:
+        """Return the type of the elements, by `rule` where the options name none."""
+        suited = options.element or self.rule(scene, options).partition(",")[0]
+        return self.element(replace(options, element=suited))
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why beams cannot state `scene`; None if they can."""
@@ -74,7 +75,7 @@ class Tsm(Model):
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked."""
-        return _solved(scene, options, self.element(options), watch)
+        return _solved(scene, options, self.kind(scene, options), watch)
 
     def styles(self) -> dict[str, Style]:
         """Return one style for every type of element."""
@@ -87,70 +88,50 @@ class Tsm(Model):
 
     def run_label(self, options: Options) -> str:
         """Return the label of one run, as ``TSM mixed, 20 elements``."""
-        return f"{self.label} {self.element(options).name}{counted(options.elements)}"
+        return super().run_label(options).replace(self.label, f"{self.label} {self.element(options).name}", 1)
 
     def setting(self, scene: Scene, options: Options) -> str:
         """Return element type, numbers of elements and tolerance, as ``mixed 20``."""
-        kind = self.element(options)
-        counts = {options.elements or (beam.elements if kind.meshed else 1) for beam in scene.beams}
-        tolerance = (
-            "" if options.integration_tolerance is None else f" tolerance {options.integration_tolerance:g}"
-        )
-        return f"{kind.name} {'+'.join(map(str, sorted(counts)))}{tolerance}"
+        kind, tolerance = self.kind(scene, options), options.integration_tolerance
+        counts = {options.elements or (beam.divisions if kind.meshed else 1) for beam in scene.beams}
+        words = [kind.name, "+".join(map(str, sorted(counts)))]
+        return " ".join([*words, f"tolerance {tolerance:g}"] if tolerance is not None else words)
 
     def family(self, scene: Scene, options: Options) -> str:
         """Return the type of the elements, as ``TSM mixed``."""
-        del scene
-        return f"{self.label} {self.element(options).name}"
+        return f"{self.label} {self.kind(scene, options).name}"
 
     def compared(self) -> tuple[Options, ...]:
         """Return the paper's element, the recommended one, and the exact one."""
-        from tsm.elements import EXACT, MIXED, TIMOSHENKO
-
-        return (
-            *(Options(element=TIMOSHENKO.name, elements=count) for count in (10, 20, 50)),
-            *(Options(element=MIXED.name, elements=count) for count in (10, 20)),
-            Options(element=EXACT.name, elements=1),
-        )
+        counts = {PAPER: (10, 20, 50), MIXED: (10, 20), EXACT: (1,)}
+        return tuple(Options(element=name, elements=n) for name in counts for n in counts[name])
 
     def resolutions(self, *, quick: bool) -> Iterator[Options]:
         """Yield numbers of exact elements, of `mixed`, and of the paper's element."""
-        from tsm.elements import EXACT, MIXED, TIMOSHENKO
-
-        counts = {
-            EXACT: (1,) if quick else (1, 2, 4),
-            MIXED: (2, 3, 5, 10, 20, 40) if quick else (2, 3, 5, 10, 20, 40, 80, 160),
-            TIMOSHENKO: (10, 20, 50) if quick else (5, 10, 20, 50, 100),
-        }
-        for kind, meshes in counts.items():
-            yield from (Options(element=kind.name, elements=count) for count in meshes)
+        counts = {EXACT: (1, 2, 4), MIXED: (2, 3, 5, 10, 20, 40, 80, 160), PAPER: (5, 10, 20, 50, 100)}
+        if quick:
+            counts = {EXACT: (1,), MIXED: (2, 3, 5, 10, 20, 40), PAPER: (10, 20, 50)}
+        yield from (Options(element=name, elements=n) for name in counts for n in counts[name])
 
     def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:
         """Return the allowed error from the element's order, contact and shear."""
         from comparisons.models.theory import beam_errors
 
-        return beam_errors(self.element(options), scene, options, bent)
+        return beam_errors(self.kind(scene, options), scene, options, bent)
 
 
 def _solved(scene: Scene, options: Options, kind: ElementType, watch: Watch) -> Response:
     """Return the response of the tangent stiffness method; a tolerance is for elements that integrate."""
-    import numpy as np
-
     import tsm
-    from comparisons.models.shared import history, of_result, rows
     from comparisons.response import ContactEvent, Deformation, FrictionHistory, Sections
 
     structure = to_structure(scene, elements=options.elements, element=kind.name)
-    settings, tolerance = tsm.Settings(branch=options.branch or "stop"), options.integration_tolerance
-    if tolerance is not None:
-        if kind.meshed:
-            integrated = ", ".join(name for name, other in tsm.ELEMENTS.items() if not other.meshed)
-            raise ModelError(f"integration_tolerance = {tolerance:g}: belongs to element = {integrated}")
-        settings = replace(settings, integration_tolerance=tolerance)
-    try:
-        result = tsm.solve(structure, np.array(scene.times), settings, watch=_reporter(structure, watch))
-    except tsm.SolveError as error:
-        result = error.result
+    tolerance = options.integration_tolerance
+    if tolerance is not None and kind.meshed:
+        integrated = ", ".join(name for name, other in tsm.ELEMENTS.items() if not other.meshed)
+        raise ModelError(f"integration_tolerance = {tolerance:g}: belongs to element = {integrated}")
+    settings = {} if tolerance is None else {"integration_tolerance": tolerance}
+    result = result_of(tsm, structure, scene, options, _reporter(structure, watch), **settings)
 
     def sections(beam: str, k: int) -> Sections:
         stations = result.stations(beam, k)
@@ -169,10 +150,6 @@ def _solved(scene: Scene, options: Options, kind: ElementType, watch: Watch) -> 
         )
         for number, (pair, item) in enumerate(result.contacts.items())
     }
-    events = [
-        ContactEvent(**(vars(event) | {"kind": event.kind.value, "element": int(event.element)}))
-        for event in result.events
-    ]
     return of_result(
         TSM,
         scene,
@@ -181,7 +158,10 @@ def _solved(scene: Scene, options: Options, kind: ElementType, watch: Watch) -> 
         lambda beam, k: result.shape(beam, k)[:, :2],
         grid=lambda k: _grid(scene, result, k),
         contacts=contacts,
-        events=tuple(events),
+        events=tuple(
+            ContactEvent(**vars(event) | {"kind": event.kind.value, "element": int(event.element)})
+            for event in result.events
+        ),
         integration_error=result.integration_error,
         work=result.work if result.model.rubbed else None,
         deformation=None if result.deformation is None else Deformation(**vars(result.deformation)),
@@ -207,7 +187,7 @@ def _reporter(structure: Structure, watch: Watch) -> Callable[[Any], None]:
 
 
 def _grid(scene: Scene, result: Any, k: int) -> Grid:
-    """Return the elements as lines. Elements do not share points, because section forces jump at a contact.
+    """Return the elements as lines, which share no points, because section forces jump at a contact.
 
     The field `arc` is the distance along the undeformed axis. Axial stresses are given at
     the right and the left face, seen along the beam. `height` is 0 where the section has no height.
@@ -222,14 +202,14 @@ def _grid(scene: Scene, result: Any, k: int) -> Grid:
         arc, deformed = stations.arc.ravel(), stations.position.reshape(-1, 2)
         places = [(beam.place(part), beam.section(part), beam.height_at(part)) for part in arc / beam.length]
         reference, section, height = (np.array(column) for column in zip(*places, strict=True))
-        area, inertia, _ = section.T
-        N, V, M = stations.forces.reshape(-1, 3).T
-        part = {"reference": reference, "displacement": deformed - reference, "deformed": deformed}
-        part |= {"rotation": stations.rotation.ravel(), "N": N, "V": V, "M": M}
-        part |= {"beam": np.full(len(arc), number), "arc": arc, "height": height}
-        part["axial_stress_right"] = N / area + M * height / (2.0 * inertia)
-        part["axial_stress_left"] = N / area - M * height / (2.0 * inertia)
-        parts.append(part)
+        (area, inertia, _), (N, V, M) = section.T, stations.forces.reshape(-1, 3).T
+        bending = M * height / (2.0 * inertia)
+        parts.append({
+            "reference": reference, "displacement": deformed - reference, "deformed": deformed,
+            "rotation": stations.rotation.ravel(), "N": N, "V": V, "M": M,
+            "beam": np.full(len(arc), number), "arc": arc, "height": height,
+            "axial_stress_right": N / area + bending, "axial_stress_left": N / area - bending,
+        })  # fmt: skip
     data = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     points = data.pop("reference")
     return Grid(points=points, cells={"line": np.arange(len(points)).reshape(-1, 2)}, point_data=data)
@@ -241,16 +221,11 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
     Parameters
     ----------
     scene : Scene
-        Any scene.
+        Any scene; a `ModelError` says which of its keys the beams do not state.
     elements : int, optional
         Elements of every beam. By default the scene's number, or one exact element.
     element : str, optional
         Key of `tsm.ELEMENTS`, `mixed` if not given.
-
-    Raises
-    ------
-    ModelError
-        If there is no such element, or the scene uses a key that the beams do not state.
     """
     import tsm
 
@@ -262,14 +237,16 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
         beams=tuple(_beam(scene, beam, elements, kind) for beam in scene.beams),
         supports=tuple(_support(motion) for motion in scene.prescribed_motions.values()),
         loads=tuple(_loads(scene)),
-        line_loads=tuple(_line_loads(scene)),
-        hinges=tuple(
-            tsm.Hinge(beam=item.beam, end=_end(item.end), stiffness=item.stiffness) for item in scene.hinges
+        line_loads=tuple(
+            tsm.LineLoad(
+                beam=beam.name, force=force, start=start * beam.length, end=end * beam.length, stage=stage
+            )
+            for beam, stage, force, (start, end) in line_loads(scene)
         ),
+        hinges=tuple(tsm.Hinge(**kept(item, "beam end stiffness")) for item in scene.hinges),
         springs=tuple(
-            tsm.Spring(beam=item.beam, end=_end(item.end), x=x, y=y, rotation=item.rotation)
+            tsm.Spring(x=item.stiffness[0], y=item.stiffness[1], **kept(item, "beam end rotation"))
             for item in scene.springs
-            for x, y in [item.stiffness]
         ),
         pins=tuple(
             tsm.Pin(name=pin.name, path=path, onward=tuple(points[1:] for points in onward))
@@ -305,24 +282,17 @@ def _pair(scene: Scene, contact: ContactSpec) -> ContactPair:
     steep, beam, radius = _face_slope(scene, contact), scene.beam(contact.beam), scene.radius(contact)
     tapered = radius + beam.height_at(0.0) / 2.0 * sqrt(1.0 - steep**2)
     offset = tapered if steep else scene.offset(contact)
-    return ContactPair(
-        node=contact.node,
-        beam=contact.beam,
-        side="left" if contact.side == "left" else "right",
-        offset=offset,
-        end_offset=offset + steep * beam.length if steep else None,
-        keep=contact.keep,
-        friction=contact.friction,
-        radius=radius,
-    )
+    end = offset + steep * beam.length if steep else None
+    own = kept(contact, "node beam side keep friction")
+    return ContactPair(offset=offset, end_offset=end, radius=radius, **own)
 
 
 def _support(motion: PrescribedMotion) -> Support:
     from tsm import Support
 
-    spec, onward = motion.support, motion.increments[1:]
-    ux, uy, rotation = spec.motion
-    return Support(beam=spec.beam, end=_end(spec.end), ux=ux, uy=uy, rotation=rotation, onward=onward)
+    ux, uy, rotation = motion.support.motion
+    own = kept(motion.support, "beam end")
+    return Support(ux=ux, uy=uy, rotation=rotation, onward=motion.increments[1:], **own)
 
 
 def _beam(scene: Scene, spec: BeamSpec, elements: int | None, kind: ElementType) -> Beam:
@@ -334,25 +304,18 @@ def _beam(scene: Scene, spec: BeamSpec, elements: int | None, kind: ElementType)
         return Section(EA=EA, GA=GA, EI=EI)
 
     nodes = spec.nodes if kind.meshed and not elements else ()
-    count = elements or (len(nodes) + 1 if nodes else spec.elements if kind.meshed else 1)
+    count = elements or (spec.divisions if kind.meshed else 1)
     own = [load for _, load in scene.numbered_loads() if load.beam == spec.name]
     ends = [part for load in own if load.force_per_length is not None for part in load.span]
     places = [load.at for load in own if load.at is not None]
     return Beam(
-        name=spec.name,
-        start=spec.start,
-        end=spec.end,
+        **kept(spec, "name start end turn"),
         section=section(0.0 if spec.tapers else 0.5),
         end_section=section(1.0) if spec.tapers else None,
-        turn=spec.turn,
         elements=count,
         element=kind.name,
         nodes=nodes,
     ).divided(*(part * spec.length for part in (*ends, *places)))
-
-
-def _end(end: str | None) -> End:
-    return "start" if end == "start" else "end"
 
 
 def _loads(scene: Scene) -> Iterator[Load]:
@@ -360,26 +323,11 @@ def _loads(scene: Scene) -> Iterator[Load]:
     from tsm import Load
 
     for stage, load in scene.numbered_loads():
-        force, moment = load.force, load.moment
-        if load.at is not None:
-            arc = load.at * scene.beam(load.beam).length
-            yield Load(beam=load.beam, arc=arc, force=force, moment=moment, stage=stage)
-        elif load.end is not None:
-            yield Load(beam=load.beam, end=_end(load.end), force=force, moment=moment, stage=stage)
-
-
-def _line_loads(scene: Scene) -> Iterator[LineLoad]:
-    """Yield the forces per length, then the weights."""
-    from comparisons.models.shared import weights
-    from tsm import LineLoad
-
-    for stage, load in scene.numbered_loads():
-        if load.force_per_length is not None:
-            start, end = (part * scene.beam(load.beam).length for part in load.span)
-            force = (load.force_per_length,)
-            yield LineLoad(beam=load.beam, force=force, start=start, end=end, stage=stage)
-    for beam, stage, weight in weights(scene):
-        yield LineLoad(beam=beam, force=weight, stage=stage)
+        if load.force_per_length is None:
+            place: Any = (
+                {"end": load.end} if load.at is None else {"arc": load.at * scene.beam(load.beam).length}
+            )
+            yield Load(stage=stage, **kept(load, "beam force moment"), **place)
 
 
 TSM = Tsm()

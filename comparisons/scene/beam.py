@@ -52,7 +52,10 @@ class BeamSpec(Record):
     clamped: tuple[str, ...] = optional(
         rules.ends, "Clamped ends, none by default: the short form of a `SupportSpec`.", ()
     )
-    elements: int = optional(rules.whole_number, "Number of TSM elements, all of one length.", 20)
+    elements: int | None = optional(
+        rules.whole_number,
+        "Number of TSM elements, all of one length; without one, one exact element or twenty others.",
+    )
     nodes: tuple[float, ...] = optional(
         rules.parts, "Positions of the inner TSM nodes as parts of the length, instead of `elements`.", ()
     )
@@ -101,6 +104,11 @@ class BeamSpec(Record):
                 rule = f"{name} = {stiffness:g} must lie between {least:g} and {most:g}"
                 yield FieldError("youngs_modulus", self.youngs_modulus, rule)
                 return
+
+    @property
+    def divisions(self) -> int:
+        """Number of elements of a mesh: those between `nodes`, `elements`, or twenty."""
+        return len(self.nodes) + 1 if self.nodes else self.elements or 20
 
     @property
     def length(self) -> float:

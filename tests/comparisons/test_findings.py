@@ -17,7 +17,7 @@ from comparisons.scene import Scene, load_scene
 from tests.fuzz.world_judge import findings, run
 
 FOLDER = Path(__file__).parent / "findings"
-BEAMS = {"mixed": Options(), "exact": Options(element="exact")}
+BEAMS = {name: Options(element=name) for name in ("mixed", "exact")}
 
 
 def scene(name: str, count: int | None = None) -> Scene:

@@ -50,9 +50,9 @@ def scene(tmp_path):
 )
 def test_bounds(scene, bounds, status, tmp_path, capsys):
     file = tmp_path / "gate.xml"
-    assert gate(scene, *bounds, junit=file) == status
+    assert gate(scene, *bounds, elements=20, junit=file) == status
     out, error = capsys.readouterr()
-    assert out.startswith("ks-cantilever: tsm against rod\n")
+    assert out.startswith("ks-cantilever: tsm mixed 20 against rod\n")
     assert out.count("<=") == len(bounds) - status
     assert error == ("crossval: tip: beyond the bound\n" if status else "")
     suite = ET.parse(file).getroot()  # noqa: S314 - our own
@@ -119,7 +119,9 @@ def test_gaps_and_events_tell_of_another_path(tmp_path, capsys):
     """The pin is .02 below the arm and moves up by .05, so that it touches at .4 and is .0075 away at the first load parameter."""
     scene, file = read_scene(ARM, "arm"), tmp_path / "arm.toml"
     file.write_text(ARM)
-    assert gate(str(file), "event=1e-9", "gap=1e-9", against="tsm") == 0
+    assert gate(str(file), "event=1e-9", "gap=1e-9", element="mixed", against="tsm") == 0
+    assert gate(str(file), "event=1e-9", against="tsm") == 2
+    assert "tsm: is measured against itself" in capsys.readouterr().err
     assert gate(str(file), "event=1e-9", model="solid", mesh="10x1", against="tsm") == 2
     assert "event: solid states no events of this scene" in capsys.readouterr().err
     true = solve(scene, "tsm")

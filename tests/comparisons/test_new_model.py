@@ -38,6 +38,14 @@ number = lender:OTHER
 absent = no_such_module:MODEL
 wrong = lender:MODEL
 stiff = functions:MODEL
+
+[crossval.elements]
+unsheared = lender:ELEMENT
+number = lender:OTHER
+"""
+LENT = """
+from tsm.elements import MIXED
+MODEL, OTHER, ELEMENT = MODELS[0], 3, replace(MIXED, name="unsheared", sheared=False)
 """
 STUDY = """
 [study]
@@ -79,7 +87,7 @@ def registered(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def offered(tmp_path: Path) -> Path:
     """A folder with an installed package that offers the model."""
-    (tmp_path / "lender.py").write_text(CHAIN + "MODEL, OTHER = MODELS[0], 3\n")
+    (tmp_path / "lender.py").write_text(CHAIN + LENT)
     (tmp_path / "functions.py").write_text(FUNCTIONS.format(stopped='StoppedError("no luck")'))
     info = tmp_path / "lender-1.0.dist-info"
     info.mkdir()
@@ -112,6 +120,22 @@ def test_commands_have_it(way, request):
 def test_comparison_cost_extremes_and_pictures_have_it(registered):
     found = crossval(registered, code=ASKED)
     assert found.stdout.split() == ["1", "1", "True", "#AA3377"], found.stderr
+
+
+def test_an_element_of_another_package(offered):
+    def solved(element: str) -> subprocess.CompletedProcess[str]:
+        return crossval(offered, "solve", "ks-cantilever", "--element", element, "--elements", "5", "--quiet")
+
+    found = solved("unsheared")
+    assert found.returncode == 0, found.stderr
+    assert "tsm, unsheared 5, " in found.stdout
+    for name, said in {
+        "number": "entry point number = lender:OTHER: must be an ElementType of this name",
+        "none": "element = none: must be one of mixed, ",
+    }.items():
+        wrong = solved(name)
+        assert (wrong.returncode, wrong.stderr.count("\n")) == (2, 1)
+        assert wrong.stderr.startswith(f"crossval: tsm: {said}")
 
 
 @pytest.mark.slow

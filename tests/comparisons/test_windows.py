@@ -11,9 +11,9 @@ from comparisons.scene import built_in_scenes
 from tests.comparisons.processes import COMMAND, ended
 
 BLOCK = """
-import os, signal, sys
-import psutil  # which on Unix takes them itself
+import os, signal, subprocess, sys, types
 sys.modules.update(dict.fromkeys(["fcntl", "grp", "pwd", "resource", "termios"]))
+sys.modules["msvcrt"] = types.SimpleNamespace(LK_LOCK=1, locking=os.lockf)
 del os.fork, os.getuid, os.killpg, os.O_NONBLOCK, signal.pthread_sigmask, signal.SIGKILL
 """
 """Run by every Python of the tests as it starts."""
@@ -38,6 +38,7 @@ def test_commands_without_unix(tmp_path):
     (tmp_path / "a.toml").write_text(text.replace("load_parameters = 50", "load_parameters = 2"))
     said = crossval(tmp_path, "solve", "a.toml", "--elements", "4", "--json", "a.json", "--vtk", "vtk")
     assert "COMPLETED" in said
+    assert not list(tmp_path.rglob(".crossval.lock"))
     assert json.loads((tmp_path / "a.json").read_text())["status"] == "COMPLETED"
     assert sorted(path.name for path in tmp_path.glob("vtk/*.vtm")) == ["tsm-0001.vtm", "tsm-0002.vtm"]
 

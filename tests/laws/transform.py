@@ -252,7 +252,7 @@ def split(scene: Scene, name: str, part: float) -> Scene:
         nodes = tuple((x - a) / (b - a) for x in beam.nodes if a < x < b)
         return replace(
             beam, name=called, start=beam.place(a), end=beam.place(b), turn=(b - a) * beam.turn, nodes=nodes,
-            elements=round((b - a) * beam.elements), clamped=tuple(end for end in beam.clamped if end == clamped), **sizes,
+            elements=round((b - a) * beam.divisions), clamped=tuple(end for end in beam.clamped if end == clamped), **sizes,
         )  # fmt: skip
 
     def at(item):  # type: ignore[no-untyped-def] - anything at an end

@@ -188,7 +188,7 @@ def _draw_stage(axes: Any, scene: Scene, response: Response, k: int) -> None:
     for beam in scene.beams:
         rest, color = np.array([beam.start, beam.end]), COLOURS[beam.name]
         line = rest if k < 0 else response.axis_line(beam.name, k)[1]
-        nodes = np.linspace(0, len(line) - 1, beam.elements + 1).round().astype(int)
+        nodes = np.linspace(0, len(line) - 1, beam.divisions + 1).round().astype(int)
         axes.plot(*rest.T, color="0.75", linewidth=0.8)
         axes.plot(*line.T, color=color, linewidth=1.8, label=f"{beam.name} beam")
         if k >= 0:
@@ -223,7 +223,7 @@ def plot_histories(scene: Scene, columns: Columns, events: list[Row], *paths: Pa
             axes.plot(depth, columns[f"{pair} {quantity}"], **STYLES[pair], linewidth=1.6, label=name)
     _mark_events(events, forces, places)
     beam = scene.beams[0]
-    for node in np.linspace(0.0, beam.length, beam.elements + 1)[-4:]:
+    for node in np.linspace(0.0, beam.length, beam.divisions + 1)[-4:]:
         places.axhline(node, color="0.8", linewidth=0.6, zorder=0)
     forces.set(ylabel="contact force [N]", ylim=(0.0, ROOM * forces.dataLim.y1))
     places.set(xlabel="depth of the pin [m]", ylabel="arc position [m]", xlim=(0.0, depth[-1]))

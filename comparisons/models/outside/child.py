@@ -8,16 +8,16 @@ import sys
 import tempfile
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from enum import Enum
+from os import getpid, kill, waitpid
 from pathlib import Path
-from time import perf_counter
-from typing import Any
+from time import perf_counter, sleep
+from typing import Any, NamedTuple
 
 from comparisons.files import one_line, printable
 
-LARGEST_OUTPUT = 200_000_000
-"""Largest size of what a program writes [byte]."""
+MB, LARGEST_OUTPUT = 1e6, 200.0
+"""A megabyte [byte], and the largest size of what a program writes [MB]."""
 TAIL = 300
 """Characters of a program's messages that are shown."""
 FIRST_LOOK, LAST_LOOK = 0.002, 0.1
@@ -30,8 +30,9 @@ ENVIRONMENT = (
 LINUX = sys.platform == "linux"
 ADOPT = 36
 """PR_SET_CHILD_SUBREAPER: a process becomes the parent of its descendants whose own parents have ended."""
-ROUNDS = 20
+ROUNDS = 5000
 """How often the processes that a program leaves behind are looked for and ended."""
+KILL = 9
 
 
 class ProgramStatus(Enum):
@@ -47,16 +48,16 @@ class ProgramStatus(Enum):
     NOT_FINITE = "a number of the response is missing or not finite"
 
 
-class ProgramError(Exception):
-    """The run of another program gave no answer.
+LIMITS = {
+    ProgramStatus.TIMED_OUT: "ran longer than {:g} s",
+    ProgramStatus.OUT_OF_MEMORY: "took more than {:g} MB of memory",
+    ProgramStatus.TOO_MUCH_OUTPUT: "wrote more than {:g} MB",
+}
+"""What is said of a program that exceeds a limit."""
 
-    Attributes
-    ----------
-    status : ProgramStatus
-        What failed.
-    reported_success : bool
-        Whether the program stated success all the same.
-    """
+
+class ProgramError(Exception):
+    """The run of another program gave no answer: what failed, and whether the program stated success all the same."""
 
     def __init__(self, status: ProgramStatus, message: str, *, reported_success: bool = False) -> None:
         super().__init__(one_line(message))
@@ -64,38 +65,11 @@ class ProgramError(Exception):
 
 
 class CalculixError(RuntimeError):
-    """CalculiX is not installed, took too long or stopped early; the message is one line.
-
-    Attributes
-    ----------
-    reason : str
-        The message without the program's name.
-    started : bool
-        Whether CalculiX ran.
-    """
+    """CalculiX is not installed, took too long or stopped early: the reason in one line, and whether CalculiX ran."""
 
     def __init__(self, reason: str, *, started: bool = False) -> None:
         super().__init__(f"CalculiX {reason}")
         self.reason, self.started = reason, started
-
-
-@dataclass(frozen=True, kw_only=True)
-class Limits:
-    """Limits of a program with all its child processes.
-
-    Parameters
-    ----------
-    seconds : float
-        Wall time [s].
-    memory : float
-        Resident memory [byte].
-    environment : tuple of str
-        Variables of the environment that it gets beside those of `ENVIRONMENT`.
-    """
-
-    seconds: float = 600.0
-    memory: float = 4e9
-    environment: tuple[str, ...] = ()
 
 
 def found(program: str, folder: Path) -> str | None:
@@ -109,15 +83,13 @@ def environment(more: Iterable[str] = ()) -> dict[str, str]:
     return {name: os.environ[name] for name in (*ENVIRONMENT, *more) if name in os.environ}
 
 
-def run(command: Sequence[str], folder: Path, text: str, limits: Limits) -> tuple[bytes, float]:
+def run(
+    command: Sequence[str], folder: Path, text: str, seconds: float, memory: float, more: Iterable[str] = ()
+) -> tuple[bytes, float]:
     """Run a command in `folder` with `text` as its standard input; return its standard output and the wall time [s].
 
-    The program and all its child processes have ended on return.
-
-    Raises
-    ------
-    ProgramError
-        If the program does not start, exceeds a limit or fails.
+    Its limits are wall time [s] and, on Linux, resident memory [MB] with all its child processes, which have ended on return; it gets
+    `more` variables of the environment. `ProgramError` names what failed.
     """
     program = found(command[0], folder)
     if program is None:
@@ -127,48 +99,47 @@ def run(command: Sequence[str], folder: Path, text: str, limits: Limits) -> tupl
         given.write_text(text, encoding="utf-8")
         began = perf_counter()
         with given.open("rb") as stdin, out.open("wb") as stdout, err.open("wb") as stderr:
-            streams = {"stdin": stdin, "stdout": stdout, "stderr": stderr, "cwd": folder}
-            streams |= {"env": environment(limits.environment), "start_new_session": True}
-            code = _finished([program, *command[1:]], streams, (out, err), limits)
-        seconds = perf_counter() - began
+            streams = {"stdin": stdin, "stdout": stdout, "stderr": stderr}
+            how = {"cwd": folder, "env": environment(more), **streams}
+            code = _finished([program, *command[1:]], how, (out, err), (seconds, memory, LARGEST_OUTPUT))
+        took = perf_counter() - began
         if code:
+            ended = f"ended with exit status {code}"
+            if code < 0 and os.name != "nt":
+                ended = f"was ended by {signal.Signals(-code).name}"
             words = _tail(err) or _tail(out) or "no message"
-            raise ProgramError(ProgramStatus.CRASHED, f"{_ending(code)}: {words}")
-        return out.read_bytes(), seconds
+            raise ProgramError(ProgramStatus.CRASHED, f"{ended}: {words}")
+        return out.read_bytes(), took
 
 
-def _finished(command: list[str], streams: dict[str, Any], written: tuple[Path, ...], limits: Limits) -> int:
+def _finished(
+    command: list[str], how: dict[str, Any], written: tuple[Path, ...], limits: tuple[float, ...]
+) -> int:
     """Return the exit status of a command that keeps its limits."""
-    import psutil
+    import subprocess
 
-    others = set(psutil.Process().children())
+    others = {pid for pid, one in _processes().items() if one.parent == getpid()}
     _adopt(1)
     try:
-        process = psutil.Popen(command, **streams)
+        process = subprocess.Popen(command, start_new_session=True, **how)  # noqa: S603 the program that the user names
     except (OSError, ValueError) as error:
         _adopt(0)
         reason = getattr(error, "strerror", None) or str(error)
         raise ProgramError(ProgramStatus.NOT_STARTED, f"{command[0]}: {reason}") from None
-    began, look, family = perf_counter(), FIRST_LOOK, {process}
+    began, look = perf_counter(), FIRST_LOOK
     try:
         while True:
-            try:
+            with suppress(subprocess.TimeoutExpired):
                 return int(process.wait(timeout=look))
-            except psutil.TimeoutExpired:
-                look = min(2.0 * look, LAST_LOOK)
-            if perf_counter() - began > limits.seconds:
-                raise ProgramError(ProgramStatus.TIMED_OUT, f"ran longer than {limits.seconds:g} s")
-            family |= _started(process, others)
-            if sum(map(_memory, family)) > limits.memory:
-                raise ProgramError(
-                    ProgramStatus.OUT_OF_MEMORY, f"took more than {limits.memory / 1e6:g} MB of memory"
-                )
-            if sum(path.stat().st_size for path in written) > LARGEST_OUTPUT:
-                raise ProgramError(
-                    ProgramStatus.TOO_MUCH_OUTPUT, f"wrote more than {LARGEST_OUTPUT / 1e6:g} MB"
-                )
+            look = min(2.0 * look, LAST_LOOK)
+            memory = sum(one.memory for one in _started(others).values())
+            size = sum(path.stat().st_size for path in written)
+            used = perf_counter() - began, memory / MB, size / MB
+            for value, most, (status, words) in zip(used, limits, LIMITS.items(), strict=True):
+                if value > most:
+                    raise ProgramError(status, words.format(most))
     finally:
-        _end(process, family, others)
+        _end(process, others)
         _adopt(0)
 
 
@@ -178,49 +149,64 @@ def _adopt(adopts: int) -> None:
         ctypes.CDLL(None).prctl(ADOPT, adopts, 0, 0, 0)
 
 
-def _started(process: Any, others: set[Any]) -> set[Any]:
-    """Return the processes that a program has started, itself among them, and those of them that this process has adopted.
+class _Process(NamedTuple):
+    """Parent, session and resident memory [byte] of a process."""
 
-    Only what a program starts is in another session than this process; `others` are children from before.
-    """
-    import psutil
+    parent: int
+    session: int
+    memory: int
 
-    found = set()
-    for child in psutil.Process().children():
-        with suppress(psutil.Error, ProcessLookupError):
-            if child == process or (LINUX and child not in others and os.getsid(child.pid) != os.getsid(0)):
-                found |= {child, *child.children(recursive=True)}
+
+def _processes() -> dict[int, _Process]:
+    """Return all processes by their identifiers; none where the system has no ``/proc``."""
+    found = {}
+    for file in Path("/proc").glob("[0-9]*/stat") if LINUX else ():
+        with suppress(OSError):
+            values = file.read_text(errors="replace").rpartition(") ")[2].split()
+            memory = int(values[21]) * os.sysconf("SC_PAGE_SIZE")
+            found[int(file.parent.name)] = _Process(int(values[1]), int(values[3]), memory)
     return found
 
 
-def _memory(process: Any) -> int:
-    """Return the resident memory of a process [byte], zero if it has ended."""
-    import psutil
+def _started(others: set[int]) -> dict[int, _Process]:
+    """Return what descends from the children of this process in other sessions: what a program starts, adopted or not.
 
-    try:
-        return int(process.memory_info().rss)
-    except psutil.Error:
-        return 0
-
-
-def _end(process: Any, family: set[Any], others: set[Any]) -> None:
-    """End whatever a program has started, and wait for its end. What is seen is ended first, then what that leaves to this process."""
-    import psutil
-
-    for _ in range(ROUNDS):
-        family = {member for member in family | _started(process, others) if member.is_running()}
-        for member in family:
-            with suppress(psutil.Error):
-                member.kill()
-        if not family:
-            return
-        psutil.wait_procs(family, timeout=1.0)
+    The sessions are other ones for programs alone; `others` are children from before.
+    """
+    every = _processes()
+    found = {
+        pid
+        for pid, one in every.items()
+        if one.parent == getpid() and one.session != every[getpid()].session and pid not in others
+    }
+    while more := {pid for pid, one in every.items() if one.parent in found} - found:
+        found |= more
+    return {pid: every[pid] for pid in found}
 
 
-def _ending(code: int) -> str:
-    if code > 0 or os.name == "nt":
-        return f"ended with exit status {code}"
-    return f"was ended by {signal.Signals(-code).name}"
+def _end(process: Any, others: set[int]) -> None:
+    """End whatever a program has started, and wait for its end; an ended process leaves its children to this one."""
+    if LINUX:
+        for _ in range(ROUNDS):
+            process.poll()
+            family = _started(others)
+            for pid in family:
+                with suppress(ProcessLookupError, PermissionError):
+                    kill(pid, KILL)
+                if pid != process.pid:
+                    with suppress(ChildProcessError):
+                        waitpid(pid, os.WNOHANG)
+            if not family and not _started(others):  # not while a parent ended during the look
+                return
+            sleep(FIRST_LOOK)
+    elif os.name == "nt":
+        import subprocess
+
+        subprocess.run(["taskkill", "/T", "/F", "/PID", str(process.pid)], capture_output=True, check=False)  # noqa: S603, S607
+    else:
+        with suppress(ProcessLookupError, PermissionError):
+            getattr(os, "killpg", kill)(process.pid, KILL)
+    process.wait()
 
 
 def _tail(path: Path) -> str:

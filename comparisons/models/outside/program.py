@@ -7,7 +7,7 @@ import json
 import sys
 from abc import ABC, abstractmethod
 from contextlib import redirect_stdout
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
 from importlib.util import find_spec
@@ -15,9 +15,9 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from comparisons.models.base import Model, Style, counted
+from comparisons.models.base import Model, Style
 from comparisons.models.options import ModelError, Options
-from comparisons.models.outside.child import Limits, ProgramError, ProgramStatus, found, run
+from comparisons.models.outside.child import ProgramError, ProgramStatus, found, run
 from comparisons.scene.keys import PROGRAMS
 
 if TYPE_CHECKING:
@@ -26,33 +26,21 @@ if TYPE_CHECKING:
     from comparisons.response import Response
     from comparisons.scene import Scene
 
-COLOUR = "#AA3377"
-"""Default colour of a program's lines."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class Source(ABC):
-    """What reads the text of a resolved scene and writes the text of a response.
-
-    Parameters
-    ----------
-    name : str
-        Name of the model.
-    label : str
-        Name in figures and texts; the name of the model if empty.
-    elements : tuple of int
-        Numbers of elements along a beam that comparisons of cost run; empty if the program chooses its resolution itself.
-    colour : str
-        Colour of its lines, in hexadecimal digits.
-    continuum : bool
-        Whether it computes a two-dimensional body.
-    """
+    """What reads the text of a resolved scene and writes the text of a response."""
 
     name: str
+    """Name of the model."""
     label: str = ""
+    """Name in figures and texts; the name of the model if empty."""
     elements: tuple[int, ...] = ()
-    colour: str = COLOUR
+    """Numbers of elements along a beam that comparisons of cost run; empty if the program chooses its resolution itself."""
+    colour: str = "#AA3377"
+    """Colour of its lines, in hexadecimal digits."""
     continuum: bool = False
+    """Whether it computes a two-dimensional body."""
 
     @abstractmethod
     def digest(self) -> str:
@@ -68,44 +56,33 @@ class Source(ABC):
 
     @abstractmethod
     def ask(self, text: str) -> tuple[bytes, float]:
-        """Return the answer to a scene and the wall time [s].
-
-        Raises
-        ------
-        ProgramError
-            If there is no answer.
-        """
+        """Return the answer to a scene and the wall time [s]; raise `ProgramError` if there is none."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Command(Source):
-    """A command in a child process: the resolved scene goes to its standard input, a response comes from its standard output.
-
-    Parameters
-    ----------
-    command : tuple of str
-        The program and its arguments. A program with a separator in its path is relative to `folder`.
-    folder : Path
-        Working directory of the program.
-    limits : Limits
-        Limits on time and memory.
-    requires, needs : str
-        Python module or program without which `command` cannot run, by default its program, and how to install it.
-    module : str
-        Python module whose function ``refusal(scene)`` says what the command refuses; without one, the command itself is asked.
-    """
+    """A command in a child process: the resolved scene goes to its standard input, a response comes from its standard output."""
 
     command: tuple[str, ...]
+    """The program and its arguments. A program with a separator in its path is relative to `folder`."""
     folder: Path
-    limits: Limits = field(default_factory=Limits)
+    """Working directory of the program."""
+    seconds: float = 600.0
+    """Limit on the wall time [s]."""
+    memory: float = 4000.0
+    """Limit on the resident memory of the program and all its child processes [MB], on Linux."""
+    environment: tuple[str, ...] = ()
+    """Variables of the environment that it gets beside the usual ones."""
     requires: str = ""
+    """Python module or program without which `command` cannot run, by default its program."""
     needs: str = ""
+    """How to install what it requires."""
     module: str = ""
+    """Python module whose function ``refusal(scene)`` says what the command refuses; without one, the command itself is asked."""
 
     def digest(self) -> str:
         """Return a digest of the command and of the files among its words."""
-        words = [self.folder / word for word in self.command]
-        files = [hashlib.sha256(path.read_bytes()).hexdigest() for path in words if path.is_file()]
+        files = [_digest(self.folder / word) for word in self.command]
         return hashlib.sha256(json.dumps([self.command, files]).encode()).hexdigest()
 
     def missing(self) -> str | None:
@@ -128,7 +105,7 @@ class Command(Source):
 
     def ask(self, text: str) -> tuple[bytes, float]:
         """Run the command."""
-        return run(self.command, self.folder, text, self.limits)
+        return run(self.command, self.folder, text, self.seconds, self.memory, self.environment)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -148,8 +125,7 @@ class Functions(Source):
 
     def digest(self) -> str:
         """Return a digest of the file that defines the states."""
-        file = Path(self.states.__code__.co_filename)
-        return hashlib.sha256(file.read_bytes() if file.is_file() else b"").hexdigest()
+        return _digest(Path(self.states.__code__.co_filename))
 
     def refused(self, text: str) -> str | None:
         """Return what the function says."""
@@ -169,6 +145,11 @@ class Functions(Source):
         return output, perf_counter() - began
 
 
+def _digest(file: Path) -> str:
+    """Return a digest of a file, empty if there is none."""
+    return hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else ""
+
+
 class Program(Model):
     """A program of others.
 
@@ -185,15 +166,12 @@ class Program(Model):
         self.name, self.label = source.name, source.label or source.name
         self.continuum = source.continuum
         self.options = ("elements",) if source.elements else ()
+        self.missing = source.missing
 
     @property
     def identity(self) -> str:
         """Name of the program, and a digest of what its answers depend on."""
         return f"{self.name} {self.source.digest()}"
-
-    def missing(self) -> str | None:
-        """Return what must be installed to run the program; None if it can be found."""
-        return self.source.missing()
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why the program cannot state the scene, or what is missing to run it."""
@@ -219,13 +197,9 @@ class Program(Model):
         """Return one style."""
         return {self.label: Style(colour=self.source.colour, marker="D")}
 
-    def run_label(self, options: Options) -> str:
-        """Return the label of one run, as ``mine, 20 elements``."""
-        return self.label + counted(options.elements)
-
     def setting(self, scene: Scene, options: Options) -> str:
         """Return the numbers of elements; empty if the program chooses its resolution itself."""
-        counts = {options.elements or beam.elements for beam in scene.beams} if self.options else set()
+        counts = {options.elements or beam.divisions for beam in scene.beams} if self.options else set()
         return "+".join(map(str, sorted(counts)))
 
     def resolutions(self, *, quick: bool) -> tuple[Options, ...]:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Container
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from comparisons.extras import install
 from comparisons.models.base import Model
 from comparisons.models.options import ModelError
-from comparisons.models.outside.child import Limits
 from comparisons.models.outside.program import Command, Program
 from comparisons.scene import rules
 from comparisons.scene.rules import RecordError, Rule, RuleError
@@ -20,48 +20,30 @@ from comparisons.scene.tables import InputError, check_keys, head_values, in_ord
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
-GROUP = "crossval.models"
-"""Group of the entry points by which other packages offer their models."""
 SUFFIX = ".toml"
 """Suffix of a program file."""
-ROOT = Path(__file__).parents[3]
-"""Folder of this package, from which the adapters are imported."""
-OF_ADAPTERS = {
-    "calculix": (
-        "CalculiX",
-        "#117733",
-        "ccx",
-        "Debian's calculix-ccx is needed: there is no program ccx",
-        True,
-    ),
-    "exudyn": ("Exudyn", "#999933", "exudyn", f"exudyn is needed: {install('exudyn')}", False),
-    "felupe": ("FElupe", "#DDCC77", "felupe", f"felupe is needed: {install('felupe')}", True),
-    "opensees": (
-        "OpenSees",
-        "#882255",
-        "openseespy",
-        f"openseespy is needed: {install('openseespy')}, and Debian's libblas3",
-        False,
-    ),
-}
-"""Label, colour, what it requires, how to install that, and whether it computes a two-dimensional body, by the adapter's module."""
-
-
-def _adapter(name: str) -> Program:
-    """Return the program of an adapter, which is the module of its name in `comparisons.models.outside.adapters`."""
-    module, (label, colour, requires, needs, continuum) = f"{__package__}.adapters.{name}", OF_ADAPTERS[name]
-    run = f"import runpy, sys; sys.path.insert(0, {str(ROOT)!r}); runpy.run_module({module!r}, run_name='__main__')"
-    return Program(
+RUN = (
+    f"import runpy, sys; sys.path.insert(0, {str(Path(__file__).parents[3])!r}); "
+    "runpy.run_module({!r}, run_name='__main__')"
+)
+"""What runs an adapter, which is a module of this package."""
+ADAPTERS: dict[str, Program] = {
+    name: Program(
         Command(
-            name=name, label=label, command=(sys.executable, "-c", run), folder=Path.cwd(),
+            name=name, label=label, command=(sys.executable, "-c", RUN.format(module)), folder=Path.cwd(),
             elements=(10, 20, 40, 80), colour=colour, requires=requires, needs=needs, module=module,
             continuum=continuum,
         )
-    )  # fmt: skip
-
-
-ADAPTERS: dict[str, Program] = {name: _adapter(name) for name in OF_ADAPTERS}
-"""The adapters of this package by name."""
+    )
+    for name, label, colour, requires, needs, continuum in (
+        ("calculix", "CalculiX", "#117733", "ccx", "Debian's calculix-ccx is needed: there is no program ccx", True),
+        ("exudyn", "Exudyn", "#999933", "exudyn", f"exudyn is needed: {install('exudyn')}", False),
+        ("felupe", "FElupe", "#DDCC77", "felupe", f"felupe is needed: {install('felupe')}", True),
+        ("opensees", "OpenSees", "#882255", "openseespy", f"openseespy is needed: {install('openseespy')}, and Debian's libblas3", False),
+    )
+    for module in [f"{__package__}.adapters.{name}"]
+}  # fmt: skip
+"""The adapters of this package by name: label, colour, what it requires, how to install that, and whether it computes a two-dimensional body."""
 _USED: dict[str, Model] = {}
 """The models from outside that this process has used, by name."""
 
@@ -69,24 +51,13 @@ _USED: dict[str, Model] = {}
 def outside(name: str, taken: Container[str] = ()) -> Model | None:
     """Return a model that is none of this package; None if there is no such model.
 
-    Parameters
-    ----------
-    name : str
-        A program file ``NAME.toml``, the name of a program file read before, an adapter, or an entry point.
-    taken : container of str
-        Names that a program file must not state.
-
-    Raises
-    ------
-    ProgramFileError
-        If the file cannot be read, or states a name in `taken`.
-    ModelError
-        If an entry point yields no model.
+    The name is that of a program file ``NAME.toml``, of one read before, of an adapter, or of an entry point. A `ProgramFileError` is
+    raised if the file cannot be read or states a name in `taken`, a `ModelError` if an entry point yields no model.
     """
     if not known(name):
         return None
     model = read_program(Path(name)) if name.endswith(SUFFIX) else ADAPTERS.get(name) or _USED.get(name)
-    model = model or _loaded(offered()[name])
+    model = model or loaded(offered()[name], Model)
     if model.name in taken:
         raise ProgramFileError(name, f'program.name = "{model.name}": must not be the name of a model')
     _USED[model.name] = model
@@ -104,24 +75,25 @@ def used() -> tuple[Model, ...]:
 
 
 @cache
-def offered() -> dict[str, EntryPoint]:
-    """Return the entry points by which installed packages offer models, by the models' names; nothing of the packages is imported."""
+def offered(group: str = "crossval.models") -> dict[str, EntryPoint]:
+    """Return the entry points by which installed packages offer models, or another group, by their names; nothing is imported."""
     from importlib.metadata import entry_points
 
-    return {point.name: point for point in entry_points(group=GROUP)}
+    return {point.name: point for point in entry_points(group=group)}
 
 
-def _loaded(point: EntryPoint) -> Model:
-    """Return the model that an entry point yields."""
+def loaded(point: EntryPoint, kind: type[Any]) -> Any:
+    """Return what an entry point yields; raise `ModelError` unless it is an object of a type that has the entry point's name."""
+    where = f"entry point {point.name} = {point.value}"
     try:
-        model = point.load()
+        found = point.load()
     except Exception as error:
+        raise ModelError(f"{where}: {type(error).__name__}: {error}") from error
+    if not isinstance(found, kind) or found.name != point.name:
         raise ModelError(
-            f"entry point {point.name} = {point.value}: {type(error).__name__}: {error}"
-        ) from error
-    if not isinstance(model, Model) or model.name != point.name:
-        raise ModelError(f"entry point {point.name} = {point.value}: must be a Model of this name")
-    return model
+            f"{where}: must be {'an' if kind is not Model else 'a'} {kind.__name__} of this name"
+        )
+    return found
 
 
 class ProgramFileError(InputError):
@@ -129,17 +101,9 @@ class ProgramFileError(InputError):
 
 
 def read_program(path: Path) -> Program:
-    """Return the program that the TOML file `path` states in its table ``[program]``.
+    """Return the program that the TOML file `path` states in its table ``[program]`` by the keys of `RULES`; it runs in the file's folder.
 
-    The keys are ``name`` and ``command`` (a list of the program and its arguments), and, if wanted, ``label``, ``seconds`` (limit on
-    time, 600), ``memory`` (limit in MB, 4000), ``environment`` (a list of further variables that it gets), ``elements`` (a list of numbers of
-    elements), ``colour``, ``continuum`` (whether it computes a two-dimensional body). The program runs in
-    the folder of the file.
-
-    Raises
-    ------
-    ProgramFileError
-        All mistakes in the order of the file, each in one line: file, key, value and rule.
+    ``docs/how-to/program.md`` has the keys. A `ProgramFileError` has all mistakes in the order of the file.
     """
     source = str(path)
     text = read_text(source, "no such file", ProgramFileError)
@@ -148,29 +112,22 @@ def read_program(path: Path) -> Program:
     mistakes += check_keys(tables, ("program",), required=("program",))
     if mistakes:
         raise ProgramFileError(source, RecordError(in_order(mistakes, text, tables)))
-    limits = {name: given.pop(name) for name in ("seconds", "memory", "environment") if name in given}
-    if "memory" in limits:
-        limits["memory"] *= 1e6
-    return Program(Command(folder=path.resolve().parent, limits=Limits(**limits), **given))
+    return Program(Command(folder=path.resolve().parent, **given))
 
 
-def _words(value: object) -> tuple[str, ...]:
+def _each(rule: Rule) -> Rule:
+    return lambda value: tuple(rule(item) for item in rules.sequence(value))
+
+
+def _words(value: object) -> object:
     if not rules.sequence(value):
         raise RuleError("must have a program")
-    return _texts(value)
-
-
-def _texts(value: object) -> tuple[str, ...]:
-    return tuple(rules.text(item) for item in rules.sequence(value))
-
-
-def _counts(value: object) -> tuple[int, ...]:
-    return tuple(rules.whole_number(item) for item in rules.sequence(value))
+    return _each(rules.text)(value)
 
 
 def _colour(value: object) -> str:
     text = rules.text(value)
-    if len(text) != 7 or text[0] != "#" or not all(c in "0123456789abcdefABCDEF" for c in text[1:]):
+    if not re.fullmatch("#[0-9a-fA-F]{6}", text):
         raise RuleError("must be a colour, as #AA3377")
     return text
 
@@ -181,8 +138,8 @@ RULES: dict[str, Rule] = {
     "label": rules.text,
     "seconds": rules.positive,
     "memory": rules.positive,
-    "environment": _texts,
-    "elements": _counts,
+    "environment": _each(rules.text),
+    "elements": _each(rules.whole_number),
     "colour": _colour,
     "continuum": rules.truth,
 }

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from comparisons.models.options import ModelError, Options
-from comparisons.models.shared import joints
+from comparisons.models.shared import joints, kept
 from comparisons.scene import BeamSpec, Scene
 from comparisons.scene.keys import PROGRAMS, unstated
 
@@ -18,19 +18,9 @@ CONTACT = "pair node beam side keep friction"
 def request(scene: Scene, options: Options, load_parameters: Sequence[float]) -> str:
     """Return the resolved scene as JSON text; ``docs/reference/resolved-scene.schema.json`` is its schema.
 
-    Parameters
-    ----------
-    scene : Scene
-        The scene. All derived quantities are stated: stiffnesses, load parameters, offsets of contacts, positions of pins.
-    options : Options
-        Number of elements, in place of the scene's.
-    load_parameters : sequence of float
-        Load parameters to solve for; none asks only whether the program can state the scene.
-
-    Raises
-    ------
-    ModelError
-        If the scene uses a key that the resolved scene does not state.
+    All derived quantities are stated: stiffnesses, load parameters, offsets of contacts, positions of pins. The options may have a number
+    of elements in place of the scene's. No load parameters ask only whether the program can state the scene. A `ModelError` names a key
+    that the resolved scene does not state.
     """
     unknown = unstated(scene, "the resolved scene", PROGRAMS)
     if unknown is not None:
@@ -41,8 +31,8 @@ def request(scene: Scene, options: Options, load_parameters: Sequence[float]) ->
         "load_parameters": list(load_parameters),
         "beams": [_beam(scene, beam, options) for beam in scene.beams],
         "joints": joints(scene),
-        "supports": [_kept(item, SUPPORT) for item in scene.all_supports],
-        "loads": [_kept(item, LOAD) for item in scene.loads],
+        "supports": [kept(item, SUPPORT) for item in scene.all_supports],
+        "loads": [kept(item, LOAD) for item in scene.loads],
         "pins": [
             {
                 "name": pin.name,
@@ -53,22 +43,18 @@ def request(scene: Scene, options: Options, load_parameters: Sequence[float]) ->
             }
             for pin in scene.pins
         ],
-        "contacts": [_kept(item, CONTACT) | {"offset": scene.offset(item)} for item in scene.contacts],
+        "contacts": [kept(item, CONTACT) | {"offset": scene.offset(item)} for item in scene.contacts],
     }
     return json.dumps(data, allow_nan=False, indent=1) + "\n"
 
 
-def _kept(record: object, names: str) -> dict[str, Any]:
-    return {name: getattr(record, name) for name in names.split()}
-
-
 def _beam(scene: Scene, beam: BeamSpec, options: Options) -> dict[str, Any]:
     area, second_moment, shear_area = beam.cross_section
-    return _kept(beam, BEAM) | {
+    return kept(beam, BEAM) | {
         "tip": scene.tip(beam.name),
         "shear_modulus": beam.GA / shear_area,
         "area": area,
         "second_moment": second_moment,
         "shear_area": shear_area,
-        "elements": options.elements or beam.elements,
+        "elements": options.elements or beam.divisions,
     }

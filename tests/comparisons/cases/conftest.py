@@ -52,6 +52,7 @@ contact."pin->cantilever".penalty = 1e3
 pin.displacement = [[-0.5, 0.3]]
 [[run]]
 model = "tsm"
+element = "mixed"
 integration_tolerance = 1e-9
 scene.load_parameters = 2
 [[run]]

@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import psutil  # noqa: F401 - on Unix it takes `resource` itself, so it is there before that is hidden
 import pytest
 
 # not public: a worker's exception cannot be brought about from outside, nor systems without /proc
@@ -125,9 +124,7 @@ def test_a_measurement_is_the_response_and_comes_back_as_it_was(measured):
 
 
 def test_peak_memory_without_proc_and_resource(tmp_path, monkeypatch):
-    """As on Windows: psutil tells how much memory there is."""
+    """As on Windows: a rise is not seen."""
     monkeypatch.setattr(memory, "CLEAR", tmp_path / "none" / "clear_refs")
     monkeypatch.setitem(sys.modules, "resource", None)
-    size = 64 * 2**20
-    _, rise = memory.with_peak_memory(lambda: np.ones(size // 8))
-    assert 0.9 * size < rise < 1.5 * size
+    assert memory.with_peak_memory(lambda: "done") == ("done", 0)

@@ -30,7 +30,7 @@ def test_cases_are_all_combinations_in_the_order_of_the_file(many):
         ("tsm", "timoshenko", "8", "", "COMPLETED", "CERTIFIED"),
         ("rod", "", "", "", "COMPLETED", "CERTIFIED"),
         *[("solid", "", "", "10x1", "COMPLETED", "CERTIFIED")] * 3,
-        ("tsm", "", "", "", "REFUSED", ""),
+        ("tsm", "mixed", "", "", "REFUSED", ""),
         ("tsm", "", "5", "", "SLIPPED_OFF", "NOT_JUDGED"),
     ]
     solids = found[7:10]

@@ -19,7 +19,7 @@ import subprocess
 import tempfile
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -50,7 +50,6 @@ _CORNERS = ((0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2
 _BARS = ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7))
 _FACE = np.array([[-1.0, 4.0, -1.0], [4.0, 0.0, 4.0], [-1.0, 4.0, -1.0]]) / 12
 """Consistent nodal forces of a unit force that is spread evenly over a face with eight nodes."""
-_CONTROLS = ("*CONTROLS, PARAMETERS=FIELD", "1.E-6,1.E-8")
 _PRINT = (
     "*NODE PRINT, NSET=TIP", "U", "*NODE PRINT, NSET=AXIS", "U", "*NODE PRINT, NSET=CLAMP", "U,RF", "*END STEP", "",
 )  # fmt: skip
@@ -120,20 +119,11 @@ def states(scene: Table, histories: Histories) -> Iterator[float]:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Answer:
-    """Histories over the load increments of CalculiX, in the strip's frame.
+    """Histories over the load increments of CalculiX, in the strip's frame: s increments, a nodes on the axis.
 
-    Parameters
-    ----------
-    load_parameter
-        Part of the load, or of the pin's way, ``(s,)``.
-    tip
-        Mean displacement of the free end, ``(s, 2)`` [m].
-    force, moment
-        What the clamp exerts on the strip, ``(s, 2)`` [N] and about the clamped point ``(s,)`` [N m].
-    axis
-        Positions of the nodes on the axis, ``(s, a, 2)`` [m].
-    stopped
-        Reason why CalculiX stopped before the end; empty if it did not.
+    `load_parameter` (s,) is the part of the load or of the pin's way, `tip` (s, 2) the mean displacement of the free end, `force` (s, 2)
+    and `moment` (s,) what the clamp exerts on the strip, about the clamped point, and `axis` (s, a, 2) the positions of the nodes on the
+    axis. `stopped` is the reason why CalculiX stopped before the end, empty if it did not.
     """
 
     load_parameter: Array
@@ -145,64 +135,30 @@ class Answer:
 
 
 def tip_load(strip: "Strip", force: float) -> Answer:
-    """Return the answer to a transverse dead load [N] at the free end.
-
-    Raises
-    ------
-    CalculixError
-        If CalculiX is not installed or does not reach the whole load.
-    """
+    """Return the answer to a transverse dead load [N] at the free end; raise `CalculixError` unless the whole load is reached."""
     slab = Slab(strip)
-    answer = slab.answer(slab.tip_load(force))
+    answer = slab.answer(slab.tip_load(force, LOAD_STEPS))
     if answer.stopped:
         raise CalculixError(answer.stopped, started=True)
     return answer
 
 
 def pressed(strip: "Strip", start: Point, motion: Point, steps: int, penalty: float) -> Answer:
-    """Return the answer to a sharp pin that moves along the right face, up to the last increment that converged; see `Slab.pin`.
-
-    In CalculiX the pin may slip through the face, and the run then goes on without contact. The answer ends before that.
-
-    Raises
-    ------
-    CalculixError
-        If CalculiX is not installed, or does not complete one increment.
-    """
+    """Return the answer to a sharp pin on the right face, see `Slab.pin`, before it slips through the face or an increment fails."""
     slab = Slab(strip)
     found = slab.answer(slab.pin(start, motion, steps, penalty))
     through = np.flatnonzero(np.hypot(*found.force.T) < slab.unit)
     if not through.size:
         return found
     kept = {name: values[: through[0]] for name, values in vars(found).items() if name != "stopped"}
-    return replace(found, **kept, stopped="lost the pin through the face")
+    return Answer(**kept, stopped="lost the pin through the face")
 
 
 class Slab:
-    """A strip as a mesh of bricks, in the strip's frame.
+    """A strip, clamped at its start, as a mesh of bricks in the strip's frame.
 
-    Parameters
-    ----------
-    strip
-        The strip that the bricks fill.
-
-    Attributes
-    ----------
-    unit
-        Unit of force of the deck [N].
-    thickness
-        Thickness w [m].
-    numbers
-        Numbers of the nodes on the grid of corners and midpoints, ``(2 nx + 1, 2 ny + 1, 3)``; 0 at a grid point without a node.
-    points
-        Positions of the grid points, ``(2 nx + 1, 2 ny + 1, 3, 3)`` [m].
-    axis, clamp
-        Positions in the plane of the nodes on the axis and at the clamp, in the order of their numbers, ``(a, 2)`` and ``(c, 2)`` [m].
-
-    Raises
-    ------
-    ValueError
-        Unless the strip has St. Venant and Kirchhoff's law in plane stress, a clamp at its start and an even mesh.
+    `numbers` and `points` are the numbers of the nodes and the positions on the grid of corners and midpoints, (2 nx + 1, 2 ny + 1, 3);
+    the number is 0 at a grid point without a node. `axis` (a, 2) and `clamp` (c, 2) are the nodes there, `unit` is the deck's unit of force.
     """
 
     def __init__(self, strip: "Strip") -> None:
@@ -221,16 +177,14 @@ class Slab:
             self.points[part][self.numbers[part] > 0][:, :2] for part in (np.s_[:, ny, 0], np.s_[0])
         )
 
-    def tip_load(self, force: float, steps: int | None = None) -> str:
-        """Deck of a transverse dead load [N], spread evenly over the free end, in equal steps or in steps that CalculiX chooses."""
+    def tip_load(self, force: float, steps: int) -> str:
+        """Deck of a transverse dead load [N], spread evenly over the free end, in equal steps."""
         ny, end = self.strip.mesh[1], self.numbers[-1]
         loads = np.zeros(end.shape)
         for row in range(ny):
             loads[2 * row : 2 * row + 3] += force / self.unit / ny * _FACE
-        way = ["*STATIC", ".2,1."] if steps is None else ["*STATIC, DIRECT", f"{1 / steps:.12e},1."]
-        step = ["*STEP, NLGEOM, INC=10000", *_CONTROLS, *way, "*CLOAD"]
         forces = [f"{n},2,{load:.12e}" for n, load in zip(end[end > 0], loads[end > 0], strict=True)]
-        return "\n".join([*self._model(), *step, *forces, *_PRINT])
+        return self._deck([], steps, ["*CLOAD", *forces])
 
     def pin(self, start: Point, motion: Point, steps: int, penalty: float) -> str:
         """Deck of a sharp pin that moves along the right face in equal steps, from `start` by `motion` [m].
@@ -241,38 +195,17 @@ class Slab:
         (nx, ny), (x, y), top = self.strip.mesh, start, int(self.numbers.max())
         slope = penalty / self.unit / (self.thickness * self.strip.length / nx)
         places = (f"{x:.12e},{y:.12e},{part * self.thickness:.12e}" for part in (0.25, 0.75))
-        return "\n".join(
-            [
-                *self._model(),
-                "*NODE, NSET=PIN",
-                *(f"{top + n},{place}" for n, place in enumerate(places, start=1)),
-                "*SURFACE, NAME=NEEDLE, TYPE=NODE",
-                "PIN",
-                "*SURFACE, NAME=FACE",
-                *(f"{1 + column * ny},S3" for column in range(nx)),
-                "*SURFACE INTERACTION, NAME=HARD",
-                "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
-                f"{slope:.12e}",
-                "*CONTACT PAIR, INTERACTION=HARD, TYPE=NODE TO SURFACE",
-                "NEEDLE,FACE",
-                f"*STEP, NLGEOM, INC={2 * steps}",
-                *_CONTROLS,
-                "*STATIC, DIRECT",
-                f"{1 / steps:.12e},1.",
-                "*BOUNDARY",
-                *(f"PIN,{axis},{axis},{way:.12e}" for axis, way in enumerate((*motion, 0.0), start=1)),
-                *_PRINT,
-            ]
-        )
+        contact = [
+            "*NODE, NSET=PIN", *(f"{top + n},{place}" for n, place in enumerate(places, start=1)),
+            "*SURFACE, NAME=NEEDLE, TYPE=NODE", "PIN", "*SURFACE, NAME=FACE", *(f"{1 + column * ny},S3" for column in range(nx)),
+            "*SURFACE INTERACTION, NAME=HARD", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", f"{slope:.12e}",
+            "*CONTACT PAIR, INTERACTION=HARD, TYPE=NODE TO SURFACE", "NEEDLE,FACE",
+        ]  # fmt: skip
+        moved = (f"PIN,{axis},{axis},{way:.12e}" for axis, way in enumerate((*motion, 0.0), start=1))
+        return self._deck(contact, steps, ["*BOUNDARY", *moved])
 
     def answer(self, deck: str, seconds: float = 300.0) -> Answer:
-        """Return the answer to a deck, up to the last increment that converged and was printed completely.
-
-        Raises
-        ------
-        CalculixError
-            If CalculiX is not installed, or does not complete one increment.
-        """
+        """Return the answer to a deck, up to the last increment that was printed completely; raise `CalculixError` if there is none."""
         times, tables, stopped = run(deck, seconds)
         ny, held = self.strip.mesh[1], len(self.clamp)
         wanted = {
@@ -302,52 +235,34 @@ class Slab:
             stopped=stopped,
         )
 
-    def _model(self) -> list[str]:
-        """Nodes, bricks, material and supports; the clamp named ``rod`` holds transverse motion on the edge's middle line only."""
+    def _deck(self, contact: list[str], steps: int, action: list[str]) -> str:
+        """Nodes, bricks, material, supports and a step; the clamp named ``rod`` holds transverse motion on the edge's middle line only."""
         strip, n, (nx, ny) = self.strip, self.numbers, self.strip.mesh
         modulus = strip.youngs_modulus * strip.width / self.thickness / self.unit
         corners = np.array(_CORNERS)
         offsets = np.concatenate([corners, [(corners[a] + corners[b]) // 2 for a, b in _BARS]])
         columns, rows = np.divmod(np.arange(nx * ny), ny)
         x, y, z = np.moveaxis(np.stack([2 * columns, 2 * rows, 0 * rows], axis=-1)[:, None] + offsets, -1, 0)
-        sets = {
-            "CLAMP": n[0],
-            "HELD": n[0] if strip.clamp == "full" else n[0, ny],
-            "MIDDLE": n[:, :, 0],
-            "TIP": n[-1, :, 0],
-            "AXIS": n[:, ny, 0],
-        }
-        lines = ["*NODE"]
-        lines += [
-            f"{number},{a:.12e},{b:.12e},{c:.12e}"
-            for number, (a, b, c) in zip(n[n > 0], self.points[n > 0], strict=True)
-        ]
+        held = n[0] if strip.clamp == "full" else n[0, ny]
+        sets = {"CLAMP": n[0], "HELD": held, "MIDDLE": n[:, :, 0], "TIP": n[-1, :, 0], "AXIS": n[:, ny, 0]}
+        places = zip(n[n > 0], self.points[n > 0], strict=True)
+        lines = ["*NODE", *(f"{number},{a:.12e},{b:.12e},{c:.12e}" for number, (a, b, c) in places)]
         lines.append("*ELEMENT, TYPE=C3D20R, ELSET=STRIP")
         for number, brick in enumerate(n[x, y, z].tolist(), start=1):
             lines += [f"{number},{','.join(map(str, brick[:10]))},", ",".join(map(str, brick[10:]))]
         for name, numbers in sets.items():
             lines += [f"*NSET, NSET={name}", *(f"{number}," for number in numbers[numbers > 0])]
-        return [
-            *lines,
-            "*MATERIAL, NAME=ELASTIC",
-            "*ELASTIC",
-            f"{modulus:.12e},{strip.poissons_ratio:.12e}",
-            "*SOLID SECTION, ELSET=STRIP, MATERIAL=ELASTIC",
-            "*BOUNDARY",
-            "CLAMP,1,1",
-            "HELD,2,2",
-            "MIDDLE,3,3",
-        ]
+        material = f"{modulus:.12e},{strip.poissons_ratio:.12e}"
+        return "\n".join([
+            *lines, "*MATERIAL, NAME=ELASTIC", "*ELASTIC", material, "*SOLID SECTION, ELSET=STRIP, MATERIAL=ELASTIC",
+            "*BOUNDARY", "CLAMP,1,1", "HELD,2,2", "MIDDLE,3,3", *contact,
+            f"*STEP, NLGEOM, INC={2 * steps}", "*CONTROLS, PARAMETERS=FIELD", "1.E-6,1.E-8",
+            "*STATIC, DIRECT", f"{1 / steps:.12e},1.", *action, *_PRINT,
+        ])  # fmt: skip
 
 
 def run(deck: str, seconds: float = 300.0) -> tuple[list[float], Tables, str]:
-    """Run ``ccx`` on a deck, on one thread, for at most `seconds`; return what `parse` reads, and why it did not finish, empty if it did.
-
-    Raises
-    ------
-    CalculixError
-        If ``ccx`` is not installed.
-    """
+    """Run ``ccx`` on a deck, on one thread, for at most `seconds`; return what `parse` reads, and why it did not finish, empty if it did."""
     program, reason = shutil.which("ccx"), ""
     if program is None:
         raise CalculixError("is needed: there is no program ccx on the path (Debian: calculix-ccx)")

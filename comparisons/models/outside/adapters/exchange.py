@@ -22,13 +22,7 @@ class StoppedError(Exception):
 
 
 class Histories:
-    """The histories of an answer, one state after the other.
-
-    Parameters
-    ----------
-    scene : dict
-        The resolved scene.
-    """
+    """The histories of an answer to a resolved scene, one state after the other."""
 
     def __init__(self, scene: Table) -> None:
         self.scene = scene
@@ -38,9 +32,7 @@ class Histories:
             item["pair"]: {"force": [], "vector": [], "arc_position": [], "gap": []}
             for item in scene["contacts"]
         }
-        self.held: dict[str, tuple[list[Sequence[float]], list[float]]] = {
-            item["node"]: ([], []) for item in scene["supports"]
-        }
+        self.supports: Table = {item["node"]: {"force": [], "moment": []} for item in scene["supports"]}
 
     def axis(self, beam: str, arcs: Sequence[float], points: Points) -> None:
         """Add the deformed axis of a beam: arc lengths (m,) and positions (m, 2)."""
@@ -49,9 +41,8 @@ class Histories:
 
     def support(self, node: str, force: Sequence[float], moment: float = 0.0) -> None:
         """Add force and moment of a support on its beam."""
-        forces, moments = self.held[node]
-        forces.append([float(force[0]), float(force[1])])
-        moments.append(float(moment))
+        self.supports[node]["force"].append([float(force[0]), float(force[1])])
+        self.supports[node]["moment"].append(float(moment))
 
     def open(self, pair: str) -> None:
         """Add an open contact."""
@@ -60,20 +51,15 @@ class Histories:
     def contact(self, pair: str, vector: Sequence[float], arc: float | None, gap: float | None) -> None:
         """Add a contact: its force on the beam, arc position and gap; both None where the pair is open."""
         x, y = float(vector[0]), float(vector[1])
-        added = {"force": (x * x + y * y) ** 0.5, "vector": [x, y], "arc_position": arc, "gap": gap}
-        for key, value in added.items():
+        for key, value in (
+            ("force", (x * x + y * y) ** 0.5), ("vector", [x, y]), ("arc_position", arc), ("gap", gap),
+        ):  # fmt: skip
             self.contacts[pair][key].append(value)
 
     def tables(self) -> Table:
         """Return the histories by the names of the response."""
-        return {
-            "load_parameter": self.reached,
-            "axes": self.axes,
-            "contacts": self.contacts,
-            "supports": {
-                node: {"force": forces, "moment": moments} for node, (forces, moments) in self.held.items()
-            },
-        }
+        histories = {name: getattr(self, name) for name in ("axes", "contacts", "supports")}
+        return {"load_parameter": self.reached, **histories}
 
 
 Refusal = Callable[[Table], str | None]
@@ -142,12 +128,7 @@ def points_along(beam: Table, count: int) -> tuple[list[float], list[tuple[float
 def refined(scene: Table, steps: int) -> list[list[float]]:
     """Return the load steps to each load parameter, equal between two load parameters.
 
-    Parameters
-    ----------
-    scene : dict
-        The resolved scene.
-    steps : int
-        Least number of all steps; an argument of the program replaces it.
+    `steps` is the least number of all steps; an argument of the program replaces it.
     """
     times = [0.0, *scene["load_parameters"]]
     inner = max(1, -(-scene.get("steps", steps) // (len(times) - 1)))

@@ -74,29 +74,23 @@ class Frame:
 
 def frame(scene: Table) -> Frame:
     """Return the frame of a resolved scene."""
-    at_joint = {end: number for number, ends in enumerate(scene["joints"]) for end in ends}
-    shared: dict[int, int] = {}
-    points: list[tuple[float, float]] = []
-    numbers: dict[str, list[int]] = {}
-    elements: list[Element] = []
+    joint = {end: ends[0] for ends in scene["joints"] for end in ends}
+    shared: dict[str, int] = {}
+    mesh = Frame(scene=scene, points=[], numbers={}, elements=[])
     for beam in scene["beams"]:
-        own: list[int] = []
-        arcs, line = points_along(beam, beam["elements"])
+        name, parts = beam["name"], beam["elements"]
+        arcs, line = points_along(beam, parts)
         for k, point in enumerate(line):
-            end = {0: "start", beam["elements"]: "end"}.get(k)
-            joint = at_joint.get(f"{beam['name']}.{end}", -1)
-            number = shared.get(joint, len(points))
-            if number == len(points):
-                points.append(point)
-            if joint >= 0:
-                shared[joint] = number
-            own.append(number)
-        numbers[beam["name"]] = own
-        elements += [
-            Element(beam=beam, nodes=nodes, arc=arc, length=beam["length"] / beam["elements"])
-            for nodes, arc in zip(pairwise(own), arcs, strict=False)
-        ]
-    return Frame(scene=scene, points=points, numbers=numbers, elements=elements)
+            node = f"{name}.{ {0: 'start', parts: 'end'}.get(k, k) }"
+            number = shared.setdefault(joint.get(node, node), len(mesh.points))
+            if number == len(mesh.points):
+                mesh.points.append(point)
+            mesh.numbers.setdefault(name, []).append(number)
+        mesh.elements.extend(
+            Element(beam=beam, nodes=nodes, arc=arc, length=beam["length"] / parts)
+            for nodes, arc in zip(pairwise(mesh.numbers[name]), arcs, strict=False)
+        )
+    return mesh
 
 
 def projection(a: Any, b: Any, point: Any) -> tuple[float, float]:

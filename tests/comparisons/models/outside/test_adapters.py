@@ -140,7 +140,7 @@ REASONS = [
 @pytest.mark.parametrize(("name", "scene", "reason"), REASONS)
 def test_a_scene_that_cannot_be_stated_has_its_reason(name, scene, reason, monkeypatch):
     """Without a process."""
-    monkeypatch.setattr("psutil.Popen", None)
+    monkeypatch.setattr("subprocess.Popen", None)
     said = find(name).refusal(scene)
     assert said is not None
     assert said.startswith(reason)
