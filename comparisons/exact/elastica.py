@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 from scipy.special import ellipj, elliprd, elliprf
 
@@ -33,7 +33,7 @@ class ElasticaState:
     Attributes
     ----------
     outcome : Outcome
-        State of contact. Without contact the beam is straight and all forces are zero; `LOST` is not computed.
+        State of contact. Without contact the beam is straight and all forces are zero; without an equilibrium that is connected with it, `LOST`, as well.
     tangent_angle : float
         Angle `tc` of the tangent at the pin and of the tail [rad].
     arc_position : float
@@ -79,6 +79,29 @@ class ElasticaState:
         tangent = np.array([np.cos(tc), np.sin(tc)])
         pin = self.tip - (self.length - self.arc_position) * tangent
         return np.asarray(pin + np.outer(tail, tangent) - lam * _chord(tc, u), dtype=np.float64)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElasticaPath:
+    """Equilibria at `s` positions of a pin; the arrays have the states' values, see `ElasticaState`.
+
+    `load_parameter` (s,) is the fraction of the path's length, `slip_off` that of the first position at which the pin has left the beam
+    over its tip, or nan. There are no iterations.
+    """
+
+    states: tuple[ElasticaState, ...]
+    load_parameter: Array
+    outcome: tuple[Outcome, ...]
+    force: Array
+    arc_position: Array
+    clamp_moment: Array
+    tip: Array
+    iterations: NDArray[np.int64]
+    slip_off: float
+
+    def shape(self, k: int, n: int) -> Array:
+        """Points (n, 2) of the axis at a position."""
+        return self.states[k].shape(n)
 
 
 def _integrals(u: NDArray[np.float64] | float) -> tuple[Array, Array, Array]:
@@ -203,4 +226,25 @@ def elastica_under_pin(x: float, y: float, *, EI: float = 1.0, length: float = 1
         clamp_moment=-F * lam * I1,
         tip=np.array([x, y]) + (length - s) * tangent,
         length=length,
+    )
+
+
+def elastica_along(points: ArrayLike, *, EI: float = 1.0, length: float = 1.0) -> ElasticaPath:
+    """Equilibria of the elastica at the vertices (s, 2) of a pin's path; a pin that has slipped off stays off above the straight beam."""
+    pins, states = np.asarray(points, dtype=np.float64), list[ElasticaState]()
+    for x, y in pins:
+        left = y > 0.0 and states and states[-1].outcome is Outcome.SLIPPED
+        states.append(states[-1] if left else elastica_under_pin(float(x), float(y), EI=EI, length=length))
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(pins, axis=0).T))])
+    t, slipped = way / (way[-1] or 1.0), [state.outcome is Outcome.SLIPPED for state in states]
+    return ElasticaPath(
+        states=tuple(states),
+        load_parameter=t,
+        outcome=tuple(state.outcome for state in states),
+        force=np.array([state.force for state in states]),
+        arc_position=np.array([state.arc_position for state in states]),
+        clamp_moment=np.array([state.clamp_moment for state in states]),
+        tip=np.array([state.tip for state in states]),
+        iterations=np.zeros(len(states), dtype=np.int64),
+        slip_off=float(t[slipped.index(True)]) if any(slipped) else np.nan,
     )

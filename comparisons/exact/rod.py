@@ -1,18 +1,18 @@
-"""A Reissner rod under a pin that moves along a path.
+"""A Reissner rod under a pin that moves along a path, without or with Coulomb friction.
 
-The clamp is at the origin and the undeformed rod lies along +x. A frictionless pin below it pushes to +y.
+The clamp is at the origin and the undeformed rod lies along +x. A pin below it pushes to +y.
 """
 
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from comparisons.exact.checks import path_points, require_positive, require_stiffness
+from comparisons.exact.checks import require_not_negative, require_positive
+from comparisons.exact.contact import Cantilever
+from comparisons.exact.follow import Event, follow
 from comparisons.exact.outcome import Outcome
-from comparisons.exact.path_following import Rod, State, advance, first_state
-from comparisons.exact.reissner import COMPLEX_STEP, Flexibility, loaded_part, normal, position
+from comparisons.exact.section import Flexibility
 
 Array = NDArray[np.float64]
 
@@ -21,52 +21,66 @@ Array = NDArray[np.float64]
 class RodPath:
     """States of the rod at `s` positions of the pin.
 
-    Without contact the rod is straight, `arc_position` is nan and all other arrays are zero. Without equilibrium
-    (`Outcome.LOST`) all arrays are nan.
+    Without contact the rod is straight, `arc_position` is nan and the forces are zero. Where the path has ended (`Outcome.ends`) all
+    arrays are nan.
 
     Attributes
     ----------
+    load_parameter : ndarray, shape (s,)
+        Fraction of the length of the pin's path.
     outcome : tuple of Outcome
-        Contact state at every position.
+        State of contact at every position. At an event it is the state after the event.
     force : ndarray, shape (s, 2)
         Force of the pin on the rod.
-    magnitude : ndarray, shape (s,)
-        Contact force `F >= 0`.
+    tangential, normal : ndarray, shape (s,)
+        Component of the force along the mean tangent towards the tip, and its component away from the pin.
     arc_position : ndarray, shape (s,)
         Distance of the contact from the clamp along the undeformed axis.
-    clamp_force : ndarray, shape (s, 2)
-        Force of the clamp on the rod.
     clamp_moment : ndarray, shape (s,)
-        Moment of the clamp on the rod, anticlockwise positive.
+        Moment of the clamp on the rod, anticlockwise positive; the force of the clamp is that of the pin, reversed.
     tip : ndarray, shape (s, 2)
         Position of the free tip.
-    tip_rotation : ndarray, shape (s,)
-        Rotation of the section at the tip [rad].
+    work, dissipated : ndarray, shape (s,)
+        Work of the pin since the start, and energy lost in slip, the integral of `mu F_n |v|`; zero without friction.
+    stored, released : ndarray, shape (s,)
+        Strain energy, and strain energy lost where the pin leaves the rod over its tip.
     iterations : ndarray of int, shape (s,)
         Newton iterations since the previous position, including rejected steps.
-    slip_off : float
-        Fraction of the path's length at which the pin first leaves the rod over its tip; nan without slip-off.
-    unknowns : ndarray, shape (s, 2)
-        `(q, ell / length)` of `comparisons.exact.reissner`.
-    flexibility : Flexibility
-        Flexibility of the rod.
+    events : tuple of Event
+        Changes of state in the order of the load parameter.
+    unknowns : ndarray, shape (s, 4)
+        Unknowns of `rod`, `comparisons.exact.contact.Cantilever`.
     length : float
         Undeformed length.
     """
 
+    load_parameter: Array
     outcome: tuple[Outcome, ...]
     force: Array
-    magnitude: Array
+    tangential: Array
+    normal: Array
     arc_position: Array
-    clamp_force: Array
     clamp_moment: Array
     tip: Array
-    tip_rotation: Array
+    work: Array
+    dissipated: Array
+    stored: Array
+    released: Array
     iterations: NDArray[np.int64]
-    slip_off: float
+    events: tuple[Event, ...]
     unknowns: Array
-    flexibility: Flexibility
+    rod: Cantilever
     length: float
+
+    @property
+    def magnitude(self) -> Array:
+        """Contact force, shape (s,)."""
+        return np.asarray(np.hypot(*self.force.T))
+
+    @property
+    def slip_off(self) -> float:
+        """Fraction of the path's length at which the pin first leaves the rod over its tip; nan without slip-off."""
+        return next((item.load_parameter for item in self.events if item.after is Outcome.SLIPPED), np.nan)
 
     def shape(self, k: int, n: int) -> Array:
         """Position and rotation `x, y, theta` at `n` equal distances along the undeformed axis from the clamp to the tip.
@@ -75,53 +89,55 @@ class RodPath:
         -------
         ndarray, shape (n, 3)
         """
-        arc = np.linspace(0.0, 1.0, n)
-        straight = np.stack([self.length * arc, np.zeros(n), np.zeros(n)], axis=1)
-        if self.outcome[k] is not Outcome.CONTACT:
-            return straight if self.outcome[k] is not Outcome.LOST else np.full((n, 3), np.nan)
-        q, ell = self.unknowns[k]
-        whole = loaded_part(q, ell, self.flexibility)
-        s = whole.arc.real
-        fraction = _fraction_at(np.maximum(s - arc, 0.0) / s, q, ell, self.flexibility)
-        part = loaded_part(q, ell, self.flexibility, fraction)
-        theta = (whole.direction - part.lag).real
-        end = theta[-1]
-        tail = np.outer(np.maximum(arc - s, 0.0), [np.cos(end), np.sin(end)])
-        points = (position(whole) - position(part)).real + tail
-        return np.column_stack([self.length * points, theta])
+        return _axis(self.rod, self.outcome[k], self.unknowns[k], np.linspace(0.0, 1.0, n)) * [
+            self.length,
+            self.length,
+            1.0,
+        ]
 
 
-def _fraction_at(share: Array, q: float, ell: float, flexibility: Flexibility) -> Array:
-    """Return the fraction of `psi` at which the part from the pin has a share of the whole loaded arc."""
-    whole = loaded_part(q, ell, flexibility).arc.real
-    fraction = share.copy()
-    for _ in range(50):
-        arc = loaded_part(q, ell, flexibility, fraction + 1j * COMPLEX_STEP).arc
-        change = (share * whole - arc.real) * COMPLEX_STEP / arc.imag
-        fraction = fraction + change
-        if np.max(np.abs(change)) < 1e-9:
-            break
-    return fraction
+def _axis(rod: Cantilever, outcome: Outcome, z: Array, arcs: Array) -> Array:
+    """Position and rotation (n, 3) at arc positions (n,) of a rod of length 1; behind the contact it is straight."""
+    if not outcome.touches:
+        return np.outer(np.full(len(arcs), np.nan) if outcome.ends else arcs, [1.0, 0.0, 0.0])
+    s = z[3]
+    part = rod.sections(z, np.minimum(arcs, s) / s)
+    tail = np.maximum(arcs - s, 0.0)
+    return np.column_stack(
+        [part.x + tail * np.cos(part.theta), part.y + tail * np.sin(part.theta), part.theta]
+    )
 
 
 def rod_under_pin(
-    points: ArrayLike, *, EA: float, GA: float, EI: float, length: float, offset: float = 0.0
+    points: ArrayLike,
+    *,
+    EA: float,
+    GA: float,
+    EI: float,
+    length: float,
+    friction: float = 0.0,
+    offset: float = 0.0,
+    radius: float = 0.0,
 ) -> RodPath:
-    """Equilibrium of a clamped Reissner rod under a frictionless pin at every vertex of the pin's path.
+    """Equilibrium of a clamped Reissner rod under a pin at every vertex of the pin's path.
 
     Parameters
     ----------
     points : array_like, shape (s, 2)
-        Vertices of the path, joined by straight lines. The first is the start of the pin and must not be inside or above
-        the rod.
+        Vertices of the path of the pin's centre, joined by straight lines. The first is the start of the pin and must not be inside or
+        above the rod.
     EA, GA : float
         Stretch stiffness and shear stiffness `GA_e`; `inf` is rigid.
     EI : float
         Bending stiffness.
     length : float
         Undeformed length.
+    friction : float
+        Coefficient of friction mu.
     offset : float
-        Distance of the pin from the axis, along the contact force (half the height for contact with the surface).
+        Distance of the rod's face from its axis, half the height; zero for contact with the axis.
+    radius : float
+        Radius of the pin, which does not turn; zero is a sharp one.
 
     Returns
     -------
@@ -130,65 +146,65 @@ def rod_under_pin(
     Raises
     ------
     ValueError
-        If a stiffness or the length is not positive, the path is not finite, or its start is not outside the rod.
+        If a stiffness or the length is not positive, another number is negative, the path is not finite, or its start is not outside the
+        rod.
 
     Examples
     --------
     >>> path = rod_under_pin([[1.0, 0.0], [0.0, 2 / np.pi]], EA=np.inf, GA=np.inf, EI=1.0, length=1.0)
     >>> round(float(path.magnitude[1]), 12), round(float(path.arc_position[1]), 12)
     (8.182128140184, 0.89572169201)
+    >>> path = rod_under_pin([[1.0, 0.0], [0.0, 2 / np.pi]], EA=3e4, GA=1e4, EI=1.0, length=1.0, friction=0.3)
+    >>> [event.after.value for event in path.events]
+    ['slip to clamp', 'stick', 'slip to tip']
     """
     require_positive(EI=EI, length=length)
-    require_stiffness(EA=EA, GA=GA)
-    if not (np.isfinite(offset) and offset >= 0.0):
-        raise ValueError(f"offset = {offset}: must be finite and not negative")
-    flexibility = Flexibility(stretch=EI / length**2 / EA, shear=EI / length**2 / GA)
-    rod = Rod(flexibility, offset / length)
-    pins = path_points(points) / length
-    distance = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(pins, axis=0).T))])
-    states, iterations, slip_off = [first_state(rod, pins[0])], [0], np.nan
-    for k, (start, end) in enumerate(pairwise(pins)):
-        state, spent, slip = advance(rod, states[-1], start, end)
-        states.append(state)
-        iterations.append(spent)
-        if not np.isnan(slip) and np.isnan(slip_off):
-            slip_off = float((distance[k] + slip * (distance[k + 1] - distance[k])) / distance[-1])
-    return _collect(states, iterations, slip_off, flexibility, EI, length)
+    require_positive(infinite=True, EA=EA, GA=GA)
+    require_not_negative(friction=friction, offset=offset, radius=radius)
+    pins = np.asarray(points, dtype=np.float64)
+    if pins.ndim != 2 or pins.shape[1] != 2 or not len(pins) or not np.all(np.isfinite(pins)):
+        raise ValueError(f"points, shape {pins.shape}: must be finite and of shape (s, 2), s >= 1")
+    unit, energy = EI / length**2, EI / length
+    rod = Cantilever(
+        flexibility=Flexibility(stretch=unit / EA, shear=unit / GA),
+        face=offset / length,
+        radius=radius / length,
+        friction=friction,
+    )
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(pins, axis=0).T))])
+    t = way / (way[-1] or 1.0)
+    path = list(follow(rod, pins / length, t))
+    outcome = tuple(one.state for one in path)
+    touches = np.array([state.touches for state in outcome])
+    lost = np.where([state.ends for state in outcome], np.nan, 0.0)
+    z = np.where(touches[:, None], [one.z for one in path], [0.0, 0.0, 0.0, 1.0])
+    contact = rod.contact(z, np.zeros(2))
 
+    def column(name: str) -> Array:
+        return energy * (np.array([getattr(one, name) for one in path]) + lost)
 
-def _collect(
-    states: list[State],
-    iterations: list[int],
-    slip_off: float,
-    flexibility: Flexibility,
-    EI: float,
-    length: float,
-) -> RodPath:
-    """Return the path in the units of the input."""
-    outcome = tuple(state.outcome for state in states)
-    z = np.array([state.unknowns for state in states])
-    contact = np.array([item is Outcome.CONTACT for item in outcome])
-    free = np.where([item is Outcome.LOST for item in outcome], np.nan, 0.0)
-    q, ell = np.where(contact[:, None], z, [0.0, 1.0]).T
-    part = loaded_part(q, ell, flexibility)
-    arc = np.where(contact, part.arc.real, np.nan)
-    rotation = np.where(contact, (part.direction - part.slip).real, free)
-    magnitude = np.where(contact, np.maximum(part.force.real, 0.0) * EI / length**2, free)
-    force = magnitude[:, None] * normal(part).real
-    tail = (1.0 - arc)[:, None] * np.stack([np.cos(rotation), np.sin(rotation)], axis=1)
-    straight = np.stack([1.0 + free, free], axis=1)
     return RodPath(
+        load_parameter=t,
         outcome=outcome,
-        force=force,
-        magnitude=magnitude,
-        arc_position=length * arc,
-        clamp_force=-force,
-        clamp_moment=np.where(contact, -(part.force * part.along).real * EI / length, free),
-        tip=length * np.where(contact[:, None], position(part).real + tail, straight),
-        tip_rotation=rotation,
-        iterations=np.array(iterations, dtype=np.int64),
-        slip_off=slip_off,
+        force=unit * (z[:, :2] + lost[:, None]),
+        tangential=unit * (contact.tangential + lost),
+        normal=unit * (contact.normal + lost),
+        arc_position=length * np.where(touches, z[:, 3], np.nan),
+        clamp_moment=-energy * (z[:, 2] + lost),
+        tip=length
+        * np.array(
+            [_axis(rod, state, row, np.ones(1))[0, :2] for state, row in zip(outcome, z, strict=True)]
+        ),
+        work=column("work"),
+        dissipated=column("dissipated"),
+        stored=energy * (np.array([rod.energy(row) for row in z]) + lost),
+        released=column("released"),
+        iterations=np.diff([one.iterations for one in path], prepend=0),
+        events=tuple(
+            replace(event, arc_position=length * event.arc_position, magnitude=unit * event.magnitude)
+            for event in path[-1].events
+        ),
         unknowns=z,
-        flexibility=flexibility,
+        rod=rod,
         length=length,
     )

@@ -1,4 +1,11 @@
-"""Sections of a rod, and integration along a part with a constant force by spectral collocation."""
+"""Sections of a rod, and integration along a part with a constant force by spectral collocation.
+
+The rod has the stiffnesses EA, GA and EI and the section axes `d1 = (cos theta, sin theta)`, `d2 = (-sin theta, cos theta)`:
+
+    theta' = m/EI,   r' = (1 + N/EA) d1 + (Q/GA) d2,   m' = -r' x n,   N = n.d1,  Q = n.d2
+
+Lengths are in units of the rod's length L, forces in EI/L^2, moments in EI/L.
+"""
 
 from typing import Any, NamedTuple
 
@@ -6,27 +13,19 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from comparisons.exact.reissner import Flexibility
-
 Array = NDArray[Any]  # real or complex: derivatives are complex steps
 
-
-def integrals(x: Array, points: int) -> Array:
-    """Return the matrix from values at Gauss points of (0, 1) to the integrals over xi from 0 to `(1 + x)/2`, x (k,).
-
-    Legendre's polynomial `P_k` has the integral `(P_k+1 - P_k-1)/(2 k + 1)`.
-    """
-    nodes, w = legendre.leggauss(points)
-    degree = np.arange(points)
-    coefficients = (2 * degree[:, None] + 1) / 2.0 * legendre.legvander(nodes, points - 1).T * w
-    P = legendre.legvander(x, points)
-    primitive = np.column_stack([x + 1.0, (P[:, 2:] - P[:, :-2]) / (2 * np.arange(1, points) + 1)])
-    return np.asarray(primitive @ coefficients / 2.0)
+COMPLEX_STEP = 1e-60
+POINTS, PICARD = 36, 24
+SAME = 4e-15
+"""Change of an angle, or relative change of its derivatives, in the last iteration."""
 
 
-_POINTS, _PICARD = 36, 24
-_INTEGRATION = integrals(np.append(legendre.leggauss(_POINTS)[0], 1.0), _POINTS)
-"""Integrals from 0 to the Gauss points of (0, 1), and in the last row to 1."""
+class Flexibility(NamedTuple):
+    """Axial and shear flexibility of a rod, `EI/(EA L^2)` and `EI/(GA L^2)`; zero is rigid."""
+
+    stretch: float
+    shear: float
 
 
 class Section(NamedTuple):
@@ -38,6 +37,30 @@ class Section(NamedTuple):
     moment: Array
 
 
+def rule(points: int) -> tuple[Array, Array]:
+    """Gauss points of (0, 1), and their weights."""
+    nodes, weights = legendre.leggauss(points)
+    return (nodes + 1.0) / 2.0, weights / 2.0
+
+
+def integrals(fractions: Array) -> Array:
+    """Return the matrix from values at the Gauss points to the integrals from 0 to fractions (k,), shape (POINTS, k).
+
+    Legendre's polynomial `P_k` has the integral `(P_k+1 - P_k-1)/(2 k + 1)`.
+    """
+    nodes, w = legendre.leggauss(POINTS)
+    degree, x = np.arange(POINTS), 2.0 * fractions - 1.0
+    coefficients = (2 * degree[:, None] + 1) / 2.0 * legendre.legvander(nodes, POINTS - 1).T * w
+    P = legendre.legvander(x, POINTS)
+    primitive = np.column_stack([x + 1.0, (P[:, 2:] - P[:, :-2]) / (2 * np.arange(1, POINTS) + 1)])
+    return np.asarray(primitive @ coefficients / 2.0).T
+
+
+GAUSS, WEIGHTS = rule(POINTS)
+_ONCE, _END = integrals(GAUSS), integrals(np.ones(1))
+_TWICE = _ONCE @ _ONCE
+
+
 def tangent(theta: Array, force: tuple[Array, Array], flexibility: Flexibility) -> tuple[Array, Array]:
     """Derivative `r' = (1 + N/EA) d1 + (Q/GA) d2` of the position by arc length."""
     c, s = np.cos(theta), np.sin(theta)
@@ -46,15 +69,28 @@ def tangent(theta: Array, force: tuple[Array, Array], flexibility: Flexibility) 
     return stretch * c - shear * s, stretch * s + shear * c
 
 
-def integrate(start: Section, force: tuple[Array, Array], length: Array, flexibility: Flexibility) -> Section:
-    """Section at the end of a part with a constant force, by Picard's iteration at the Gauss points."""
-    n = force[0][..., None], force[1][..., None]
-    weights = length[..., None, None] * _INTEGRATION
-    theta = start.theta[..., None] + np.zeros(_POINTS + 1)
-    for _ in range(_PICARD):
-        dx, dy = tangent(theta[..., :-1], n, flexibility)
-        moment = start.moment[..., None] - (weights @ (dx * n[1] - dy * n[0])[..., None])[..., 0]
-        theta = start.theta[..., None] + (weights @ moment[..., :-1, None])[..., 0]
-    dx, dy = (component[..., None] for component in tangent(theta[..., :-1], n, flexibility))
-    x, y = start.x + (weights @ dx)[..., -1, 0], start.y + (weights @ dy)[..., -1, 0]
-    return Section(x, y, theta[..., -1], moment[..., -1])
+def integrate(
+    start: Section,
+    force: tuple[Array, Array],
+    length: Array,
+    flexibility: Flexibility,
+    fractions: Array | None = None,
+) -> Section:
+    """Section at the end of a part with a constant force, or sections (..., k) at fractions (k,) of it, by Picard's iteration."""
+    x, y, theta_0, m_0, nx, ny, h = (value[..., None] for value in (*start, *force, length))
+
+    def rates(theta: Array) -> tuple[Array, Array, Array]:
+        dx, dy = tangent(theta, (nx, ny), flexibility)
+        return dx, dy, dy * nx - dx * ny
+
+    theta = straight = theta_0 + h * m_0 * GAUSS
+    for _ in range(PICARD):
+        last, theta = theta, straight + h**2 * (rates(theta)[2] @ _TWICE)
+        change = theta - last
+        slope = SAME * np.abs(theta.imag).max(initial=0.0)
+        if np.all(np.abs(change.real) <= SAME) and np.all(np.abs(change.imag) <= slope):
+            break
+    to, (dx, dy, dm) = _END if fractions is None else integrals(fractions), rates(theta)
+    turns = h * ((m_0 + h * (dm @ _ONCE)) @ to)
+    ends = x + h * (dx @ to), y + h * (dy @ to), theta_0 + turns, m_0 + h * (dm @ to)
+    return Section(*(end[..., 0] for end in ends) if fractions is None else ends)

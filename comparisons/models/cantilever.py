@@ -1,21 +1,16 @@
 """One rod, clamped at one end, under one pin: the scene in the rod's frame, and its exact states as a response."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
 from time import perf_counter
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.exact import FrictionPath, FrictionState, Surface, rod_with_friction
-from comparisons.exact.outcome import Outcome
-from comparisons.exact.reissner import Flexibility
-from comparisons.exact.rod import rod_under_pin
-from comparisons.exact.section import Section, integrate
+from comparisons.exact import ElasticaPath, Outcome, RodPath, rod_under_pin
 from comparisons.models.options import ModelError
 from comparisons.models.rod import ROD
 from comparisons.models.shared import POINTS
@@ -37,9 +32,11 @@ STOPS = {
     "LOST_CONTACT": "a contact that must persist was released",
     "SLIPPED_OFF": "a contact that must persist slipped off the beam",
     "END_CONTACT": "contact with the end of a beam is not modelled",
-    FrictionState.JAMMED.name: "the contact can neither stick nor slip",
+    Outcome.JAMMED.name: "the contact can neither stick nor slip",
 }
 """Reasons why an exact solution stops."""
+Path = RodPath | ElasticaPath
+_LOST = [state.name for state in Outcome if state.ends]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,11 +73,6 @@ class RodScene:
     def from_end(self) -> bool:
         """Whether the clamp is at the beam's end, so that the local x runs from end to start."""
         return self.clamp == "end"
-
-    @property
-    def points(self) -> Array:
-        """The pin at the scene's load parameters (s, 2)."""
-        return self.path[self.hits]
 
     def position(self, local: Array) -> Array:
         """Return points (..., 2) of the local frame in the scene's."""
@@ -146,148 +138,67 @@ def _clamp(scene: Scene) -> SupportSpec:
     return clamp
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class LocalStates:
-    """States of a cantilever in its local frame, one for each load parameter; the pin exerts the force.
-
-    `visited` has one outcome for each point of the path, and `hits` the indices of the points that belong to load parameters.
-    `shape(k)` returns points (n, 2) of the axis.
-    """
-
-    visited: Sequence[Outcome]
-    hits: NDArray[np.int64]
-    force: Array
-    arc_position: Array
-    clamp_moment: Array
-    tip: Array
-    iterations: NDArray[np.int64]
-    shape: Callable[[int], Array]
-    slip_off: float
-
-
-def _states(path: Any, hits: NDArray[np.int64], **more: Any) -> LocalStates:
-    """Return the states at the load parameters of a path, with what else is stated of them."""
-    at = {name: getattr(path, name)[hits] for name in ("force", "arc_position", "clamp_moment", "tip")}
-    return LocalStates(hits=hits, **at, **more)
-
-
 def solve_rod(scene: Scene, local: RodScene) -> Response:
     """Solve `scene` as a Reissner rod; `local` is the scene in the rod's frame."""
-    beam, hits = local.beam, local.hits
-    stiffness = {"EA": beam.EA, "GA": beam.GA, "EI": beam.EI}
+    beam, contact, radius = local.beam, local.contact, scene.radius(local.contact)
     began = perf_counter()
-    path = rod_under_pin(local.path, offset=local.offset, length=beam.length, **stiffness)
-    seconds = perf_counter() - began
-    states = _states(
-        path,
-        hits,
-        visited=path.outcome,
-        iterations=np.diff(np.cumsum(path.iterations)[hits], prepend=0),
-        shape=lambda k: path.shape(int(hits[k]), POINTS)[:, :2],
-        slip_off=path.slip_off,
-    )
-    return local_response(ROD.name, scene, local, states, unknowns=path.unknowns.shape[1], seconds=seconds)
-
-
-def solve_rod_with_friction(scene: Scene, local: RodScene) -> Response:
-    """Solve `scene` as a Reissner rod under a pin with friction; `local` is the scene in the rod's frame."""
-    beam, hits, contact, radius = local.beam, local.hits, local.contact, scene.radius(local.contact)
-    began = perf_counter()
-    path = rod_with_friction(
+    path = rod_under_pin(
         local.path,
-        friction=contact.friction,
         EA=beam.EA,
         GA=beam.GA,
         EI=beam.EI,
         length=beam.length,
-        surface=Surface(offset=local.offset - radius, radius=radius),
-        side=1,
+        friction=contact.friction,
+        offset=local.offset - radius,
+        radius=radius,
     )
     seconds = perf_counter() - began
-    outcomes = {FrictionState.OPEN: Outcome.OPEN, FrictionState.SLIPPED: Outcome.SLIPPED}
-    states = _states(
-        path,
-        hits,
-        visited=[Outcome.CONTACT if one.touches else outcomes.get(one, Outcome.LOST) for one in path.state],
-        iterations=np.zeros(len(hits), dtype=np.int64),
-        shape=lambda k: _friction_shape(path, local, int(hits[k])),
-        slip_off=next(
-            (event.load_parameter for event in path.events if event.after is FrictionState.SLIPPED), np.nan
-        ),
-    )
-    response = local_response(ROD.name, scene, local, states, unknowns=4, seconds=seconds)
-    reached, sense = hits[: len(response.load_parameter)], -1 if local.from_end else 1
+    response = local_response(ROD.name, scene, local, path, unknowns=path.unknowns.shape[1], seconds=seconds)
+    if not contact.friction:
+        return response
+    reached, sense = local.hits[: len(response.load_parameter)], -1 if local.from_end else 1
     friction = FrictionHistory(
         tangential=sense * path.tangential[reached],
         normal=path.normal[reached],
-        slip=np.array([sense * path.state[k].sense for k in reached], dtype=np.int64),
+        slip=np.array([sense * path.outcome[k].sense for k in reached], dtype=np.int64),
         dissipated=path.dissipated[reached],
     )
-    response = replace(
+    return replace(
         response,
         contacts={pair: replace(item, friction=friction) for pair, item in response.contacts.items()},
         work=path.work[reached],
-        events=_friction_events(path, local),
+        events=tuple(_events(path, local)),
         index=np.full(len(reached), -1, dtype=np.int64),
     )
-    ended = next((state.name for state in path.state if state.name in STOPS), None)
-    if response.completed or ended is None:
-        return response
-    return replace(response, status=ended, message=f"{STOPS[ended]}; {response.message}")
 
 
-def _friction_events(path: FrictionPath, local: RodScene) -> tuple[ContactEvent, ...]:
-    """Return the located changes of state."""
-    found = []
+def _events(path: RodPath, local: RodScene) -> Iterator[ContactEvent]:
+    """Yield the located changes of state."""
+    kinds = {Outcome.OPEN: "release", Outcome.SLIPPED: "slip-off", Outcome.STICK: "stick"}
     for event in path.events:
         if event.after.ends or event.load_parameter == 0.0:
             continue
-        kind = "stick" if event.after is FrictionState.STICK else "slip"
-        if not event.after.touches:
-            kind = "slip-off" if event.after is FrictionState.SLIPPED else "release"
-        elif not event.before.touches:
-            kind = "touch"
-        found.append(
-            ContactEvent(
-                kind=kind,
-                load_parameter=event.load_parameter,
-                pair=local.contact.pair,
-                element=0,
-                arc_position=float(local.arc(np.array(event.arc_position))),
-                force=event.magnitude,
-                released=0.0,
-            )
+        touch = event.after.touches and not event.before.touches
+        yield ContactEvent(
+            kind="touch" if touch else kinds.get(event.after, "slip"),
+            load_parameter=event.load_parameter,
+            pair=local.contact.pair,
+            element=0,
+            arc_position=float(local.arc(np.array(event.arc_position))),
+            force=event.magnitude,
+            released=0.0,
         )
-    return tuple(found)
-
-
-def _friction_shape(path: FrictionPath, local: RodScene, k: int) -> Array:
-    """Return points (n, 2) of the axis from clamp to tip: the loaded part, then the straight tail."""
-    beam = local.beam
-    length, unit = beam.length, beam.EI / beam.length**2
-    arc = np.linspace(0.0, length, POINTS)
-    touching = path.state[k].touches
-    loaded = min(float(path.arc_position[k]), length) if touching else 0.0
-    fx, fy = path.force[k] / unit
-    zero = np.zeros(POINTS)
-    start = Section(zero, zero, zero, zero - path.clamp_moment[k] / unit / length)
-    flexibility = Flexibility(stretch=unit / beam.EA, shear=unit / beam.GA)
-    at = integrate(start, (zero + fx, zero + fy), np.minimum(arc, loaded) / length, flexibility)
-    tail = np.maximum(arc - loaded, 0.0)
-    rotation = path.tip_rotation[k] if touching else 0.0
-    x, y = at.x * length + tail * np.cos(rotation), at.y * length + tail * np.sin(rotation)
-    return np.stack([x, y], axis=1)
 
 
 def local_response(
-    model: str, scene: Scene, local: RodScene, states: LocalStates, *, unknowns: int, seconds: float
+    model: str, scene: Scene, local: RodScene, path: Path, *, unknowns: int, seconds: float
 ) -> Response:
     """Return the response in the scene's frame, up to the last load parameter at which an equilibrium was found."""
-    name, length = local.beam.name, local.beam.length
+    name, length, hits = local.beam.name, local.beam.length, local.hits
     times = np.array(scene.times)
-    stop, reached = _end(states, times, keep=local.contact.keep)
-    met = _end_contact(scene, local, states)
-    if times[:reached].max(initial=0.0) >= met or (stop == "LOST" and met <= times[reached]):
+    stop, reached = _end(path, local, times)
+    met = _end_contact(scene, local, path)
+    if times[:reached].max(initial=0.0) >= met or (stop in _LOST and met <= times[reached]):
         stop, reached = "END_CONTACT", int(np.searchsorted(times, met))
     when = f" at load parameter {times[reached]:.6g}" if stop else ""
     if stop == "END_CONTACT":
@@ -296,21 +207,24 @@ def local_response(
 
     @cache
     def axis_line(_: str, k: int) -> tuple[Array, Array]:
-        line = local.position(states.shape(k))
+        line = local.position(path.shape(int(hits[k]), POINTS)[:, :2])
         return np.linspace(0.0, length, POINTS), line[::-1] if local.from_end else line
 
-    force, outcome = local.vector(states.force[:reached]), np.array(states.visited, dtype=object)
-    outcome = outcome[states.hits[:reached]]
-    closed, slipped = outcome == Outcome.CONTACT, outcome == Outcome.SLIPPED
-    below = -local.points[:reached, 1] - local.offset
+    at = hits[:reached]
+    force, outcome = local.vector(path.force[at]), [path.outcome[k] for k in at]
+    closed, slipped = (
+        np.array(values, dtype=bool)
+        for values in ([one.touches for one in outcome], [one is Outcome.SLIPPED for one in outcome])
+    )
+    below = -local.path[at, 1] - local.offset
     contact = ContactHistory(
-        force=np.hypot(*states.force[:reached].T),
-        arc_position=np.where(closed, local.arc(states.arc_position[:reached]), np.nan),
+        force=np.hypot(*force.T),
+        arc_position=np.where(closed, local.arc(path.arc_position[at]), np.nan),
         gap=np.where(closed, 0.0, np.where(slipped, np.nan, below)),
-        slip_off=states.slip_off if reached and states.slip_off <= times[reached - 1] else np.nan,
+        slip_off=path.slip_off if reached and path.slip_off <= times[reached - 1] else np.nan,
         vector=force,
     )
-    support = SupportHistory(force=-force, moment=local.moment(states.clamp_moment[:reached]))
+    support = SupportHistory(force=-force, moment=local.moment(path.clamp_moment[at]))
     return Response(
         model=model,
         scene=scene.name,
@@ -320,8 +234,8 @@ def local_response(
         load_parameter=times[:reached],
         contacts={local.contact.pair: contact},
         supports={f"{name}.{local.clamp}": support},
-        tips={name: local.position(states.tip[:reached])},
-        newton_iterations=states.iterations[:reached],
+        tips={name: local.position(path.tip[at])},
+        newton_iterations=np.diff(np.cumsum(path.iterations)[at], prepend=0),
         cutbacks=0,
         unknowns=unknowns,
         wall_seconds=seconds,
@@ -330,36 +244,35 @@ def local_response(
     )
 
 
-def _end(states: LocalStates, times: Array, *, keep: bool) -> tuple[str | None, int]:
+def _end(path: Path, local: RodScene, times: Array) -> tuple[str | None, int]:
     """Return the reason why the solution stops, None if it does not, and the number of load parameters reached before."""
-    closed = False
-    slipped = np.searchsorted(times, states.slip_off) if keep else len(times)
-    for k, state in enumerate(states.visited):
-        before = int(np.searchsorted(states.hits, k))
+    closed, keep = False, local.contact.keep
+    slipped = np.searchsorted(times, path.slip_off) if keep else len(times)
+    for k, state in enumerate(path.outcome):
+        before = int(np.searchsorted(local.hits, k))
         if before > slipped:
             break
-        if state is Outcome.LOST:
-            return "LOST", before
+        if state.ends:
+            return state.name, before
         if keep and closed and state is Outcome.OPEN:
             return "LOST_CONTACT", before
-        closed = closed or state is Outcome.CONTACT
+        closed = closed or state.touches
     return ("SLIPPED_OFF", int(slipped)) if slipped < len(times) else (None, len(times))
 
 
-def _end_contact(scene: Scene, local: RodScene, states: LocalStates) -> float:
+def _end_contact(scene: Scene, local: RodScene, found: Path) -> float:
     """Load parameter at which the pin meets the tip while the rod is straight, or rolls onto its corner; inf if it does not."""
     if not local.offset:
         return math.inf
-    radius, path = scene.radius(local.contact), local.path - [local.beam.length, 0.0]
+    radius, path, t = scene.radius(local.contact), local.path - [local.beam.length, 0.0], found.load_parameter
     tip = BeamEnd("", (0.0, 0.0), (-1.0, 0.0), local.offset - radius, radius)
-    reached = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
-    corner = states.slip_off if radius and not np.isnan(states.slip_off) else math.inf
+    corner = found.slip_off if radius and not np.isnan(found.slip_off) else math.inf
     for k, (start, end) in enumerate(pairwise(path)):
-        if states.visited[k] is Outcome.CONTACT or reached[k] >= corner * reached[-1]:
+        if found.outcome[k].touches or t[k] >= corner:
             continue
         part = tip.meeting((start[0], start[1]), (end[0], end[1]))
         x, y = start + part * (end - start)
         up = (-local.offset - start[1]) / (y - start[1]) if start[1] <= -local.offset < y else 1.0
         if start[0] + up * (x - start[0]) > -1e-12 * local.beam.length:
-            return min(corner, float((1.0 - part) * reached[k] + part * reached[k + 1]) / float(reached[-1]))
+            return min(corner, float((1.0 - part) * t[k] + part * t[k + 1]))
     return corner

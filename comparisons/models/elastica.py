@@ -42,33 +42,13 @@ class Elastica(Model):
         """Return the response to `scene`, not yet checked."""
         from time import perf_counter
 
-        import numpy as np
-
-        from comparisons.exact.elastica import ElasticaState, elastica_under_pin
-        from comparisons.exact.outcome import Outcome
-        from comparisons.models.cantilever import LocalStates, local_response
-        from comparisons.models.shared import POINTS
+        from comparisons.exact import elastica_along
+        from comparisons.models.cantilever import local_response
 
         del options, watch
-        local = _stated(scene)
-        beam, began = local.beam, perf_counter()
-        path: list[ElasticaState] = []
-        for x, y in local.points:
-            state = elastica_under_pin(float(x), float(y), EI=beam.EI, length=beam.length)
-            left = y > 0.0 and path and path[-1].outcome is Outcome.SLIPPED
-            path.append(path[-1] if left else state)
-        seconds = perf_counter() - began
-        slipped = (t for t, one in zip(scene.times, path, strict=True) if one.outcome is Outcome.SLIPPED)
-        names = ("force", "arc_position", "clamp_moment", "tip")
-        states = LocalStates(
-            visited=tuple(state.outcome for state in path),
-            hits=np.arange(len(path)),
-            **{name: np.array([getattr(state, name) for state in path]) for name in names},
-            iterations=np.zeros(len(path), dtype=np.int64),
-            shape=lambda k: path[k].shape(POINTS),
-            slip_off=next(slipped, np.nan),
-        )
-        return local_response(self.name, scene, local, states, unknowns=1, seconds=seconds)
+        local, began = _stated(scene), perf_counter()
+        path = elastica_along(local.path, EI=local.beam.EI, length=local.beam.length)
+        return local_response(self.name, scene, local, path, unknowns=1, seconds=perf_counter() - began)
 
     def styles(self) -> dict[str, Style]:
         """Return one style."""

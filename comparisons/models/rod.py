@@ -1,4 +1,4 @@
-"""Reissner's rods, which stretch and shear: one by quadrature under one pin, any others by the referee."""
+"""Reissner's rods, which stretch and shear: one by collocation under one pin, any others by the referee."""
 
 from __future__ import annotations
 
@@ -50,14 +50,11 @@ class Rod(Model):
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked."""
-        from comparisons.models.cantilever import solve_rod, solve_rod_with_friction, to_rod
+        from comparisons.models.cantilever import solve_rod, to_rod
         from comparisons.models.rods import solve_rods
 
         del options
-        if self.by_referee(scene):
-            return solve_rods(scene, watch)
-        local = to_rod(scene)
-        return solve_rod_with_friction(scene, local) if local.contact.friction else solve_rod(scene, local)
+        return solve_rods(scene, watch) if self.by_referee(scene) else solve_rod(scene, to_rod(scene))
 
     def styles(self) -> dict[str, Style]:
         """Return one style."""

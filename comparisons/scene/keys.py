@@ -24,7 +24,7 @@ RODS: Final = REFEREE & BEAMS
 """Keys that beams, solids, the referee, and the exact rods state, which the referee solves along the path of exact elements."""
 ONE_ROD: Final[frozenset[str]] = frozenset()
 PROGRAMS: Final[frozenset[str]] = frozenset()
-"""Keys that the exact answers by quadrature state, and the resolved scene that programs of others read."""
+"""Keys that the exact answers under one pin state, and the resolved scene that programs of others read."""
 MATERIAL: Final = frozenset({"turn"})
 """Keys under which the material force is defined."""
 

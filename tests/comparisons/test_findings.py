@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from comparisons.exact import Surface, rod_with_friction
+from comparisons.exact import rod_under_pin
 from comparisons.models import certified, solve
 from comparisons.models.options import Options
 from comparisons.referee import certify
@@ -142,9 +142,9 @@ def test_a_thick_beam_rolls_without_slip(name, count):
     found = solve(asked, "tsm", BEAMS["exact"])
     assert slips(found) == pytest.approx([begins], abs=1e-9)
     (pin,), (beam,) = asked.pins, asked.beams
-    exact = rod_with_friction(
+    exact = rod_under_pin(
         [pin.position(t) for t in (0.0, *found.load_parameter)], friction=0.8, EA=beam.EA, GA=beam.GA, EI=beam.EI,
-        length=100.0, surface=Surface(offset=face, radius=10.0),
+        length=100.0, offset=face, radius=10.0,
     )  # fmt: skip
     contact = found.contacts["p->b"]
     assert contact.force == pytest.approx(exact.magnitude[1:], rel=1e-9)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import fem_reference as fr
-from comparisons.exact import Surface, rod_with_friction
+from comparisons.exact import rod_under_pin
 from tests.fem_reference.conftest import (
     EA,
     EI,
@@ -53,8 +53,8 @@ def test_strip_with_friction_is_the_rod_at_every_load_parameter(case):
     radius, offset = changes.get("radius", 0.0), H / 2 if "surface" in changes else 0.0
     y = -offset - radius
     points = np.outer(1 - np.append(0, t), [1.0, y]) + np.outer(np.append(0, t), [0.0, y + 2 / np.pi])
-    surface = Surface(offset=offset, radius=radius)
-    rod = rod_with_friction(points, friction=mu, EA=EA, GA=GA, EI=EI, length=1.0, surface=surface)
+    pin = {"friction": mu, "offset": offset, "radius": radius}
+    rod = rod_under_pin(points, **pin, EA=EA, GA=GA, EI=EI, length=1.0)
     np.testing.assert_allclose(contact.force, rod.magnitude[1:], rtol=2e-3)
     np.testing.assert_allclose(contact.arc_position, rod.arc_position[1:], rtol=0, atol=3e-4)
     np.testing.assert_allclose(

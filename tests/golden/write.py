@@ -30,7 +30,7 @@ MODELS = {
 }
 SOURCES = {
     "clamped-column": "tests/oracles/elastica.py, the elastica by elliptic integrals",
-    "double-beam": "tests/oracles/coupled.py, two rods by quadrature",
+    "double-beam": "tests/oracles/coupled.py, two rods by collocation",
     "heavy-strip": "tests/oracles/shooting.py, shooting",
     "hinged-truss": "tests/comparisons/scene/test_built_in.py, closed form",
     "hysteresis-stages": "tests/comparisons/exact/test_friction.py, a rod's path with friction",

@@ -34,7 +34,7 @@ MORE = {
 DRAWN = ("exact", "mixed")
 SCENES = (*FAST, *(f"{family}-{seed}" for family, seeds in MORE.items() for seed in seeds))
 BUILT_IN = ("ks-cantilever", "ks-friction")
-"""The scenes of the exact answers by quadrature."""
+"""The scenes of the exact answers under one pin."""
 
 ELEMENTS = {name: ("tsm", Options(element=name)) for name in tsm.ELEMENTS if not name.endswith("as-printed")}
 """The elements without the printed misprints, some of which depend on the units."""

@@ -1,12 +1,11 @@
 """Two cantilevers in contact: a pin pushes the first rod, whose tip pushes the second, until the pin has come to the first one's tip.
 
 Both rods have the same section, L = 1, are clamped at x = 0 and lie along +x, the first at y = 0 and the second at y = spacing. The pin
-moves from (pin_x, 0) along +y, so that its depth is y. In the coupled stage both contacts are closed. The second rod is a single rod
-under a pin, solved by quadratures with the unknowns `(q, ell)` of `comparisons.exact.reissner`. The first rod carries the force n from its
-clamp to the pin and minus the tip force T from the pin to its tip; its equations are integrated by collocation. With the force
-`P = n + T` of the pin and its arc position s, the six unknowns `q, ell, m(0), n_x, n_y, s` satisfy
+moves from (pin_x, 0) along +y, so that its depth is y. In the coupled stage both contacts are closed. The first rod carries the force n from its
+clamp to the pin and minus the tip force T from the pin to its tip, where the second one carries T. With the force `P = n + T` of the pin
+and the arc positions s of the pin and S of the tip, the eight unknowns `m(0), n_x, n_y, s` and `M(0), T_x, T_y, S` satisfy
 
-    r(s) = pin,   P.(r'_- + r'_+) = 0,   m(L) = 0,   r(L) = point of the second rod under the tip
+    r(s) = pin,   P.(r'_- + r'_+) = 0,   m(L) = 0,   r(L) = R(S),   M(S) = 0,   T.(R'_- + R'_+) = 0
 """
 
 from dataclasses import dataclass
@@ -19,8 +18,7 @@ from scipy.optimize import brentq
 from comparisons.exact import RodPath, rod_under_pin
 
 # the equations of one rod, which the exact answers of the product share
-from comparisons.exact.reissner import Array, Flexibility, loaded_part, normal, position
-from comparisons.exact.section import Section, integrate, tangent
+from comparisons.exact.section import Array, Flexibility, Section, integrate, tangent
 from comparisons.scene import Scene
 from tests.oracles.newton import newton
 
@@ -30,15 +28,14 @@ SMALLEST_STEP = 1e-9
 class Coupled(NamedTuple):
     """States of the coupled stage at `s` depths of the pin, nan at depths outside of it, and where it begins and ends.
 
-    Forces of the pin on the first rod and of its tip on the second (s, 2), arc positions of both contacts, moments of both clamps,
-    positive from x towards y, and the place of the first rod's tip (s, 2).
+    Forces of the pin on the first rod and of its tip on the second (s, 2), arc positions of both contacts, and the place of the first
+    rod's tip (s, 2).
     """
 
     pin_force: Array
     tip_force: Array
     pin_arc: Array
     tip_arc: Array
-    clamp_moments: Array
     tip: Array
     touch_depth: float
     end_depth: float
@@ -65,18 +62,20 @@ class Pair:
         return rod_under_pin(points, EA=self.EA, GA=self.GA, EI=self.EI, length=1.0)
 
     def residual(self, z: Array, depth: float) -> Array:
-        """Residual (6, c) of the six equations for columns of unknowns (6, c), in units of EI."""
-        q, ell, moment, nx, ny, s = (np.asarray(value, dtype=np.complex128) for value in z)
-        second, zero = loaded_part(q, ell, self.flexibility), np.zeros_like(s)
-        under_tip = position(second)
-        Tx, Ty = np.moveaxis(second.force[..., None] * normal(second), -1, 0)
-        pin = integrate(Section(zero, zero, zero, moment), (nx, ny), s, self.flexibility)
-        tip = integrate(pin, (-Tx, -Ty), 1.0 - s, self.flexibility)
-        before = tangent(pin.theta, (nx, ny), self.flexibility)
-        after = tangent(pin.theta, (-Tx, -Ty), self.flexibility)
-        slide = (nx + Tx) * (before[0] + after[0]) + (ny + Ty) * (before[1] + after[1])
-        gap = tip.x - under_tip[..., 0], tip.y - under_tip[..., 1] - self.spacing
-        return np.stack([pin.x - self.pin_x, pin.y - depth, slide, tip.moment, *gap])
+        """Residual (8, c) of the equations for columns of unknowns (8, c), in units of EI."""
+        moment, nx, ny, s, other, Tx, Ty, S = z
+        zero, section = np.zeros_like(s), self.flexibility
+        pin = integrate(Section(zero, zero, zero, moment), (nx, ny), s, section)
+        tip = integrate(pin, (-Tx, -Ty), 1.0 - s, section)
+        under = integrate(Section(zero, zero + self.spacing, zero, other), (Tx, Ty), S, section)
+
+        def slide(theta: Array, force: tuple[Array, Array], behind: tuple[Array, Array]) -> Array:
+            before, after = tangent(theta, force, section), tangent(theta, behind, section)
+            return sum((force[k] - behind[k]) * (before[k] + after[k]) for k in (0, 1))
+
+        slides = slide(pin.theta, (nx, ny), (-Tx, -Ty)), slide(under.theta, (Tx, Ty), (zero, zero))
+        gap = tip.x - under.x, tip.y - under.y
+        return np.stack([pin.x - self.pin_x, pin.y - depth, tip.moment, under.moment, *slides, *gap])
 
     def solve(self, z: Array, depth: float) -> Array | None:
         """Unknowns from nearby ones, see `newton`."""
@@ -90,9 +89,7 @@ class Pair:
         )
         one = self.single([depth])
         moment, force = -one.clamp_moment[1] / self.EI, one.force[1] / self.EI
-        return float(depth), np.array(
-            [0.0, one.tip[1, 0] / np.sqrt(np.pi), moment, *force, one.arc_position[1]]
-        )
+        return float(depth), np.array([moment, *force, one.arc_position[1], 0.0, 0.0, 0.0, one.tip[1, 0]])
 
     def advance(self, z: Array, depth: float, target: float) -> tuple[Array, float]:
         """Unknowns at a target; or the last ones before, and the depth at which the pin has come to the tip."""
@@ -104,8 +101,8 @@ class Pair:
                 step /= 2.0
                 assert step > SMALLEST_STEP, f"no equilibrium beyond {depth}"
                 continue
-            if trial[5] > 1.0:
-                beyond = lambda d, z=z: self.solve(z, d)[5] - 1.0  # noqa: E731
+            if trial[3] > 1.0:
+                beyond = lambda d, z=z: self.solve(z, d)[3] - 1.0  # noqa: E731
                 return z, float(brentq(beyond, depth, following, xtol=1e-14))
             z, depth = trial, following
         return z, depth
@@ -118,21 +115,20 @@ class Pair:
             if touch <= target < end:
                 z, depth = self.advance(z, depth, float(target))
                 end = depth if depth < target else end
-            rows.append(z if touch <= target < end else np.full(6, np.nan))
+            rows.append(z if touch <= target < end else np.full(8, np.nan))
         while end == np.inf:
             target = depth + 0.05
             z, depth = self.advance(z, depth, target)
             end = depth if depth < target else end
-        q, ell, moment, nx, ny, s = np.array(rows).reshape(-1, 6).T
-        second = loaded_part(q, ell, self.flexibility)
-        tip_force = self.EI * (second.force[:, None] * normal(second)).real
+        _, nx, ny, s, other, Tx, Ty, S = np.array(rows).reshape(-1, 8).T
+        under = integrate(Section(0 * S, self.spacing + 0 * S, 0 * S, other), (Tx, Ty), S, self.flexibility)
+        tip_force = self.EI * np.stack([Tx, Ty], axis=1)
         return Coupled(
             pin_force=self.EI * np.stack([nx, ny], axis=1) + tip_force,
             tip_force=tip_force,
             pin_arc=s,
-            tip_arc=second.arc.real,
-            clamp_moments=-self.EI * np.column_stack([moment, (second.force * second.along).real]),
-            tip=position(second).real + np.array([0.0, self.spacing]),
+            tip_arc=S,
+            tip=np.stack([under.x, under.y], axis=1),
             touch_depth=touch,
             end_depth=end,
         )

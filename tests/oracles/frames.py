@@ -18,8 +18,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 # the equations of one rod, which the exact answers of the product share
-from comparisons.exact.reissner import Array, Flexibility
-from comparisons.exact.section import Section, integrate
+from comparisons.exact.section import Array, Flexibility, Section, integrate
 from comparisons.scene import Scene, load_scene
 from tests.oracles.newton import newton
 

@@ -1,71 +1,72 @@
-"""The elastica with EI = 1 under a pin with Coulomb friction, by the first integral.
+"""The elastica with EI = L = 1 along the path of Konyukhov and Schweizerhof's pin with Coulomb friction, by the first integral.
 
-With the force `F (-sin beta, cos beta)` at the angle `wc` to the normal, `F_t = -F sin wc` and `F_n = F cos wc`, and in slip
-`wc = -sigma atan mu`. The unknowns are `q` and `ell` of `tests.oracles.elastica`, and wc. With the exact rod of the product it shares the
-law of friction and the search for events, but no equation of the beam.
+The pin slips towards the clamp, sticks and slips towards the tip. The unknowns are `q`, `ell` and `wc` of `tests.oracles.elastica`: in slip of
+the sense sigma `wc = -sigma atan mu`, in stick the arc position is held. No code is shared with the exact rod of the product.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import NDArray
+from scipy.optimize import brentq
 
-from comparisons.exact import FrictionPath
+from tests.oracles.elastica import loaded
+from tests.oracles.newton import newton
+from tests.oracles.shooting import ks_pins
 
-# the march along a path, which takes the equations of any cantilever
-from comparisons.exact.friction_law import Array, Contact, Observed, Real
-from comparisons.exact.friction_path import follow
-from tests.oracles.elastica import Loaded, loaded
-
-
-@dataclass(frozen=True, kw_only=True)
-class Elastica:
-    """Equations of the elastica; a pin on its left, side -1, is the mirror image."""
-
-    side: int
-    reach: float = 0.0
-
-    def contact(self, z: Array, pin: Real) -> Contact:
-        """Residual and quantities of the contact at unknowns (..., 3)."""
-        q, ell, wc = np.moveaxis(z, -1, 0)
-        part = loaded(q, ell, wc)
-        beta = part.angle + wc
-        return Contact(
-            residual=np.stack([part.x - pin[0], self.side * part.y - pin[1]], axis=-1),
-            cone=np.stack([-np.sin(wc), np.cos(wc)], axis=-1),
-            force=part.force[..., None] * np.stack([-np.sin(beta), self.side * np.cos(beta)], axis=-1),
-            tangential=-part.force * np.sin(wc),
-            normal=part.force * np.cos(wc),
-            arc=part.arc,
-            factor=np.ones_like(part.arc),
-            roll=np.zeros_like(part.arc),
-        )
-
-    def exists(self, z: Real) -> bool:
-        """Whether the curve has a length, no more than one inflection, and a force that is not a pull."""
-        q, ell, wc = z
-        return bool(abs(q) < 4.0 * np.pi**2 and ell > 0.0 and abs(wc) < np.pi / 2.0)
-
-    def touching(self, x: float, sense: int, friction: float) -> Real:
-        """Unknowns (3,) of the straight beam with a pin at x that slips in a sense."""
-        wc = -sense * np.arctan(friction)
-        return np.array([0.0, x * np.sqrt(np.cos(wc) / (np.pi - 2.0 * wc)), wc])
-
-    def observe(self, z: Real) -> Observed:
-        """Force, clamp moment, stored energy, position and rotation at the pin."""
-        part = Loaded(*(value.real for value in loaded(*z)))
-        beta = part.angle + z[2]
-        force = part.force * np.array([-np.sin(beta), self.side * np.cos(beta)])
-        x, y = float(part.x), float(self.side * part.y)
-        return Observed(
-            force=force,
-            clamp_moment=float(y * force[0] - x * force[1]),
-            energy=float(part.energy),
-            position=np.array([x, y]),
-            rotation=float(self.side * part.angle),
-        )
+Array = NDArray[np.float64]
+WAY = ks_pins([0.0, 1.0])[1] - ks_pins([0.0, 1.0])[0]
 
 
-def elastica_with_friction(points: ArrayLike, *, friction: float, length: float = 1.0) -> FrictionPath:
-    """Return the equilibria at the vertices of the pin's path; a pin that touches the straight beam slips, since that cannot stretch."""
-    return follow(lambda side: Elastica(side=side), points, friction, EI=1.0, length=length)
+class Rubbed(NamedTuple):
+    """Load parameters at which the stick begins and ends, and force, arc position and clamp moment at the end of the path."""
+
+    stick: float
+    slip: float
+    force: float
+    arc_position: float
+    clamp_moment: float
+
+
+def followed(z: Array, begin: float, end: float, held: Callable[[Array], Array]) -> tuple[Array, Array]:
+    """Unknowns (3,) and their rates at a load parameter, in steps from another one, where a function of the unknowns (3, c) is zero."""
+
+    def residual(z: Array, pin: Array) -> Array:
+        part = loaded(*z)
+        return np.stack([part.x - pin[0], part.y - pin[1], held(z)])
+
+    rates = np.zeros(3)
+    for pin in ks_pins(np.linspace(begin, end, 13)):
+        found = newton(lambda z, pin=pin: residual(z, pin), z + (end - begin) / 12.0 * rates)
+        assert found is not None, f"no equilibrium at {pin}"
+        z, rates = found[0], np.linalg.solve(found[1], [*WAY, 0.0])
+    return z, rates
+
+
+def rubbed(friction: float) -> Rubbed:
+    """Return both events and the end of the path."""
+    angle = float(np.arctan(friction))
+    inwards, outwards = (lambda z: z[2] - angle), (lambda z: z[2] + angle)
+    touch = np.array([0.0, np.sqrt(np.cos(angle) / (np.pi - 2.0 * angle)), angle])
+
+    def speed(t: float) -> float:
+        """Rate of the arc position in the first slip."""
+        z, rates = followed(touch, 0.0, t, inwards)
+        return float(loaded(*(z + 1e-60j * rates)).arc.imag)
+
+    stick = float(brentq(speed, 0.3, 0.65, xtol=1e-15))
+    start = followed(touch, 0.0, stick, inwards)[0]
+    place = loaded(*start).arc.real
+
+    def stuck(t: float) -> Array:
+        return followed(start, stick, t, lambda z: loaded(*z).arc - place)[0]
+
+    slip = float(brentq(lambda t: outwards(stuck(t)), stick, stick + 0.09, xtol=1e-15))
+    z, _ = followed(stuck(slip), slip, 1.0, outwards)
+    part = loaded(*z)
+    force, beta = float(part.force.real), float(part.angle.real + z[2])
+    x, y = ks_pins([1.0])[0]
+    return Rubbed(
+        stick, slip, force, float(part.arc.real), -force * float(y * np.sin(beta) + x * np.cos(beta))
+    )

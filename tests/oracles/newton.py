@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from comparisons.exact.reissner import COMPLEX_STEP, Array
+from comparisons.exact.section import COMPLEX_STEP, Array
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
@@ -23,6 +23,6 @@ def newton(residual: Callable[[Array], Array], z: Array, allowed: float = 1.0) -
         if not size <= allowed:
             return None
         z, allowed = z + change, size / 2.0
-        if size < 1e-11:
+        if size < 1e-10:
             return z, matrix
     return None

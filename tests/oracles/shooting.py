@@ -133,6 +133,12 @@ def pinned(rod: Rod, pin: Array, reach: tuple[float, float], guess: Array) -> Sh
     return Shot(clamp=z[:3], tip=ends(z)[2][:3], force=z[3:5], arc=float(z[5]))
 
 
+def tied(tip: Array, guess: Array, **section: float) -> Array:
+    """Return moment and force (3,) at the clamp of a straight rod of length 1 whose tip is hinged to a place, from a guess of them."""
+    end = lambda z: shot(z[1:], [0.0, 0.0, 0.0, z[0]], 1.0, **section)[0]  # noqa: E731
+    return _solved(lambda z: end(z)[[0, 1, 3]] - [*tip, 0.0], guess)
+
+
 def _solved(residual: Callable[[Array], Array], guess: Array) -> Array:
     z = np.asarray(root(residual, guess, tol=1e-13).x)
     # two steps of Newton's method by central differences

@@ -10,16 +10,16 @@ from scipy.special import ellipe, ellipk
 from comparisons.claims.manual import problems, read_problem
 from comparisons.claims.manual.read import readings  # not public: what a problem reads, of the exact rod
 from comparisons.claims.problems.double_beam import HAND_OVER
-from comparisons.exact import elastica_under_pin, rod_with_friction
+from comparisons.exact import elastica_under_pin, rod_under_pin
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.scene import load_scene
 from tests import problems as scenes
 from tests.oracles import elastica, frames
 from tests.oracles.coupled import pair_of
-from tests.oracles.friction import elastica_with_friction
+from tests.oracles.friction import rubbed
 from tests.oracles.shooting import Rod, pinned
-from tests.oracles.tied import rod_with_tied_tip
+from tests.oracles.shooting import tied as tied_by_shooting
 
 PROBLEMS = {path.stem: read_problem(path) for path in problems()}
 COEFFICIENTS, KS_PATH = (0.1, 0.3, 0.5), ((1.0, 0.0), (0.0, 2.0 / np.pi))
@@ -35,9 +35,15 @@ def section(name):
 
 
 def tied():
-    size, points = section("ks-tied-tip"), [(1.0, 0.0), (0.5, 1.0 / np.pi), (0.0, 2.0 / np.pi)]
-    path = rod_with_tied_tip(points, **size)
-    return [*np.hypot(*path.force[1:].T / size["EI"]), path.clamp_moment[-1] / size["EI"]]
+    """It begins near the rod's answer, which says the branch."""
+    scene = replace(load_scene("ks-tied-tip"), load_parameters=2)
+    (beam,), near = scene.beams, solve(scene, "rod").supports["cantilever.start"]
+    unit = {"EA": beam.EA / beam.EI, "GA": beam.GA / beam.EI, "EI": 1.0}
+    half, whole = (
+        tied_by_shooting(tip, -np.array([near.moment[k], *near.force[k]]) / beam.EI * 1.001, **unit)
+        for k, tip in enumerate(([0.5, 1.0 / np.pi], [0.0, 2.0 / np.pi]))
+    )
+    return [np.hypot(*half[1:]), np.hypot(*whole[1:]), -whole[0]]
 
 
 def pair():
@@ -49,28 +55,27 @@ def pair():
 
 def rubbing_rods():
     for mu in COEFFICIENTS:
-        path = rod_with_friction(KS_PATH, friction=mu, **section("ks-friction"))
+        path = rod_under_pin(KS_PATH, friction=mu, **section("ks-friction"))
         yield from (path.magnitude[-1], path.arc_position[-1], path.clamp_moment[-1], path.dissipated[-1])
 
 
 def rubbing_elastica():
     for mu in COEFFICIENTS:
-        path = elastica_with_friction(KS_PATH, friction=mu)
-        yield from (path.magnitude[-1], path.arc_position[-1])
-        yield from (event.load_parameter for event in path.events[1:])
+        path = rubbed(mu)
+        yield from (path.force, path.arc_position, path.stick, path.slip)
 
 
 def hysteresis():
     scene = load_scene("hysteresis")
     given = {"friction": scene.contacts[0].friction, **section("hysteresis")}
-    path = rod_with_friction(scene.pins[0].points, **given)
+    path = rod_under_pin(scene.pins[0].points, **given)
     F, s, spent, work = path.magnitude, path.arc_position, path.dissipated, path.work
     lost = spent[5] - spent[3]
     return [*F[4:], *s[4:], lost, F[4] / F[2], F[5] / F[3], (work[5] - work[3]) / lost]
 
 
 def by_the_rod(name):
-    """Values of one rod by quadratures, of several by the referee; both share nothing with the models that are judged."""
+    """Values of one rod by collocation, of several by the referee; both share nothing with the models that are judged."""
     problem = PROBLEMS[name]
     return readings(problem, replace(problem.trials[0], key="rod", options=Options())).values
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import tsm
-from comparisons.exact import Surface, rod_with_friction
-from tests.oracles.friction import elastica_with_friction
+from comparisons.exact import rod_under_pin
+from tests.oracles.shooting import RIGID
 from tests.tsm.structures import KS, KS_PATH, cantilever, steps
 
 PAIR = "p0->b"
@@ -39,7 +39,7 @@ def balance(result):
 def test_one_exact_element_is_the_elastica_with_friction():
     result = solved(rubbed(0.3, section=STIFF), 20)
     points = np.array([[1.0, 0.0], *((1 - t, t * KS_PATH[1][1]) for t in result.load_parameter)])
-    exact, contact = elastica_with_friction(points, friction=0.3), result.contacts[PAIR]
+    exact, contact = rod_under_pin(points, friction=0.3, length=1.0, **RIGID), result.contacts[PAIR]
     assert result.status is tsm.Status.COMPLETED
     assert contact.force == pytest.approx(exact.magnitude[1:], rel=1e-9)
     assert contact.arc_position == pytest.approx(exact.arc_position[1:], rel=1e-9)
@@ -85,9 +85,9 @@ def test_a_cantilever_that_once_failed_is_the_rod(name):
     structure, count = MENDED[name]
     (pin,), (pair,), s = structure.pins, structure.contacts, structure.beams[0].section
     times = np.union1d([0.0, *steps(count)], pin.corners)
-    exact = rod_with_friction(
+    exact = rod_under_pin(
         [pin.position(float(t)) for t in times], friction=pair.friction, length=1.0, EA=s.EA, GA=s.GA, EI=s.EI,
-        surface=Surface(offset=pair.offset - pair.radius, radius=pair.radius),
+        offset=pair.offset - pair.radius, radius=pair.radius,
     )  # fmt: skip
     result, at = solved(structure, count), np.searchsorted(times, steps(count))
     assert result.status is tsm.Status.COMPLETED

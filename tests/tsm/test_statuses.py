@@ -61,7 +61,7 @@ CASES = {  # structure, settings, how many load parameters are reached, what the
     # one of two pins with friction leaves the beam over its end; it falls onto the other one
     "rest unknown": (cantilever(raised(0.83, 1.0), raised(0.4, 0.35), element="exact", friction=0.3), {}, None, ""),
     # the stick is released at the edge of the cone, where the forces of the slip would push the pin the other way;
-    # `comparisons.exact.rod_with_friction` jams at 0.69395389
+    # `comparisons.exact.rod_under_pin` jams at 0.69395389
     "jammed": (JAMMING, {}, 6, "stopped at load parameter 0.69395"),
     # beyond a polar angle of 99.57 degrees no equilibrium of the elastica under a pin is connected with the straight one
     "limit point": (

@@ -1,6 +1,6 @@
 """The double beam of Nizam et al., section 4.3, by exact rods: two cantilevers, and a pin that is handed over from one to the other.
 
-`tests/oracles/coupled.py` computes the values by quadratures and collocation.
+`tests/oracles/coupled.py` computes the values by collocation.
 """
 
 UPPER, TIP, LOWER = "pin->upper", "upper.end->lower", "pin->lower"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from comparisons.exact import Outcome, Surface, elastica_under_pin, rod_under_pin, rod_with_friction
+from comparisons.exact import Outcome, elastica_under_pin, rod_under_pin
 from tests.oracles.elastica import slip_off_height
 from tests.oracles.shooting import KS as SECTION
 from tests.oracles.shooting import RIGID, ks_pins, shot
@@ -48,7 +48,7 @@ def test_integration_from_the_clamp_arrives_at_the_rods_contact(offset):
         end, tangent = arrives(path.force[k], path.clamp_moment[k], arc, shape, SECTION, 1e-11)
         assert f @ tangent == pytest.approx(0.0, abs=2e-12)
         assert end[3] == pytest.approx(0.0, abs=3e-12 * abs(path.clamp_moment[k]))
-        assert [rows[-1, 2], path.tip_rotation[k]] == pytest.approx([end[2]] * 2, abs=1e-11)
+        assert rows[-1, 2] == pytest.approx(end[2], abs=1e-11)
         np.testing.assert_allclose(end[:2] - offset * f, pins[k], rtol=0, atol=2e-12)
 
 
@@ -103,8 +103,7 @@ def test_the_clamp_balances_the_pin_whose_work_is_the_strain_energy(offset):
     pins = ks_pins([0.0, *((nodes + 1.0) / 2.0), 1.0], offset)
     path = rod_under_pin(pins, offset=offset, **KS)
     assert path.iterations[0] == 0
-    assert all(0 < count <= 5 for count in path.iterations[1:])
-    np.testing.assert_array_equal(path.clamp_force, -path.force)
+    assert all(0 < count <= 6 for count in path.iterations[2:])
     moment = pins[:, 0] * path.force[:, 1] - pins[:, 1] * path.force[:, 0]
     np.testing.assert_allclose(path.clamp_moment, -moment, rtol=0, atol=1e-13 * np.max(moment))
     work = weights / 2.0 @ (path.force[1:-1] @ [-1.0, 2.0 / np.pi])
@@ -151,6 +150,16 @@ def test_a_contact_opens_closes_slips_off_and_is_lost(pins, offset, outcomes):
             assert path.magnitude[k] == pytest.approx(direct.magnitude[1], rel=1e-12, abs=1e-15 * KS["EI"])
 
 
+def test_a_pin_that_leaves_a_face_outwards_comes_nearer_at_first():
+    """The rotation of the face draws the contact in; it was said to slip off at once, since a step ended beyond the tip."""
+    path = rod_under_pin([(1.0, -0.03), (1.01, 0.47)], offset=0.03, EA=1e5, GA=2e4, EI=1.0, length=1.0)
+    assert path.outcome == (CONTACT, SLIPPED)
+    fine = np.linspace((1.0, -0.03), (1.01, 0.47), 300)
+    closed = rod_under_pin(fine, offset=0.03, EA=1e5, GA=2e4, EI=1.0, length=1.0).arc_position
+    assert np.nanmin(closed) < 1.0
+    assert path.slip_off == pytest.approx(np.isfinite(closed).sum() / 299, abs=1 / 299)
+
+
 @pytest.mark.slow
 def test_a_pin_that_all_but_slides_into_the_clamp_is_lost_within_bounds():
     """It passes the clamp .05 % of the length above: strains grow without bound, and steps shrink without end."""
@@ -168,19 +177,14 @@ def test_a_pin_that_all_but_slides_into_the_clamp_is_lost_within_bounds():
         (rod_under_pin, {"offset": -0.1}, "offset = -0.1: must be finite and not negative"),
         (rod_under_pin, {"points": [[0.8, np.nan]]}, "points"),
         (rod_under_pin, {"points": [[0.8, 0.1]]}, "must start below the rod"),
-        (rod_with_friction, {"friction": -0.1}, "friction = -0.1: must be finite and not negative"),
-        (rod_with_friction, {"EA": 0.0}, "EA = 0.0: must be positive"),
-        (rod_with_friction, {"surface": Surface(offset=0.1)}, "must not start inside the rod"),
-        (Surface, {"radius": -1.0}, r"radius = -1\.0: must be finite and not negative"),
+        (rod_under_pin, {"friction": -0.1}, "friction = -0.1: must be finite and not negative"),
+        (rod_under_pin, {"offset": 0.1}, "must start below the rod"),
+        (rod_under_pin, {"radius": -1.0}, "radius = -1.0: must be finite and not negative"),
         (elastica_under_pin, {"x": np.nan}, "x = nan: must be finite"),
         (elastica_under_pin, {"EI": -1.0}, "EI = -1.0: must be positive"),
     ],
 )
 def test_bad_input(call, change, message):
-    given = {
-        rod_under_pin: {"points": [[0.8, 0.0]], **KS},
-        rod_with_friction: {"points": [[0.8, 0.0]], "friction": 0.3, **KS},
-        elastica_under_pin: {"x": 0.5, "y": 0.1},
-    }
+    given = {rod_under_pin: {"points": [[0.8, 0.0]], **KS}, elastica_under_pin: {"x": 0.5, "y": 0.1}}
     with pytest.raises(ValueError, match=message):
-        call(**{**given.get(call, {}), **change})
+        call(**{**given[call], **change})

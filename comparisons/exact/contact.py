@@ -1,0 +1,190 @@
+"""The equations of a Reissner rod, clamped at one end, under a pin with Coulomb friction.
+
+The clamp is at the origin and the undeformed rod lies along +x. The unknowns `z = (F_x, F_y, m_0, s)` are the force of the pin on the
+rod, the moment of the section at the clamp and the arc position of the contact. Between clamp and contact the rod carries the constant
+force F; the tail is free of load. The units are those of `comparisons.exact.section`.
+
+With the derivatives `r'_-, r'_+` of the axis before and behind the contact, let `a t = (r'_- + r'_+)/2` with the unit vector t at the
+angle phi and its left normal n. The force has the components `F_t = F . t` and `F_n = F . n`. A pin of radius R that does not turn touches
+the face at the distance h from the axis, where the couple `h F_t` acts on the rotation theta of the section. Three equations are the
+position of the pin and the moment at the contact. The power of the pin less the rate of the stored energy is `F_t v` with the slip rate
+
+    v = A ds/dt + d(roll)/dt,   A = a + h (theta'_- + theta'_+)/2,   roll = h (phi - theta) + R phi
+
+In slip `F_t = sigma mu F_n`, where sigma is the sign of v; without friction `F_t = 0`. In stick v = 0 all along, and v is the rate of no
+quantity: with the values `*` at an earlier place of the stick
+
+    (A + A*)/2 (s - s*) + roll - roll* = c,   dc/dt = (A'(s - s*) - (A - A*) s')/2
+
+The trapezium on the left is exact, c = 0, where A is constant or roll is.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import Polynomial
+from numpy.typing import NDArray
+
+from comparisons.exact.section import (
+    COMPLEX_STEP,
+    GAUSS,
+    WEIGHTS,
+    Array,
+    Flexibility,
+    Section,
+    integrate,
+    tangent,
+)
+
+Real = NDArray[np.float64]
+_LARGEST_CORRECTION, _CONVERGED = 0.1, 3e-8
+_ROUND_OFF, _NOISE = 1e-14, 1e-5
+"""A residual at round-off, and the correction that it may leave where the equations are stiff."""
+_SINGULAR = 1e13
+ARC = np.array([0.0, 0.0, 0.0, 1.0])
+
+
+class Contact(NamedTuple):
+    """Residual (..., 3) of three equations, components of the force, and the terms A and roll of the slip rate, (...)."""
+
+    residual: Array
+    tangential: Array
+    normal: Array
+    factor: Array
+    roll: Array
+
+
+class Held(NamedTuple):
+    """Arc position, A and roll at a place of a stick."""
+
+    arc: float
+    factor: float
+    roll: float
+
+
+class Phase(NamedTuple):
+    """Slip of a sense, or stick, whose sense is 0, since a load parameter; an earlier place of a stick, and c from there on."""
+
+    sense: int
+    since: float
+    held: Held
+    area: Polynomial = Polynomial([0.0])
+
+
+class Linear(NamedTuple):
+    """Unknowns (4,), the contact there, and its derivatives, unknowns on their first axis."""
+
+    z: Real
+    here: Contact
+    slope: Contact
+
+    @property
+    def held(self) -> Held:
+        """Place of a stick."""
+        return Held(self.z[3], float(self.here.factor), float(self.here.roll))
+
+    @property
+    def slip(self) -> Real:
+        """Derivatives (4,) of the slip."""
+        return np.asarray(self.here.factor * ARC + self.slope.roll)
+
+    def rates(self, row: Real, velocity: Real) -> Real | None:
+        """Rates of the unknowns (4,) at a velocity of the pin (2,), where a row (4,) has none; None where they are not determined."""
+        matrix = np.vstack([self.slope.residual.T, row])
+        if not (np.all(np.isfinite(matrix)) and np.linalg.cond(matrix) < _SINGULAR):
+            return None
+        return np.asarray(np.linalg.solve(matrix, [*velocity, 0.0, 0.0]))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cantilever:
+    """A rod under a pin: flexibility, distance h of the face from the axis, radius R of the pin, coefficient of friction."""
+
+    flexibility: Flexibility
+    face: float
+    radius: float
+    friction: float
+
+    @property
+    def reach(self) -> float:
+        """Distance of the pin's centre from the axis."""
+        return self.face + self.radius
+
+    def contact(self, z: Array, pin: Real) -> Contact:
+        """Contact at unknowns (..., 4)."""
+        Fx, Fy, moment, s = np.moveaxis(z, -1, 0)
+        zero = np.zeros_like(s)
+        end = integrate(Section(zero, zero, zero, moment), (Fx, Fy), s, self.flexibility)
+        c, d = np.cos(end.theta), np.sin(end.theta)
+        before = tangent(end.theta, (Fx, Fy), self.flexibility)
+        bx, by = (before[0] + c) / 2.0, (before[1] + d) / 2.0
+        a = np.sqrt(bx**2 + by**2)
+        tx, ty = bx / a, by / a
+        shear = np.arctan((by * c - bx * d) / (bx * c + by * d))
+        tangential = Fx * tx + Fy * ty
+        couple = self.face * tangential
+        x, y = end.x + self.reach * ty - pin[0], end.y - self.reach * tx - pin[1]
+        return Contact(
+            residual=np.stack([x, y, end.moment - couple], axis=-1),
+            tangential=tangential,
+            normal=Fy * tx - Fx * ty,
+            factor=a + self.face * couple / 2.0,
+            roll=self.face * shear + self.radius * (end.theta + shear),
+        )
+
+    def linearise(self, z: Real, pin: Real) -> Linear:
+        """Contact and its derivatives at unknowns (4,)."""
+        columns = self.contact(z + 1j * COMPLEX_STEP * np.eye(4), pin)
+        here, slope = (
+            Contact(*part)
+            for part in zip(*((f[0].real, f.imag / COMPLEX_STEP) for f in columns), strict=True)
+        )
+        return Linear(z, here, slope)
+
+    def law(self, linear: Linear, phase: Phase, t: float) -> tuple[float, Real]:
+        """Residual of the last equation, slip or stick, and its derivatives (4,)."""
+        if phase.sense:
+            here, slope = (part.tangential - phase.sense * self.friction * part.normal for part in linear[1:])
+            return float(here), np.asarray(slope)
+        arc, factor, roll = phase.held
+        mean, way = (linear.here.factor + factor) / 2.0, linear.z[3] - arc
+        row = linear.slope.factor * way / 2.0 + mean * ARC + linear.slope.roll
+        return float(mean * way + linear.here.roll - roll - phase.area(t)), np.asarray(row)
+
+    @np.errstate(all="ignore")
+    def solve(self, z: Real, pin: Real, phase: Phase, t: float) -> tuple[Linear | None, int]:
+        """Equilibrium from nearby unknowns by Newton's method, None without convergence, and the iterations."""
+        last, count = _LARGEST_CORRECTION, 0
+        while count < 14:
+            count += 1
+            linear = self.linearise(z, pin)
+            value, row = self.law(linear, phase, t)
+            residual, matrix = (
+                np.append(linear.here.residual, value),
+                np.vstack([linear.slope.residual.T, row]),
+            )
+            if not (z[3] > 0.0 and np.all(np.isfinite(matrix)) and np.linalg.det(matrix)):
+                break
+            change = np.linalg.solve(matrix, -residual)
+            size = float(np.max(np.abs(change) / (1.0 + np.abs(z))))
+            if size < (_NOISE if np.max(np.abs(residual)) < _ROUND_OFF else _CONVERGED):
+                return self.linearise(z + change, pin), count
+            if not size <= last:
+                break
+            z, last = z + change, size / 2.0
+        return None, count
+
+    def sections(self, z: Real, fractions: Real) -> Section:
+        """Sections (k,) of the loaded part at fractions (k,) of its length."""
+        Fx, Fy, moment, s = (np.asarray(value) for value in z)
+        zero = np.zeros(())
+        return integrate(Section(zero, zero, zero, moment), (Fx, Fy), s, self.flexibility, fractions)
+
+    def energy(self, z: Real) -> float:
+        """Strain energy."""
+        part = self.sections(z, GAUSS)
+        c, d = np.cos(part.theta), np.sin(part.theta)
+        N, Q = z[0] * c + z[1] * d, z[1] * c - z[0] * d
+        density = part.moment**2 + self.flexibility.stretch * N**2 + self.flexibility.shear * Q**2
+        return float(z[3] * (WEIGHTS @ density) / 2.0)
