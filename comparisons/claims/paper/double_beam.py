@@ -1,16 +1,14 @@
 """Fig. 9: two cantilevers pressed by one pin, stage by stage, against the exact rods."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from comparisons.cases.settings import changed
-from comparisons.claims.paper.figure_study import Study, legend, shape_panels
+from comparisons.claims.paper.figure_study import SHAPE, Line, Panel, Study, draw
 from comparisons.claims.paper.formulations import CANTILEVER, SIMPLE, TIMOSHENKO
 from comparisons.claims.problems.double_beam import EVENTS, HAND_OVER, LOWER, TIP, UPPER
 from comparisons.models import ROD, TSM, solve
@@ -20,7 +18,6 @@ from comparisons.response import Array, Response
 from comparisons.scene import Scene, load_scene
 from comparisons.show import palette
 from comparisons.show.pages import Section, Track, motion_section
-from comparisons.show.plot import WIDTH, figure, save
 
 FINER = 10
 """Load parameters of the picture per load parameter of the scene."""
@@ -34,10 +31,8 @@ STYLES: dict[str, dict[str, Any]] = {
     TIP: {"color": palette.PURPLE, "linestyle": (0, (6, 1))},
     LOWER: {"color": palette.GREEN, "linestyle": (0, (2, 1))},
 }
-ROOM = 1.7
-"""Height of the forces' diagram over the largest force; the list of the events stands above."""
 ARROW = 0.16
-"""Length of an arrow per force [m/N]."""
+"""Length of the line of a force per force [m/N]."""
 Columns = Mapping[str, Array]
 """The depth of the pin [m]; by pair, forces [N] and arc positions [m] of the beams and the exact rods, nan where the pair is open."""
 
@@ -58,23 +53,29 @@ def double_beam(*, quick: bool, report: Report) -> Study:
             closed = np.isfinite(contact.arc_position)
             columns[f"{pair} {prefix}force"] = np.where(closed, contact.force, np.nan)
             columns[f"{pair} {prefix}arc"] = contact.arc_position
+    names = {
+        "kind": "kind",
+        "pair": "pair",
+        "element": "element",
+        "arc": "arc_position",
+        "force": "force",
+        "released": "released",
+    }
     events = [
-        {
-            "kind": event.kind,
-            "depth": travel * event.load_parameter,
-            "pair": event.pair,
-            "element": event.element,
-            "arc": event.arc_position,
-            "force": event.force,
-            "released": event.released,
-        }
+        {"depth": travel * event.load_parameter, **{key: getattr(event, name) for key, name in names.items()}}
         for event in response.events or ()
     ]
     report("the paper's elements")
     tried = (TIMOSHENKO,) if quick else (TIMOSHENKO, SIMPLE, CANTILEVER)
     rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
     stages = list(_stages(columns["depth"]))
-    pictures = {"fig9": partial(plot_stages, finer, response, stages)} if stages else {}
+    pictures: dict[str, Callable[..., None]] = {
+        "fig9-forces": partial(draw, _histories(columns, events), tall=3.2, columns=1)
+    }
+    if stages:
+        panels = [_stage(finer, response, stage) for stage in stages]
+        title = "Mixed elements, 10 + 10;\nthe forces act on the touched beams, grey are the beams at rest"
+        pictures["fig9"] = partial(draw, panels, tall=2.8, title=title)
     return Study(
         tables={"fig9": rows},
         numbers={
@@ -91,7 +92,7 @@ def double_beam(*, quick: bool, report: Report) -> Study:
                 if not one.completed
             ],
         },
-        pictures={**pictures, "fig9-forces": partial(plot_histories, finer, columns, events)},
+        pictures=pictures,
         scenes=(finer,),
         moving=(_moving(finer, response, columns),),
     )
@@ -101,13 +102,12 @@ def _checks(columns: Columns) -> Iterator[Row]:
     """Yield the largest errors against the exact rods by stage: of the force over its largest, and of the arc position [m]."""
     depth = columns["depth"]
     before, after = depth < EVENTS["touch"], depth > EVENTS["hand-over"]
-    parts: tuple[tuple[str, str, NDArray[np.bool_]], ...] = (
+    for stage, pair, part in (
         ("one rod under the pin", UPPER, before),
         ("coupled", UPPER, ~before & ~after),
         ("coupled", TIP, ~before & ~after),
         ("the other rod under the pin", LOWER, after),
-    )
-    for stage, pair, part in parts:
+    ):
         exact = columns[f"{pair} exact_force"]
         force, arc = (
             np.abs(columns[f"{pair} {name}"] - columns[f"{pair} exact_{name}"]) for name in ("force", "arc")
@@ -168,87 +168,57 @@ def _moving(scene: Scene, response: Response, columns: Columns) -> Section:
     return motion_section(title, scene, {BEAMS: response}, histories, focus=BEAMS)
 
 
-def plot_stages(scene: Scene, response: Response, stages: list[Row], *paths: Path) -> None:
-    """Draw both beams, the pin and the contact forces at the six stages."""
-    fig, grid = shape_panels(len(stages), 2.8)
-    for axes, stage in zip(grid.flat, stages, strict=True):
-        _draw_stage(axes, scene, response, stage["index"])
-        words = f"({stage['key']}) {stage['title']},\ndepth {stage['depth']:.3f} m"
-        axes.set_title(words, fontsize="small")
-        axes.set(xlim=(-0.05, 1.08), ylim=(-0.8, 0.2))
-    legend(fig, grid, 3)
-    fig.suptitle(
-        "Mixed elements, 10 + 10;\narrows are the forces on the touched beams, grey the beams at rest",
-        fontsize="medium",
-    )
-    save(fig, *paths)
-
-
-def _draw_stage(axes: Any, scene: Scene, response: Response, k: int) -> None:
+def _stage(scene: Scene, response: Response, stage: Row) -> Panel:
+    """Both beams, the pin and the contact forces at a stage."""
+    lines: list[Line] = []
+    notes, k = [], stage["index"]
     for beam in scene.beams:
-        rest, color = np.array([beam.start, beam.end]), COLOURS[beam.name]
+        rest, style = (
+            np.array([beam.start, beam.end]),
+            {"color": COLOURS[beam.name], "marker": "o", "markersize": 3},
+        )
         line = rest if k < 0 else response.axis_line(beam.name, k)[1]
-        nodes = np.linspace(0, len(line) - 1, beam.elements + 1).round().astype(int)
-        axes.plot(*rest.T, color="0.75", linewidth=0.8)
-        axes.plot(*line.T, color=color, linewidth=1.8, label=f"{beam.name} beam")
-        if k >= 0:
-            axes.plot(*line[nodes].T, color=color, marker="o", markersize=3, linestyle="none")
+        every = max(1, (len(line) - 1) // beam.elements)
+        lines += [
+            (*rest.T, {"color": "0.75", "linewidth": 0.8}),
+            (*line.T, {**style, "markevery": every, "linewidth": 1.8, "label": f"{beam.name} beam"}),
+        ]
     pin = np.array(scene.pins[0].position(0.0 if k < 0 else float(response.load_parameter[k])))
-    for row, pair in enumerate(NAMES if k >= 0 else ()):
-        point = response.tips["upper"][k] if pair == TIP else pin
-        _draw_force(axes, response, pair, k, point, -0.62 - 0.07 * row)
-    mark = {"marker": "o", "markersize": 6, "markerfacecolor": "white", "linestyle": "none", "zorder": 6}
-    axes.plot(*pin, color="black", label="pin", **mark)
+    for row, (pair, name) in enumerate(NAMES.items() if k >= 0 else ()):
+        contact, point = response.contacts[pair], response.tips["upper"][k] if pair == TIP else pin
+        if np.isfinite(contact.arc_position[k]) and contact.vector is not None:
+            ends = np.array([point - ARROW * contact.vector[k], point])
+            lines.append(
+                (*ends.T, {"color": STYLES[pair]["color"], "linewidth": 1.8, "label": f"force of {name}"})
+            )
+            notes.append((f"{name}: {contact.force[k]:.3f} N", (0.0, -0.62 - 0.07 * row)))
+    mark = {"color": "black", "marker": "o", "markerfacecolor": "white", "linestyle": "none", "label": "pin"}
+    lines.append((*pin, mark))
+    title = f"({stage['key']}) {stage['title']},\ndepth {stage['depth']:.3f} m"
+    settings = {**SHAPE, "xlim": (-0.05, 1.08), "ylim": (-0.8, 0.2)}
+    return Panel(title=title, lines=lines, settings=settings, notes=notes)
 
 
-def _draw_force(axes: Any, response: Response, pair: str, k: int, point: Array, height: float) -> None:
-    contact, color = response.contacts[pair], STYLES[pair]["color"]
-    if not np.isfinite(contact.arc_position[k]) or contact.vector is None:
-        return
-    arrow = {"arrowstyle": "-|>", "color": color, "linewidth": 1.8, "shrinkA": 0.0, "shrinkB": 0.0}
-    axes.annotate("", point, point - ARROW * contact.vector[k], arrowprops=arrow)
-    axes.plot([], [], color=color, linewidth=1.8, label=f"force of {NAMES[pair]}")
-    axes.annotate(f"{NAMES[pair]}: {contact.force[k]:.3f} N", (0.0, height), color=color, fontsize="small")
-
-
-def plot_histories(scene: Scene, columns: Columns, events: list[Row], *paths: Path) -> None:
-    """Draw forces and places of all contacts against the depth, with the exact rods and the events."""
-    fig = figure(figsize=(WIDTH, 8.0))
-    forces, places = fig.subplots(2, 1, sharex=True, height_ratios=(1.5, 1.0))
-    depth = columns["depth"]
-    for axes, quantity in ((forces, "force"), (places, "arc")):
+def _histories(columns: Columns, events: list[Row]) -> list[Panel]:
+    """Forces and places of all contacts against the depth, with the exact rods and the events."""
+    marks: dict[float, list[str]] = {}
+    for event in (one for one in events if one["depth"] > 0.0):
+        near = next((depth for depth in marks if abs(depth - event["depth"]) < 2e-3), event["depth"])
+        marks.setdefault(near, []).append(f"{event['kind']}, {NAMES[event['pair']]}")
+    panels = []
+    for quantity, label in (("force", "contact force [N]"), ("arc", "arc position [m]")):
+        lines: list[Line] = []
         for pair, name in NAMES.items():
-            exact = "exact rods" if pair == UPPER else "_"
-            axes.plot(depth, columns[f"{pair} exact_{quantity}"], color="0.7", linewidth=5.0, label=exact)
-            axes.plot(depth, columns[f"{pair} {quantity}"], **STYLES[pair], linewidth=1.6, label=name)
-    _mark_events(events, forces, places)
-    beam = scene.beams[0]
-    for node in np.linspace(0.0, beam.length, beam.elements + 1)[-4:]:
-        places.axhline(node, color="0.8", linewidth=0.6, zorder=0)
-    forces.set(ylabel="contact force [N]", ylim=(0.0, ROOM * forces.dataLim.y1))
-    places.set(xlabel="depth of the pin [m]", ylabel="arc position [m]", xlim=(0.0, depth[-1]))
-    forces.legend(loc="lower right", fontsize="small")
-    forces.set_title("Double beam, 10 + 10 mixed elements", pad=20)
-    save(fig, *paths)
-
-
-def _mark_events(events: list[Row], forces: Any, places: Any) -> None:
-    """Draw a numbered line per event, those at one depth together, and the list of the events."""
-    groups: dict[float, list[str]] = {}
-    for event in events:
-        near = next((depth for depth in groups if abs(depth - event["depth"]) < 2e-3), event["depth"])
-        if event["depth"] > 0.0:
-            groups.setdefault(near, []).append(f"{event['kind']}, {NAMES[event['pair']]}")
-    lines = []
-    for number, (depth, texts) in enumerate(groups.items(), 1):
-        for axes in (forces, places):
-            axes.axvline(depth, color="0.4", linewidth=0.8, linestyle=":")
-        forces.annotate(
-            f"{number}", (depth, 1.0), (0, 4), xycoords=("data", "axes fraction"), textcoords="offset points",
-            ha="center",
-        )  # fmt: skip
-        lines += [f"{number}   {depth:.4f} m   {texts[0]}", *(f"{'':20}{text}" for text in texts[1:])]
-    forces.annotate(
-        "\n".join(lines), (0.012, 0.975), xycoords="axes fraction", va="top", fontsize="small",
-        bbox={"facecolor": "white", "edgecolor": "0.8"},
-    )  # fmt: skip
+            exact = {"color": "0.7", "linewidth": 5.0, "label": RODS}
+            lines.append((columns["depth"], columns[f"{pair} exact_{quantity}"], exact))
+            lines.append((columns["depth"], columns[f"{pair} {quantity}"], {**STYLES[pair], "label": name}))
+        high = max(float(np.nanmax(line[1])) for line in lines)
+        for number, (depth, texts) in enumerate(marks.items(), 1):
+            words = f"{number}: {depth:.4f} m, {'; '.join(texts)}"
+            lines.append(([depth, depth], [0.0, high], {"color": "0.4", "linestyle": ":", "label": words}))
+        notes = [(f"{number}", (depth, high)) for number, depth in enumerate(marks, 1)]
+        settings = {"xlabel": "depth of the pin [m]", "ylabel": label}
+        panels.append(
+            Panel(title="Double beam, 10 + 10 mixed elements", lines=lines, settings=settings, notes=notes)
+        )
+    return panels

@@ -1,7 +1,8 @@
-"""What a figure of [P] leaves: rows and numbers, by which its claims are judged, and pictures; one way to write and to lay them out."""
+"""What a figure of [P] leaves: rows and numbers, by which its claims are judged, and pictures, which are lists of lines."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +12,12 @@ from comparisons.output import Row, write_numbers, write_rows
 from comparisons.response import Array
 from comparisons.scene import Scene
 from comparisons.show.pages import Section
-from comparisons.show.plot import WIDTH, figure
+from comparisons.show.plot import WIDTH, figure, save
 
-COLUMNS = 2
-"""Panels beside each other."""
+Line = tuple[Any, Any, dict[str, Any]]
+"""Abscissas, ordinates and style of a line; a label stands in the legend once, however many panels have it."""
+SHAPE = {"aspect": "equal", "xlabel": "x [m]", "ylabel": "y [m]"}
+"""Settings of a panel that shows shapes of beams."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,48 +37,49 @@ class Study:
     def write(self, name: str, folder: Path) -> list[Path]:
         """Draw the pictures and write the numbers, those of the JSON file under a name; return the files."""
         files = []
-        for stem, draw in self.pictures.items():
+        for stem, draw_to in self.pictures.items():
             paths = [folder / f"{stem}.png", folder / f"{stem}.svg"]
-            draw(*paths)
+            draw_to(*paths)
             files += paths
         files += [write_rows(folder / f"{stem}.csv", rows) for stem, rows in self.tables.items()]
         return [*files, write_numbers(folder / f"{name}.json", self.numbers)]
 
 
+@dataclass(frozen=True, kw_only=True)
+class Panel:
+    """One diagram: its title, its lines, settings of its axes, and words at places in the units of its data."""
+
+    title: str
+    lines: Sequence[Line]
+    settings: Mapping[str, Any]
+    notes: Sequence[tuple[str, tuple[float, float]]] = ()
+
+
+def draw(panels: Sequence[Panel], *paths: Path, tall: float, title: str = "", columns: int = 2) -> None:
+    """Draw panels beside each other, each `tall` inches high, with one legend below them."""
+    rows = -(-len(panels) // columns)
+    fig = figure(figsize=(WIDTH, 1.3 + tall * rows))
+    grid = fig.subplots(rows, columns, squeeze=False)
+    named: dict[str, Any] = {}
+    for axes, panel in zip_longest(grid.flat, panels):
+        if panel is None:
+            axes.set_axis_off()
+            continue
+        for x, y, style in panel.lines:
+            axes.plot(x, y, **style)
+        for words, place in panel.notes:
+            axes.annotate(words, place, fontsize="small", color="0.25")
+        axes.set(**panel.settings)
+        axes.set_title(panel.title, fontsize="small")
+        axes.grid(visible=True, linewidth=0.3)
+        handles, labels = axes.get_legend_handles_labels()
+        named = dict(zip(labels, handles, strict=True)) | named
+    place = {"loc": "outside lower center", "fontsize": "small", "frameon": False}
+    fig.legend(named.values(), named.keys(), ncols=2, **place)
+    fig.suptitle(title, fontsize="medium")
+    save(fig, *paths)
+
+
 def column(rows: list[Row], name: str) -> Array:
     """Return a column of a table."""
     return np.array([row[name] for row in rows])
-
-
-def panels(count: int, tall: float, rest: float = 0.0, **options: Any) -> tuple[Any, Any]:
-    """Return a figure and its grid of `count` panels, each `tall` inches high, with `rest` inches for all else."""
-    rows = -(-count // COLUMNS)
-    fig = figure(figsize=(WIDTH, rest + tall * rows))
-    grid = fig.subplots(rows, min(count, COLUMNS), sharey=True, squeeze=False, **options)
-    for axes in grid.flat[:count]:
-        axes.grid(visible=True, linewidth=0.3)
-    for axes in grid.flat[count:]:
-        axes.set_axis_off()
-    return fig, grid
-
-
-def shape_panels(count: int, tall: float, rest: float = 0.0) -> tuple[Any, Any]:
-    """Return `panels` for the shapes of beams."""
-    fig, grid = panels(count, tall, rest, sharex=True)
-    for axes in grid.flat[:count]:
-        axes.set_aspect("equal", adjustable="box")
-    for axes in grid[-1]:
-        axes.set_xlabel("x [m]")
-    for axes in grid[:, 0]:
-        axes.set_ylabel("y [m]")
-    return fig, grid
-
-
-def legend(fig: Any, grid: Any, columns: int) -> None:
-    """Name the lines of all panels below them, each once."""
-    found: dict[str, Any] = {}
-    for axes in grid.flat:
-        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
-            found.setdefault(label, handle)
-    place = {"loc": "outside lower center", "fontsize": "small", "frameon": False}
-    fig.legend(found.values(), found.keys(), ncols=columns, **place)
