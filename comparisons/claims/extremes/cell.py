@@ -1,8 +1,9 @@
 """One cell of the matrix, and its verdict."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from comparisons.cases.case import Case
+from comparisons.cases.measure import Measurement
 from comparisons.cases.run import COMPLETED, UNSETTLED
 from comparisons.claims.claim import Finding, Verdict, decided
 from comparisons.claims.extremes.checks import Check, Results
@@ -23,7 +24,7 @@ class Cell:
         All of them must hold.
     """
 
-    axis: str
+    axis: str = ""
     row: str
     column: str
     case: Case
@@ -34,6 +35,10 @@ class Cell:
         """The case, and those that its checks need."""
         return (self.case, *(case for check in self.checks for case in check.needs))
 
+    def also(self, *checks: Check) -> "Cell":
+        """Return the cell with further checks."""
+        return replace(self, checks=(*self.checks, *checks))
+
 
 @dataclass(frozen=True, kw_only=True)
 class Judgement:
@@ -43,30 +48,24 @@ class Judgement:
     ----------
     cell : Cell
         The cell.
+    own : Measurement
+        What was measured: how the solution ended, and what it cost.
+    findings : tuple of Finding
+        Findings of all checks over the load parameters that were reached; empty if none was.
     verdict : Verdict
         Wrong: an error is above its allowance at a load parameter that was reached, or the case raised or lost its worker. Withdrawn: the answer fails the
         checks of a response; it counts neither as right nor as stopped.
-    status, message : str
-        How the solution ended.
-    reached : float
-        The last load parameter reached, zero if none was.
-    findings : tuple of Finding
-        Findings of all checks over the load parameters that were reached; empty if none was.
-    iterations, cutbacks : int
-        Newton iterations and cut-backs.
-    seconds : float
-        Processor time, nan if nothing ran.
     """
 
     cell: Cell
-    verdict: Verdict
-    status: str
-    message: str
-    reached: float
+    own: Measurement
     findings: tuple[Finding, ...]
-    iterations: int
-    cutbacks: int
-    seconds: float
+    verdict: Verdict
+
+    @property
+    def reached(self) -> float:
+        """The last load parameter reached, zero if none was."""
+        return float(max(self.own.response.load_parameter, default=0.0))
 
     @property
     def needless(self) -> bool:
@@ -82,18 +81,19 @@ class Judgement:
     @property
     def sentence(self) -> str:
         """What is wrong, in one line."""
-        place = f"{self.cell.axis} {self.cell.column}, {self.cell.case.label}: {self.verdict}: {self.status}"
-        if self.decisive is None:
-            return f"{place}: {self.message}"
-        found = self.decisive
+        found, own = self.decisive, self.own.response
+        place = f"{self.cell.axis} {self.cell.column}, {self.cell.case.label}: {self.verdict}: {own.status}"
+        if found is None:
+            return f"{place}: {own.message}"
         return f"{place}, error {found.error:.2g} against {found.name}, allowed {found.allowed:.2g} ({found.why})"
 
 
 def judged(cell: Cell, results: Results) -> Judgement:
     """Return the verdict on `cell` by the `results` of its `cases`."""
-    own = results[cell.case].response
-    reached = bool(len(own.load_parameter))
-    found = [check.finding(cell.case, own, results) for check in cell.checks] if reached else []
+    measured = results[cell.case]
+    own = measured.response
+    checks = cell.checks if len(own.load_parameter) else ()
+    found = (check.finding(cell.case, own, results) for check in checks)
     findings = tuple(finding for finding in found if finding is not None)
     if own.status == CHECK_FAILED:
         verdict = Verdict.WITHDRAWN
@@ -101,14 +101,4 @@ def judged(cell: Cell, results: Results) -> Judgement:
         verdict = Verdict.WRONG
     else:
         verdict = decided(findings, completed=own.status == COMPLETED)
-    return Judgement(
-        cell=cell,
-        verdict=verdict,
-        status=own.status,
-        message=own.message,
-        reached=float(own.load_parameter[-1]) if reached else 0.0,
-        findings=findings,
-        iterations=own.iterations,
-        cutbacks=own.cutbacks,
-        seconds=results[cell.case].seconds,
-    )
+    return Judgement(cell=cell, own=measured, findings=findings, verdict=verdict)

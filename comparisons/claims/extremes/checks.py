@@ -1,7 +1,8 @@
 """Checks of an answer: against another answer, against the energy of a rod in closed form, against a circle."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -23,8 +24,6 @@ NEXT_TERM = 1.05
 
 Results = Mapping[Case, Measurement]
 """Measurements by case."""
-
-
 LARGEST = 0.2
 """Largest allowed error for any model; an answer with a larger error should have stopped."""
 
@@ -106,8 +105,7 @@ class Against:
                 why=f"it went on where the {self.name} stopped: {other.status}: {other.message}",
             )
         answer = in_units_of(beam, case.scene.beams[0], own)
-        partner = in_units_of(beam, beam, other)
-        found = [difference(answer, partner, self.case.scene, quantity) for quantity in COMPARED]
+        found = [difference(answer, other, self.case.scene, quantity) for quantity in COMPARED]
         error = float(np.fmax.reduce(found, initial=0.0))
         return Finding(name=self.name, error=error, allowed=allowed.error, why=allowed.why)
 
@@ -129,7 +127,7 @@ class Energy:
     """
 
     rigid: bool = False
-    needs: tuple[Case, ...] = field(default=(), init=False)
+    needs: ClassVar[tuple[Case, ...]] = ()
 
     def finding(self, case: Case, own: Response, _: Results) -> Finding:
         """Return the largest violation over ``2 EI sin b``."""
@@ -163,7 +161,7 @@ class Circle:
     times the distance of the tip from the clamp.
     """
 
-    needs: tuple[Case, ...] = field(default=(), init=False)
+    needs: ClassVar[tuple[Case, ...]] = ()
 
     def finding(self, case: Case, own: Response, _: Results) -> Finding:
         """Return the largest error of the tip's position over the length."""

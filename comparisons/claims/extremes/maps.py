@@ -4,7 +4,8 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from html import escape
-from itertools import pairwise
+
+import numpy as np
 
 from comparisons.claims.claim import Verdict
 from comparisons.claims.extremes.axes import Axis
@@ -29,14 +30,9 @@ LEGEND = """A cell shows the largest error of force, arc position, moment and ti
 must hold, the one that comes nearest to what is allowed. A cell that stopped shows the name of the reason, one that is withdrawn by its own
 checks the error that it would have had. Hover over it to see what it
 is compared with, what is allowed and why."""
-SHADES = (
-    (-14.0, (8, 48, 107)),
-    (-10.0, (33, 113, 181)),
-    (-6.0, (107, 174, 214)),
-    (-3.0, (189, 215, 231)),
-    (0.0, (255, 247, 188)),
-)
-"""Blue for small errors to pale yellow for large ones, by the decimal logarithm: safe for the colour-blind."""
+POWERS = (-14.0, -10.0, -6.0, -3.0, 0.0)
+SHADES = ((8, 33, 107, 189, 255), (48, 113, 174, 215, 247), (107, 181, 214, 231, 188))
+"""Red, green and blue by the error's decimal logarithm: blue for small errors to pale yellow, safe for the colour-blind."""
 
 
 def sections(axes: Iterable[Axis], judgements: Sequence[Judgement]) -> list[Section]:
@@ -60,24 +56,21 @@ def counted(judgements: Sequence[Judgement]) -> str:
 
 
 def _key() -> str:
-    shades = "".join(
-        f'<td style="{_shade(10.0**power)}">{_number(10.0**power)}</td>' for power in (-14, -10, -6, -3, -1)
-    )
-    return (
-        f'<table class="key"><tr><th>completed and right, error</th>{shades}'
-        f'<td class="stopped">{MARKS[Verdict.STOPPED]}stopped by name</td><td class="withdrawn">{MARKS[Verdict.WITHDRAWN]}withdrawn by its own checks</td><td class="wrong">{MARKS[Verdict.WRONG]}wrong</td></tr></table>'
-    )
+    shades = "".join(_shaded(10.0**power) for power in (-14, -10, -6, -3, -1))
+    words = {
+        Verdict.STOPPED: "stopped by name", Verdict.WITHDRAWN: "withdrawn by its own checks", Verdict.WRONG: "wrong",
+    }  # fmt: skip
+    marks = "".join(f'<td class="{verdict}">{MARKS[verdict]}{text}</td>' for verdict, text in words.items())
+    return f'<table class="key"><tr><th>completed and right, error</th>{shades}{marks}</tr></table>'
 
 
 def _map(judgements: Sequence[Judgement]) -> str:
-    rows = list(dict.fromkeys(item.cell.row for item in judgements))
-    columns = list(dict.fromkeys(item.cell.column for item in judgements))
+    rows = dict.fromkeys(item.cell.row for item in judgements)
+    columns = dict.fromkeys(item.cell.column for item in judgements)
     at = {(item.cell.row, item.cell.column): item for item in judgements}
     head = "".join(f'<th scope="col">{escape(column)}</th>' for column in columns)
     body = "\n".join(
-        f'<tr><th scope="row">{escape(row)}</th>'
-        + "".join(_cell(at.get((row, column))) for column in columns)
-        + "</tr>"
+        f'<tr><th scope="row">{escape(row)}</th>{"".join(_cell(at.get((row, column))) for column in columns)}</tr>'
         for row in rows
     )
     return f'<div class="map"><table><thead><tr><th></th>{head}</tr></thead><tbody>\n{body}\n</tbody></table></div>'
@@ -86,44 +79,40 @@ def _map(judgements: Sequence[Judgement]) -> str:
 def _cell(item: Judgement | None) -> str:
     if item is None:
         return '<td class="none">·</td>'
-    decisive = item.decisive
-    shown = item.status if item.verdict is Verdict.STOPPED or decisive is None else _number(decisive.error)
-    style = f' style="{_shade(decisive.error)}"' if item.verdict is Verdict.RIGHT and decisive else ""
-    return f'<td class="{item.verdict}"{style} title="{escape(_details(item))}">{MARKS[item.verdict]}{escape(shown)}</td>'
+    decisive, about = item.decisive, f' class="{item.verdict}" title="{escape(_details(item))}"'
+    if item.verdict is Verdict.RIGHT and decisive:
+        return _shaded(decisive.error, about)
+    named = item.verdict is Verdict.STOPPED or decisive is None
+    shown = item.own.response.status if named or decisive is None else _number(decisive.error)
+    return f"<td{about}>{MARKS[item.verdict]}{escape(shown)}</td>"
 
 
 def _details(item: Judgement) -> str:
-    found = [
+    own = item.own.response
+    found = (
         f"against {finding.name}: error {_number(finding.error)}, allowed {_number(finding.allowed)} ({finding.why})"
         for finding in item.findings
-    ]
-    ended = f"{item.status}: {item.message}"
+    )
     return "\n".join(
         [
             f"{item.cell.case.label}, {item.cell.column}: {item.verdict}",
-            ended,
+            f"{own.status}: {own.message}",
             f"reached {item.reached:.4g} of 1",
             *found,
-            f"{item.iterations} iterations, {item.cutbacks} cut-backs",
+            f"{own.iterations} iterations, {own.cutbacks} cut-backs",
         ]
     )
 
 
 def _number(value: float) -> str:
-    return (
-        "0"
-        if value == 0
-        else f"{value:.1e}".replace("e-0", "e-").replace("e+0", "e+")
-        if math.isfinite(value)
-        else "∞"
-    )
+    if not math.isfinite(value):
+        return "∞"
+    return f"{value:.1e}".replace("e-0", "e-").replace("e+0", "e+") if value else "0"
 
 
-def _shade(error: float) -> str:
-    """Return background and ink for an error."""
-    power = min(max(math.log10(max(error, 1e-300)), SHADES[0][0]), SHADES[-1][0])
-    (low, one), (high, other) = next(pair for pair in pairwise(SHADES) if power <= pair[1][0])
-    part = (power - low) / (high - low)
-    red, green, blue = (round(a + part * (b - a)) for a, b in zip(one, other, strict=True))
+def _shaded(error: float, about: str = "") -> str:
+    """Return a cell with the colour of an error."""
+    power = math.log10(max(error, 1e-300))
+    red, green, blue = (round(float(np.interp(power, POWERS, shades))) for shades in SHADES)
     ink = "#fff" if 0.3 * red + 0.59 * green + 0.11 * blue < 130 else "#111"
-    return f"background:rgb({red},{green},{blue});color:{ink}"
+    return f'<td{about} style="background:rgb({red},{green},{blue});color:{ink}">{_number(error)}</td>'

@@ -1,6 +1,6 @@
 """The rows of the maps: models, each with its options and with what its answers are compared."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from comparisons.cases.case import Case
@@ -26,11 +26,8 @@ def exact_rod(scene: Scene) -> Case:
 
 def beam_case(scene: Scene, kind: ElementType, elements: int | None) -> Case:
     """Return TSM on `scene`; elements without a mesh are one per beam, None leaves the others to the scene."""
-    return Case(
-        scene=scene,
-        model=TSM.name,
-        options=Options(element=kind.name, elements=elements if kind.meshed else 1),
-    )
+    options = Options(element=kind.name, elements=elements if kind.meshed else 1)
+    return Case(scene=scene, model=TSM.name, options=options)
 
 
 def against_rod(case: Case) -> Against:
@@ -41,67 +38,40 @@ def against_rod(case: Case) -> Against:
     return Against(case=exact_rod(scene))
 
 
+def cell(row: str, column: str, case: Case, *checks: Check) -> Cell:
+    """Return the cell of a case, by default against the rod."""
+    return Cell(row=row, column=column, case=case, checks=checks or (against_rod(case),))
+
+
 def beams(
-    axis: str, column: str, scene: Scene, elements: int | None, *, only: Iterable[ElementType] | None = None
-) -> list[Cell]:
-    """Return the cells of TSM, and of other models of beams with a mesh as they are, against the rod."""
-    others = (model for model in MODELS.values() if model.meshed and not model.continuum and model is not TSM)
-    return [
-        *(
-            _beam(axis, column, beam_case(scene, kind, elements))
-            for kind in (kinds() if only is None else only)
-        ),
-        *(against(axis, model.name, column, Case(scene=scene, model=model.name)) for model in others),
-    ]
+    column: str, scene: Scene, elements: int | None, *, only: Iterable[ElementType] | None = None
+) -> Iterator[Cell]:
+    """Yield the cells of TSM, and of other models of beams with a mesh as they are, against the rod."""
+    for kind in kinds() if only is None else only:
+        yield cell(kind.name, column, beam_case(scene, kind, elements))
+    for model in MODELS.values():
+        if model.meshed and not model.continuum and model is not TSM:
+            yield cell(model.name, column, Case(scene=scene, model=model.name))
 
 
-def _beam(axis: str, column: str, case: Case) -> Cell:
-    return against(axis, TSM.element(case.options).name, column, case)
-
-
-def against(axis: str, row: str, column: str, case: Case) -> Cell:
-    """Return the cell of a case against the rod."""
-    return Cell(axis=axis, row=row, column=column, case=case, checks=(against_rod(case),))
-
-
-def solids(
-    axis: str,
-    column: str,
-    scene: Scene,
-    mesh: tuple[int, int],
-    *,
-    row: str = SOLID.name,
-    checks: tuple[Check, ...] = (),
-) -> list[Cell]:
+def solid(column: str, scene: Scene, mesh: tuple[int, int], *checks: Check, row: str = SOLID.name) -> Cell:
     """Return the cell of the solid, by default against the rod."""
-    case = Case(scene=scene, model=SOLID.name, options=Options(mesh=mesh))
-    return [Cell(axis=axis, row=row, column=column, case=case, checks=checks or (against_rod(case),))]
+    return cell(row, column, Case(scene=scene, model=SOLID.name, options=Options(mesh=mesh)), *checks)
 
 
-def exact_answers(axis: str, column: str, scene: Scene) -> list[Cell]:
-    """Return the cells of the models without a mesh: against their energy, and against the rod."""
-    rod = exact_rod(scene)
-    return [
-        Cell(
-            axis=axis,
-            row=model.name,
-            column=column,
-            case=Case(scene=scene, model=model.name),
-            checks=(Energy(rigid=not model.rod), *(() if model is ROD else (Against(case=rod),))),
-        )
-        for model in MODELS.values()
-        if not model.meshed
-    ]
+def exact_answers(column: str, scene: Scene) -> Iterator[Cell]:
+    """Yield the cells of the models without a mesh: against their energy, and against the rod."""
+    rod = Against(case=exact_rod(scene))
+    for model in (one for one in MODELS.values() if not one.meshed):
+        checks = (Energy(rigid=not model.rod), *(() if model is ROD else (rod,)))
+        yield cell(model.name, column, Case(scene=scene, model=model.name), *checks)
 
 
 def everything(
-    axis: str, column: str, scene: Scene, elements: int | None, mesh: tuple[int, int] | None = None
-) -> list[Cell]:
-    """Return the cells of all models on a scene: beams, the solid if it has a mesh, exact answers."""
-    solid = solids(axis, column, scene, mesh) if mesh else []
-    return [*beams(axis, column, scene, elements), *solid, *exact_answers(axis, column, scene)]
-
-
-def with_check(cell: Cell, *checks: Check) -> Cell:
-    """Return `cell` with further checks."""
-    return replace(cell, checks=(*cell.checks, *checks))
+    column: str, scene: Scene, elements: int | None, mesh: tuple[int, int] | None = None
+) -> Iterator[Cell]:
+    """Yield the cells of all models on a scene: beams, the solid if it has a mesh, exact answers."""
+    yield from beams(column, scene, elements)
+    if mesh:
+        yield solid(column, scene, mesh)
+    yield from exact_answers(column, scene)

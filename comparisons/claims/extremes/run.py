@@ -2,9 +2,9 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from shutil import rmtree
+from typing import NamedTuple
 
 from comparisons.cases.case import Case
 from comparisons.cases.run import Progress
@@ -20,17 +20,8 @@ from comparisons.output import Row, write_numbers, write_rows
 from comparisons.show.pages import page, provenance
 
 
-@dataclass(frozen=True, kw_only=True)
-class Extremes:
-    """What became of the matrix.
-
-    Attributes
-    ----------
-    judgements : tuple of Judgement
-        One for each cell.
-    files : tuple of Path
-        What was written.
-    """
+class Extremes(NamedTuple):
+    """What became of every cell of the matrix, and the files that were written."""
 
     judgements: tuple[Judgement, ...]
     files: tuple[Path, ...]
@@ -99,7 +90,9 @@ def counts(judgements: Sequence[Judgement]) -> dict[str, dict[str, int]]:
 
 def row(item: Judgement) -> Row:
     """Return one line of the table: the cell, its verdict, and the comparison that decides it."""
-    decisive = item.decisive
+    own, decisive = item.own.response, item.decisive
+    about = ("error", "allowed", "against", "why")
+    found = (decisive.error, decisive.allowed, decisive.name, decisive.why) if decisive else (None,) * 4
     return {
         "axis": item.cell.axis,
         "model": item.cell.row,
@@ -107,14 +100,11 @@ def row(item: Judgement) -> Row:
         "label": item.cell.case.label,
         "verdict": str(item.verdict),
         "needless": item.needless,
-        "status": item.status,
+        "status": own.status,
         "reached": item.reached,
-        "error": decisive.error if decisive else None,
-        "allowed": decisive.allowed if decisive else None,
-        "against": decisive.name if decisive else None,
-        "why": decisive.why if decisive else None,
-        "iterations": item.iterations,
-        "cutbacks": item.cutbacks,
-        "seconds": item.seconds,
-        "message": item.message,
+        **dict(zip(about, found, strict=True)),
+        "iterations": own.iterations,
+        "cutbacks": own.cutbacks,
+        "seconds": item.own.seconds,
+        "message": own.message,
     }

@@ -5,7 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from comparisons import models as registry
-from comparisons.claims.manual.problem import Curve, Problem
+from comparisons.claims.manual.answers import Curve
+from comparisons.claims.manual.problem import Problem
 from comparisons.show import palette
 from comparisons.show.plot import SOLID, figure, save
 

@@ -15,7 +15,30 @@ An error is that of the worst quantity, relative to its exact value, or to the l
 this page, its pictures and `manual.json`; it took {seconds:.0f} s with {versions}.
 
 """
-RULE = "|---|---|---|---|---|---|---|---|"
+SECTION = """<a id="{problem.name}"></a>
+
+## {problem.title}
+
+{problem.statement}
+
+Purpose: {problem.purpose}
+
+Exact value: {problem.source}.
+
+![{problem.title}]({picture})
+
+"""
+COLUMNS = (
+    "case",
+    "model",
+    "quantity of the largest error",
+    "exact",
+    "computed",
+    "error",
+    "tolerance",
+    "verdict",
+)
+STATED = ("name", "title", "purpose", "statement", "source", "uncertainty", "quantities")
 
 
 def markdown(cases: Sequence[Case]) -> str:
@@ -28,65 +51,52 @@ def markdown(cases: Sequence[Case]) -> str:
         seconds=sum(item.seconds for item in judgements),
         versions=", ".join(f"{name} {number}" for name, number in versions().items()),
     )
-    return head + "\n".join([*_overview(cases), *(line for case in cases for line in _section(case)), ""])
+    answers = [_answer(case, item) for case in cases for item in case.judgements]
+    return head + table([COLUMNS, *answers]) + "\n" + "\n".join(map(_section, cases))
 
 
-def _overview(cases: Sequence[Case]) -> Iterator[str]:
-    yield "| case | model | quantity of the largest error | exact | computed | error | tolerance | verdict |"
-    yield RULE
-    for case in cases:
-        for item in case.judgements:
-            k = item.worst
-            quantity = case.problem.quantities[k]
-            cells = [
-                f"[{case.problem.title}](#{case.problem.name})",
-                item.claim.name,
-                quantity.name,
-                f"{quantity.exact:.9g}",
-                item.stopped or f"{item.values[k]:.9g}",
-                f"{item.findings[k].error:.1e}",
-                f"{item.claim.allowance.error:.2g}",
-                _verdict(item),
-            ]
-            yield _row(cells)
-    yield ""
+def table(rows: Sequence[Sequence[str]]) -> str:
+    """Return rows, the header first, as a table in Markdown."""
+    lines = ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |\n" for row in rows]
+    return "".join([lines[0], "|" + "---|" * len(rows[0]) + "\n", *lines[1:]])
 
 
-def _row(cells: Sequence[str]) -> str:
-    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+def _answer(case: Case, item: Judgement) -> list[str]:
+    """The answer of a model: its quantity of the largest error."""
+    k = item.worst
+    quantity = case.problem.quantities[k]
+    return [
+        f"[{case.problem.title}](#{case.problem.name})",
+        item.claim.name,
+        quantity.name,
+        f"{quantity.exact:.9g}",
+        item.stopped or f"{item.values[k]:.9g}",
+        f"{item.findings[k].error:.1e}",
+        f"{item.claim.allowance.error:.2g}",
+        _verdict(item),
+    ]
 
 
 def _verdict(item: Judgement) -> str:
     return "passed" if item.passed else "**FAILED**"
 
 
-def _section(case: Case) -> Iterator[str]:
+def _section(case: Case) -> str:
     problem, items = case.problem, case.judgements
-    yield f'<a id="{problem.name}"></a>'
-    yield ""
-    yield f"## {problem.title}"
-    yield ""
-    yield problem.statement
-    yield ""
-    yield f"Purpose: {problem.purpose}"
-    yield ""
-    yield f"Exact value: {problem.source}."
-    yield ""
-    yield f"![{problem.title}]({case.picture})"
-    yield ""
-    yield _row(["quantity", "exact", *(item.claim.name for item in items)])
-    yield "|" + "---|" * (2 + len(items))
+    rows = [["quantity", "exact", *(item.claim.name for item in items)]]
     for k, quantity in enumerate(problem.quantities):
         computed = (f"{item.values[k]:.9g} ({item.findings[k].error:.1e})" for item in items)
-        yield _row([quantity.name, f"{quantity.exact:.12g}", *computed])
-    yield _row(["tolerance", "", *(f"{item.claim.allowance.error:.2g}" for item in items)])
-    yield _row(["verdict", "", *(_verdict(item) for item in items)])
-    yield _row(["seconds", "", *(f"{item.seconds:.2f}" for item in items)])
-    yield ""
-    for item in items:
-        stopped = f" Stopped: {item.stopped}." if item.stopped else ""
-        yield f"- {item.claim.name}: {item.claim.allowance.why}.{stopped}"
-    yield ""
+        rows.append([quantity.name, f"{quantity.exact:.12g}", *computed])
+    rows += [
+        ["tolerance", "", *(f"{item.claim.allowance.error:.2g}" for item in items)],
+        ["verdict", "", *map(_verdict, items)],
+        ["seconds", "", *(f"{item.seconds:.2f}" for item in items)],
+    ]
+    reasons = (
+        f"- {item.claim.name}: {item.claim.allowance.why}.{f' Stopped: {item.stopped}.' * bool(item.stopped)}\n"
+        for item in items
+    )
+    return SECTION.format(problem=problem, picture=case.picture) + table(rows) + "\n" + "".join(reasons)
 
 
 def numbers(cases: Sequence[Case]) -> dict[str, Any]:
@@ -95,30 +105,23 @@ def numbers(cases: Sequence[Case]) -> dict[str, Any]:
 
 
 def _case(case: Case) -> dict[str, Any]:
-    problem = case.problem
-    return {
-        **{
-            name: getattr(problem, name)
-            for name in ("name", "title", "purpose", "statement", "source", "uncertainty", "quantities")
-        },
-        "runs": [
-            {
-                "model": trial.model,
-                "setting": trial.setting,
-                "tolerance": trial.allowance.error,
-                "reason": trial.allowance.why,
-                "values": item.values,
-                "errors": [finding.error for finding in item.findings],
-                "seconds": item.seconds,
-                "stopped": item.stopped,
-                "passed": item.passed,
-            }
-            for trial, item in zip(problem.trials, case.judgements, strict=True)
-        ],
-        "picture": case.picture,
-        "passed": case.passed,
-        "seconds": case.seconds,
-    }
+    runs = [
+        {
+            "model": trial.model,
+            "setting": trial.setting,
+            "tolerance": trial.allowance.error,
+            "reason": trial.allowance.why,
+            "values": item.values,
+            "errors": [finding.error for finding in item.findings],
+            "seconds": item.seconds,
+            "stopped": item.stopped,
+            "passed": item.passed,
+        }
+        for trial, item in zip(case.problem.trials, case.judgements, strict=True)
+    ]
+    stated = {name: getattr(case.problem, name) for name in STATED}
+    found = {name: getattr(case, name) for name in ("picture", "passed", "seconds")}
+    return {**stated, "runs": runs, **found}
 
 
 def junit_cases(cases: Sequence[Case]) -> Iterator[JUnitCase]:

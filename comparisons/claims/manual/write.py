@@ -1,17 +1,16 @@
 """The manual as a folder: ``index.md``, a picture for each case, ``manual.json``."""
 
 from collections.abc import Sequence
-from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from comparisons.claims.claim import Claim, judge
+from comparisons.claims.manual.answers import ANSWER, Answers, Curve, answered, deflected, undeformed
 from comparisons.claims.manual.measures import MEASURES
 from comparisons.claims.manual.pictures import draw
-from comparisons.claims.manual.problem import Case, Curve, Problem, Trial, read_problem
-from comparisons.claims.manual.read import ANSWER, answered, deflected, readings, undeformed
+from comparisons.claims.manual.problem import Case, Problem, Trial, read_problem
 from comparisons.claims.manual.text import markdown, numbers
 from comparisons.files import writable_folder, write_text
 from comparisons.output import Report, write_numbers
@@ -29,29 +28,23 @@ class Manual(NamedTuple):
         return all(case.passed for case in self.cases)
 
 
-def judged(problem: Problem) -> tuple[Case, tuple[Curve, ...]]:
+def judged(problem: Problem) -> tuple[Case, list[Curve]]:
     """Return a problem with the judgements on all its models, and the curves that they add to its picture."""
-    curves: list[Curve] = []
+    answers = [Answers(problem, trial) for trial in problem.trials]
+    claims = (_claim(problem, trial, one) for trial, one in zip(problem.trials, answers, strict=True))
+    case = Case(problem=problem, judgements=tuple(map(judge, claims)))
+    return case, [curve for one in answers for curve in one.curves]
 
-    def measured(trial: Trial) -> Sequence[float]:
-        found = MEASURES.get(problem.measure, readings)(problem, trial)
-        curves.extend(found.curves)
-        return found.values
 
-    judgements = tuple(
-        judge(
-            Claim(
-                name=trial.label,
-                statement=problem.statement,
-                source=problem.source,
-                quantities=problem.quantities,
-                allowance=trial.allowance,
-                measure=partial(measured, trial),
-            )
-        )
-        for trial in problem.trials
+def _claim(problem: Problem, trial: Trial, answers: Answers) -> Claim:
+    return Claim(
+        name=trial.label,
+        statement=problem.statement,
+        source=problem.source,
+        quantities=problem.quantities,
+        allowance=trial.allowance,
+        measure=lambda: MEASURES[problem.measure](problem, answers),
     )
-    return Case(problem=problem, judgements=judgements, picture=f"{problem.name}.svg"), tuple(curves)
 
 
 def _exact(problem: Problem, curves: Sequence[Curve]) -> tuple[Curve, ...]:
@@ -59,10 +52,8 @@ def _exact(problem: Problem, curves: Sequence[Curve]) -> tuple[Curve, ...]:
     picture, scene = problem.picture, problem.scene
     if picture.guide:
         order, first = picture.guide
-        ends = np.array([curves[0].points[:, 0].min(), curves[0].points[:, 0].max()])
-        return (
-            Curve(style="exact order", points=np.stack([ends, first * (ends / ends[0]) ** order], axis=1)),
-        )
+        ends = np.sort(curves[0].points[[0, -1], 0])
+        return (Curve("exact order", np.stack([ends, first * (ends / ends[0]) ** order], axis=1)),)
     drawn = () if picture.axes else undeformed(scene)
     if picture.exact:
         drawn += (deflected(scene, answered(scene, picture.exact), ANSWER, picture.shown),)

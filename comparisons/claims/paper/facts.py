@@ -180,7 +180,7 @@ def of_shapes(found: Study) -> Facts:
     errors = {
         count: {name: float(run[f"error_path_{name}"]) for name in names} for count, run in runs.items()
     }
-    errors["solid"] = {name: float(solid[f"error_path_{name}"]) for name in ("shape", "force")}
+    errors[SOLID.label] = {name: float(solid[f"error_path_{name}"]) for name in ("shape", "force")}
     apart = {count: run["shape_difference"] for count, run in runs.items()}
     all_runs = [run for run in found.numbers["runs"] if run["label"] in {one.label for one in PAPER}]
     failed = [run for run in all_runs if not run["follows_the_rod"]]
@@ -206,8 +206,8 @@ def of_shapes(found: Study) -> Facts:
         "apart": {count: percent(value) for count, value in apart.items()},
         "error": words,
         "each": "; ".join(f"{n} elements {', '.join(words[n][name] for name in asked)}" for n in runs),
-        "worst": (percent(worst), percent(max(errors["solid"].values()))),
-        "run": {**runs, "solid": solid},
+        "worst": (percent(worst), percent(max(errors[SOLID.label].values()))),
+        "run": {**runs, SOLID.label: solid},
     }
     return Facts(readings, numbers)
 
@@ -253,7 +253,7 @@ def of_double_beam(found: Study) -> Facts:
             else f"no {kind} of {pair}"
             for name, (kind, pair) in EXPECTED.items()
         },
-        "exact": EVENTS,
+        "expected": EVENTS,
         "released": sum(
             one["released"] for one in events if (one["kind"], one["pair"]) == EXPECTED["hand-over"]
         ),

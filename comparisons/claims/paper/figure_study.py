@@ -75,7 +75,7 @@ def draw(panels: Sequence[Panel], *paths: Path, tall: float, title: str = "", co
         handles, labels = axes.get_legend_handles_labels()
         named = dict(zip(labels, handles, strict=True)) | named
     place = {"loc": "outside lower center", "fontsize": "small", "frameon": False}
-    fig.legend(named.values(), named.keys(), ncols=2, **place)
+    fig.legend(named.values(), named.keys(), ncols=columns, **place)
     fig.suptitle(title, fontsize="medium")
     save(fig, *paths)
 

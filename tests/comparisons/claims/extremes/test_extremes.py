@@ -80,7 +80,7 @@ def test_a_verdict_and_whether_a_check_refused_needlessly(case):
     change, verdict, needless = BECOMES[case]
     found = judge(change(measured(CASE)))
     assert (found.verdict, found.needless) == (verdict, needless)
-    assert found.status in found.sentence
+    assert found.own.response.status in found.sentence
     assert (found.reached == 0.0) == (found.findings == ()) == case.endswith("start")
     rod = stopped(measured(ROD), "LOST")
     assert judged(CELL, {CASE: measured(CASE), ROD: rod}).verdict is Verdict.WRONG, (

@@ -5,7 +5,6 @@ import math
 import re
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 from xml.etree import ElementTree as ET
 
 import pytest
@@ -21,45 +20,10 @@ from comparisons.cli import main
 from comparisons.scene import load_scene, read_scene
 
 PROBLEMS = {path.stem: path for path in problems()}
-FAST = [
-    "clamped-column",
-    "euler-column",
-    "force-limit",
-    "pinned-column",
-    "portal-frame",
-    "post-buckling",
-    "sleeve",
-    "touch-again",
-    "two-pins",
-]
+FAST = (
+    "clamped-column", "euler-column", "force-limit", "pinned-column", "portal-frame", "post-buckling", "sleeve", "touch-again", "two-pins",
+)  # fmt: skip
 """Problems of less than a second; the golden answers have three more."""
-THREE = [
-    "dead-load",
-    "roll-up",
-    "clamped-column",
-    "pinned-column",
-    "lees-frame",
-    "williams-toggle",
-    "portal-frame",
-    "ks-elastica",
-    "slip-off",
-    "ks-tied-tip",
-    "two-pins",
-    "ks-friction",
-    "energy-balance",
-    "objectivity",
-    "mirror",
-    "reversal",
-]
-ANSWERS = (
-    dict.fromkeys(PROBLEMS, 2)
-    | dict.fromkeys(THREE, 3)
-    | {"short-cantilever": 5, "ks-axis": 5, "ks-face": 4}
-    | dict.fromkeys(
-        ("ks-biot", "mixed-order", "timoshenko-order", "thin-strips", "penalty-slope", "locking"), 1
-    )
-)
-"""Models that answer a problem."""
 
 
 def cards(folder, *names):
@@ -97,7 +61,6 @@ def test_a_problem_of_the_table_passes(name, tmp_path):
         scale = quantity.scale or abs(quantity.exact)
         for trial in problem.trials:
             assert stated["uncertainty"] < trial.allowance.error * scale
-    assert len(case.judgements) == ANSWERS[name]
     for trial in problem.trials:
         assert trial.model in STYLES
         assert 0.0 < trial.allowance.error <= 0.3
@@ -106,8 +69,7 @@ def test_a_problem_of_the_table_passes(name, tmp_path):
 
 def test_the_page_counts_the_problems_and_their_answers(stated):
     stated("manual.problems", len(PROBLEMS))
-    assert PROBLEMS.keys() == ANSWERS.keys()
-    assert sum(ANSWERS.values()) == 96
+    assert sum(len(read_problem(path).trials) for path in PROBLEMS.values()) == 96
 
 
 def test_a_card_states_the_digits_that_its_uncertainty_leaves(tmp_path, monkeypatch, capsys):
@@ -161,11 +123,11 @@ def made_up(folder, count):
 def telling(*answers):
     """A measure by which the models answer so."""
 
-    def measure(_, trial):
-        answer = answers[int(trial.setting)]
+    def measure(_, given):
+        answer = answers[int(given.trial.setting)]
         if isinstance(answer, StoppedError):
             raise answer
-        return SimpleNamespace(values=answer, curves=())
+        return answer
 
     return measure
 
@@ -226,7 +188,7 @@ def test_errors_are_relative_and_the_worst_is_named_on_every_way_out(tmp_path, m
 def test_a_scene_that_is_moved_is_the_scene():
     """Turned by a quarter, mirrored, reversed: beams, pins and sides are where they must be."""
     scene = replace(load_scene("ks-face"), load_parameters=4)
-    turned, image = moved(scene, math.pi / 2, (1.0, 2.0)), mirrored(scene)
+    turned, image = moved(scene, math.pi / 2, 1.0 + 2.0j), mirrored(scene)
     assert turned.beams[0].end == pytest.approx((1.0, 3.0), abs=1e-15)
     assert turned.pins[0].points[0] == pytest.approx((1.01, 3.0), abs=1e-15)
     assert turned.contacts == scene.contacts
