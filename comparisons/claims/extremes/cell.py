@@ -12,17 +12,7 @@ from comparisons.models.verify import CHECK_FAILED
 
 @dataclass(frozen=True, kw_only=True)
 class Cell:
-    """A case at one position of the matrix, with its checks.
-
-    Attributes
-    ----------
-    axis, row, column : str
-        Position of the cell: the varied quantity, the model, the value.
-    case : Case
-        The case that is solved.
-    checks : tuple of Check
-        All of them must hold.
-    """
+    """A case at one position of the matrix, the varied quantity, the model and the value, with its checks, which all must hold."""
 
     axis: str = ""
     row: str
@@ -42,19 +32,10 @@ class Cell:
 
 @dataclass(frozen=True, kw_only=True)
 class Judgement:
-    """The verdict on a cell.
+    """The verdict on a cell by its own measurement and the findings of its checks over the load parameters that were reached.
 
-    Attributes
-    ----------
-    cell : Cell
-        The cell.
-    own : Measurement
-        What was measured: how the solution ended, and what it cost.
-    findings : tuple of Finding
-        Findings of all checks over the load parameters that were reached; empty if none was.
-    verdict : Verdict
-        Wrong: an error is above its allowance at a load parameter that was reached, or the case raised or lost its worker. Withdrawn: the answer fails the
-        checks of a response; it counts neither as right nor as stopped.
+    Wrong: an error is above its allowance at a load parameter that was reached, or the case raised or lost its worker. Withdrawn: the
+    answer fails the checks of a response; it counts neither as right nor as stopped.
     """
 
     cell: Cell
@@ -70,8 +51,8 @@ class Judgement:
     @property
     def needless(self) -> bool:
         """Whether the answer is withdrawn although all its errors are within their allowances."""
-        held = bool(self.findings) and all(finding.holds for finding in self.findings)
-        return self.verdict is Verdict.WITHDRAWN and held
+        decisive = self.decisive
+        return self.verdict is Verdict.WITHDRAWN and decisive is not None and bool(decisive.holds)
 
     @property
     def decisive(self) -> Finding | None:

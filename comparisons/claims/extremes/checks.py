@@ -12,7 +12,7 @@ from comparisons.claims.claim import Allowance, Finding
 from comparisons.errors import difference
 from comparisons.models import MODELS, TSM
 from comparisons.models.theory import FLOOR, Bending, bending, chord_term, element_lengths, ordinal
-from comparisons.response import Array, Response
+from comparisons.response import Response
 from comparisons.scene import BeamSpec
 from tsm.elements import ClosedForm
 
@@ -67,14 +67,7 @@ def in_units_of(other: BeamSpec, beam: BeamSpec, response: Response) -> Response
 class Against:
     """Comparison with the answer of another case, at the load parameters of both; units may differ.
 
-    Parameters
-    ----------
-    case : Case
-        The other case.
-    name : str
-        What it is, in words.
-    allowed : Allowance, optional
-        What is allowed; by default `allowance`, which takes `case` for the exact answer.
+    What is allowed is `allowance` by default, which takes the other case for the exact answer.
     """
 
     case: Case
@@ -94,16 +87,12 @@ class Against:
         """
         other, beam = results[self.case].response, self.case.scene.beams[0]
         allowed = self.allowed or allowance(case, bending(beam, other))
-        another = not MODELS[case.model].rod
-        if another and (allowed.error > LARGEST or not len(other.load_parameter)):
-            return None
-        if not another and len(own.load_parameter) > len(other.load_parameter):
-            return Finding(
-                name=self.name,
-                error=np.inf,
-                allowed=allowed.error,
-                why=f"it went on where the {self.name} stopped: {other.status}: {other.message}",
-            )
+        if not MODELS[case.model].rod:
+            if allowed.error > LARGEST or not len(other.load_parameter):
+                return None
+        elif len(own.load_parameter) > len(other.load_parameter):
+            why = f"it went on where the {self.name} stopped: {other.status}: {other.message}"
+            return Finding(name=self.name, error=np.inf, allowed=allowed.error, why=why)
         answer = in_units_of(beam, case.scene.beams[0], own)
         found = [difference(answer, other, self.case.scene, quantity) for quantity in COMPARED]
         error = float(np.fmax.reduce(found, initial=0.0))
@@ -120,10 +109,7 @@ class Energy:
 
     and for the elastica, where b is the tangent's angle at the contact, ``F (x cos tc + y sin tc)^2 = 2 EI sin tc``.
 
-    Parameters
-    ----------
-    rigid : bool
-        Whether the rod is rigid in stretch and shear.
+    `rigid`: whether the rod is rigid in stretch and shear.
     """
 
     rigid: bool = False
@@ -133,23 +119,18 @@ class Energy:
         """Return the largest violation over ``2 EI sin b``."""
         beam, pin = case.scene.beams[0], case.scene.pins[0]
         force = -own.supports[f"{beam.name}.start"].force
-        closed = np.hypot(*force.T) > 0.0
-        place = np.array([pin.position(float(t)) for t in own.load_parameter]).reshape(-1, 2)
-        error = _violation(beam, force[closed], place[closed], rigid=self.rigid)
+        F = np.hypot(*force.T)
+        closed = F > 0.0
+        x, y = np.array([pin.position(float(t)) for t in own.load_parameter[closed]]).reshape(-1, 2).T
+        F, sine, cosine = F[closed], -force[closed, 0] / F[closed], force[closed, 1] / F[closed]
+        shear, stretch = (0.0, 0.0) if self.rigid else (1 / beam.GA, 1 / beam.EA)
+        c = stretch - shear
+        S = F * shear / (1 + np.sqrt(1 - F**2 * c * shear))
+        left = F * (x * cosine + y * sine) ** 2
+        right = 2 * beam.EI * (sine - S) * (1 - F * c * (sine + S) / 2)
+        error = float((np.abs(left - right) / (2 * beam.EI * sine)).max(initial=0.0))
         what = "2 EI sin tc of the elastica" if self.rigid else "its energy integral"
         return Finding(name=what, error=error, allowed=INVARIANT, why="an identity, to round-off")
-
-
-def _violation(beam: BeamSpec, force: Array, place: Array, *, rigid: bool) -> float:
-    F = np.hypot(*force.T)
-    x, y = place.T
-    sine, cosine = -force[:, 0] / F, force[:, 1] / F
-    shear, stretch = (0.0, 0.0) if rigid else (1 / beam.GA, 1 / beam.EA)
-    c = stretch - shear
-    S = F * shear / (1 + np.sqrt(1 - F**2 * c * shear))
-    left = F * (x * cosine + y * sine) ** 2
-    right = 2 * beam.EI * (sine - S) * (1 - F * c * (sine + S) / 2)
-    return float((np.abs(left - right) / (2 * beam.EI * sine)).max(initial=0.0))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -173,12 +154,11 @@ class Circle:
         longest = element_lengths(case.scene, case.options)[0]
         turn = load.moment * longest * beam.length / beam.EI * own.load_parameter
         kind = TSM.element(case.options)
-        term, why = 0.0 * turn, "accuracy of the integration"
-        if isinstance(kind, ClosedForm):
-            term, why = chord_term(turn, kind.order), f"{ordinal(kind.order)} order of the element"
-        distance = np.hypot(*exact.T)
-        allowed = FLOOR + NEXT_TERM * float((term * distance).max(initial=0.0))
-        return Finding(name="circle", error=error, allowed=allowed, why=why)
+        if not isinstance(kind, ClosedForm):
+            return Finding(name="circle", error=error, allowed=FLOOR, why="accuracy of the integration")
+        term = float((chord_term(turn, kind.order) * np.hypot(*exact.T)).max(initial=0.0))
+        why = f"{ordinal(kind.order)} order of the element"
+        return Finding(name="circle", error=error, allowed=FLOOR + NEXT_TERM * term, why=why)
 
 
 Check = Against | Energy | Circle

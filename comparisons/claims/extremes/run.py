@@ -12,8 +12,7 @@ from comparisons.cases.run import run as run_cases
 from comparisons.cases.workers import Workers
 from comparisons.claims.claim import Verdict
 from comparisons.claims.extremes.axes import AXES, matrix
-from comparisons.claims.extremes.cell import Cell, Judgement, judged
-from comparisons.claims.extremes.checks import Results
+from comparisons.claims.extremes.cell import Judgement, judged
 from comparisons.claims.extremes.maps import counted, sections
 from comparisons.files import write_text
 from comparisons.output import Row, write_numbers, write_rows
@@ -42,19 +41,13 @@ def extremes(folder: Path, workers: Workers, progress: Progress, *, quick: bool 
     OutputError, WorkersError
         If a file cannot be written, or the workers are gone.
     """
-    cells = matrix(quick=quick)
-    kept = folder / ".extremes"
-    results = measured(cells, kept, workers, progress)
+    cells, kept = matrix(quick=quick), folder / ".extremes"
+    cases = sorted(dict.fromkeys(case for cell in cells for case in cell.cases), key=_cost, reverse=True)
+    results = run_cases(cases, kept, workers, repeats=0, progress=progress)
     judgements = tuple(judged(cell, results) for cell in cells)
     files = write(folder, judgements, quick=quick)
     rmtree(kept)
     return Extremes(judgements=judgements, files=files)
-
-
-def measured(cells: Sequence[Cell], kept: Path, workers: Workers, progress: Progress) -> Results:
-    """Return the results of all cases of `cells`, kept in the folder `kept` as they come."""
-    cases = sorted(dict.fromkeys(case for cell in cells for case in cell.cases), key=_cost, reverse=True)
-    return run_cases(cases, kept, workers, repeats=0, progress=progress)
 
 
 def _cost(case: Case) -> int:
@@ -67,12 +60,8 @@ def _cost(case: Case) -> int:
 def write(folder: Path, judgements: Sequence[Judgement], *, quick: bool) -> tuple[Path, ...]:
     """Write the three files and return their names."""
     html, rows = folder / "extremes.html", [row(item) for item in judgements]
-    tables = (
-        write_rows(folder / "extremes.csv", rows),
-        write_numbers(
-            folder / "extremes.json", {"quick": quick, "verdicts": counts(judgements), "cells": rows}
-        ),
-    )
+    numbers = {"quick": quick, "verdicts": counts(judgements), "cells": rows}
+    tables = (write_rows(folder / "extremes.csv", rows), write_numbers(folder / "extremes.json", numbers))
     part = ", a part of the matrix (quick)" if quick else ""
     whole = [*sections(AXES, judgements), *provenance((), tables, folder)[1:]]
     write_text(html, page("Where it holds, where it stops", f"{counted(judgements)}{part}.", whole))

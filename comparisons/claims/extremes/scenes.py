@@ -1,6 +1,8 @@
 """The scenes of the matrix: one cantilever of length 1 and modulus 1 along +x, clamped at the origin, unless they say otherwise."""
 
 import math
+from dataclasses import replace
+from typing import Any
 
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene
 from comparisons.scene.rules import Point
@@ -10,65 +12,46 @@ SLENDERNESS = 50.0
 
 
 def cantilever(
-    *, length: float = 1.0, youngs_modulus: float = 1.0, slenderness: float = SLENDERNESS, **more: object
+    *, length: float = 1.0, youngs_modulus: float = 1.0, slenderness: float = SLENDERNESS, **more: Any
 ) -> BeamSpec:
     """Return a beam of square section; `more` goes to `BeamSpec`."""
     h = length / slenderness
-    given: dict[str, object] = {"width": h, "height": h, "poissons_ratio": 0.3, "material": "biot-linear"}
-    return BeamSpec(
-        name="beam",
-        start=(0.0, 0.0),
-        end=(length, 0.0),
-        youngs_modulus=youngs_modulus,
-        clamped=("start",),
-        **(given | more),  # type: ignore[arg-type]
-    )
+    section = {"width": h, "height": h, "poissons_ratio": 0.3, "material": "biot-linear"}
+    return _clamped(length=length, youngs_modulus=youngs_modulus, **section | more)
+
+
+def _clamped(*, length: float = 1.0, youngs_modulus: float = 1.0, **section: Any) -> BeamSpec:
+    ends: dict[str, Any] = {"start": (0.0, 0.0), "end": (length, 0.0)}
+    return BeamSpec(name="beam", **ends, youngs_modulus=youngs_modulus, clamped=("start",), **section)
 
 
 def sheared(psi: float) -> BeamSpec:
     """Return the cantilever with ``psi = EI/(GA L^2)``, and with EA and EI of `cantilever`."""
     h = 1 / SLENDERNESS
     second_moment = h**4 / 12
-    return BeamSpec(
-        name="beam",
-        start=(0.0, 0.0),
-        end=(1.0, 0.0),
-        youngs_modulus=1.0,
-        shear_modulus=second_moment / psi / h**2,
-        area=h**2,
-        second_moment=second_moment,
-        clamped=("start",),
-    )
+    return _clamped(shear_modulus=second_moment / psi / h**2, area=h**2, second_moment=second_moment)
 
 
 def rigid_in_shear(beam: BeamSpec) -> BeamSpec:
     """Return `beam` as an Euler-Bernoulli element sees it, rigid in shear."""
-    values = {**vars(beam), "poissons_ratio": None, "shear_modulus": 1e9 * beam.youngs_modulus}
-    return BeamSpec(**values)
+    return replace(beam, poissons_ratio=None, shear_modulus=1e9 * beam.youngs_modulus)
 
 
-def pushed(
-    beam: BeamSpec, *path: Point, steps: int, surface: str = "axis", penalty: float | None = None
-) -> Scene:
-    """Return `beam` under a pin that follows `path` from below."""
+def pushed(beam: BeamSpec, *path: Point, steps: int, **contact: Any) -> Scene:
+    """Return `beam` under a pin that follows `path` from below; `contact` goes to `ContactSpec`."""
     return Scene(
         name="pushed",
         load_parameters=steps,
         beams=(beam,),
         pins=(PinSpec(name="pin", path=path),),
-        contacts=(ContactSpec(node="pin", beam="beam", side="right", surface=surface, penalty=penalty),),
+        contacts=(ContactSpec(node="pin", beam="beam", side="right", **contact),),
     )
 
 
-def half_circle(
-    beam: BeamSpec, *, steps: int = 10, surface: str = "axis", penalty: float | None = None
-) -> Scene:
+def half_circle(beam: BeamSpec, *, steps: int = 10, surface: str = "axis", **contact: Any) -> Scene:
     """Return the path of Konyukhov and Schweizerhof: from the tip to the end of a half circle with the beam's length."""
-    below = 0.0 if surface == "axis" else -beam.height_at(0.5) / 2
-    L = beam.length
-    return pushed(
-        beam, (L, below), (0.0, below + 2 * L / math.pi), steps=steps, surface=surface, penalty=penalty
-    )
+    L, below = beam.length, 0.0 if surface == "axis" else -beam.height_at(0.5) / 2
+    return pushed(beam, (L, below), (0.0, below + 2 * L / math.pi), steps=steps, surface=surface, **contact)
 
 
 def raised(beam: BeamSpec, x: float, lift: float, *, steps: int = 10) -> Scene:

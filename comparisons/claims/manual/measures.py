@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.claims.claim import StoppedError
+from comparisons.claims.claim import Quantity, StoppedError
 from comparisons.claims.manual.answers import ANSWER, Answers, answered, readings, undeformed
 from comparisons.claims.manual.problem import Problem, varied
 from comparisons.models import ROD, SOLID
@@ -50,23 +50,27 @@ def identity(_: Problem, answers: Answers) -> Sequence[float]:
 
 
 def greatest_load(problem: Problem, answers: Answers) -> Sequence[float]:
-    """Read the greatest load and its place: of a pin that is raised, or of three-point bending, whose half is the same cantilever."""
-    response, pin, EI = answers.solved(draw=False), answers.scene.pins[-1], answers.scene.beams[0].EI
-    a = pin.points[0][0]
-    rise = np.array([pin.position(t)[1] for t in response.load_parameter]) / a
+    """Read the greatest load and its place: of a pin that is raised, or of three-point bending, whose half is the same cantilever.
+
+    Of a pin with a corner both are read on the way there and on the way back.
+    """
+    given, response, pin = problem.settings, answers.solved(draw=False), answers.scene.pins[-1]
+    t, a, EI = response.load_parameter, pin.points[0][0], answers.scene.beams[0].EI
+    rise = np.array([pin.position(one)[1] for one in t]) / a
     pushed = next(iter(response.contacts.values())).force
-    if problem.settings["force"] == "vertical":
+    if given["force"] == "vertical":
         pushed = -response.supports["left.end"].force[:, 1]
-    load = pushed * a**2 / EI
+    load = pushed * a**2 / EI * given.get("times", 1.0)
     answers.draw(np.stack([rise, load], axis=1))
-    _levels(problem, answers, rise[-1], 1)
-    return summit(rise, load)
+    answers.draw(*_levels(problem.quantities[::2], rise.max()), style=ANSWER)
+    back = np.flatnonzero(t > max(pin.corners, default=1.0))[::-1]
+    legs = (np.arange(len(t) - len(back)), *((back,) if len(back) else ()))
+    return [value for leg in legs for value in summit(rise[leg], load[leg])]
 
 
-def _levels(problem: Problem, answers: Answers, width: float, count: int | None = None) -> None:
-    """Draw the first exact values as levels."""
-    levels = (quantity.exact for quantity in problem.quantities[:count])
-    answers.draw(*([[0.0, level], [width, level]] for level in levels), style=ANSWER)
+def _levels(quantities: Sequence[Quantity], width: float) -> list[list[list[float]]]:
+    """Exact values as lines."""
+    return [[[0.0, quantity.exact], [width, quantity.exact]] for quantity in quantities]
 
 
 def summit(x: Array, y: Array) -> tuple[float, float]:
@@ -77,16 +81,6 @@ def summit(x: Array, y: Array) -> tuple[float, float]:
     turns = [float(root.real) for root in fit.deriv().roots() if abs(root.imag) < 1e-9]
     place = min(turns, key=abs, default=np.nan)
     return float(fit(place)), float(place + x[k])
-
-
-def limits_with_friction(_: Problem, answers: Answers) -> Sequence[float]:
-    """Read the greatest load of a support and its place while the beam is drawn in, and while it is pushed back."""
-    response, pin = answers.solved(), answers.scene.pins[1]
-    t, a, turn = response.load_parameter, pin.points[0][0], pin.corners[0]
-    rise = np.array([pin.position(one)[1] for one in t]) / a
-    load = -response.supports["left.end"].force[:, 1] * a**2 / answers.scene.beams[0].EI / 2.0
-    back = (t > turn)[::-1]
-    return *summit(rise[t <= turn], load[t <= turn]), *summit(rise[::-1][back], load[::-1][back])
 
 
 def hysteresis(_: Problem, answers: Answers) -> Sequence[float]:
@@ -141,7 +135,7 @@ def limit_points(problem: Problem, answers: Answers) -> Sequence[float]:
     end = int(np.argmax(np.append(load > given["highest"], True)))
     down = np.append(0.0, loaded.place(joint.node)[1] - result.tips[joint.beam][:, 1])
     answers.draw(np.stack([down, load], axis=1)[:end])
-    _levels(problem, answers, float(down[:end].max()))
+    answers.draw(*_levels(problem.quantities, float(down[:end].max())), style=ANSWER)
     return found[:count]
 
 
@@ -268,7 +262,7 @@ Measure = Callable[[Problem, Answers], Sequence[float]]
 MEASURES: dict[str, Measure] = {
     measure.__name__: measure
     for measure in (
-        readings, critical_load, identity, greatest_load, limits_with_friction, hysteresis, sleeve, limit_points, power_law,
+        readings, critical_load, identity, greatest_load, hysteresis, sleeve, limit_points, power_law,
         in_plane_strain, work_over_energy, invariance,
     )
 }  # fmt: skip

@@ -26,20 +26,9 @@ Changes = Mapping[str, Any]
 
 @dataclass(frozen=True, kw_only=True)
 class Picture:
-    """The picture of a problem.
+    """The picture of a problem: labels of the axes, by default places; load parameters whose axes are drawn; a model whose answer is the exact one.
 
-    Attributes
-    ----------
-    axes : sequence of str
-        Labels of the axes; by default places in the scene's unit of length.
-    shown : sequence of float
-        Load parameters whose deflected axes are drawn.
-    exact : str
-        Model whose answer is drawn as the exact one; empty for none.
-    guide : sequence of float
-        Order of a line for the eye and its first value, if any.
-    logarithmic, shape : bool
-        Whether both axes are logarithmic; whether both are lengths and have one scale.
+    `guide` is the order of a line for the eye and its first value; `shape` says that both axes are lengths.
     """
 
     axes: Sequence[str] = ()

@@ -9,7 +9,7 @@ import numpy as np
 from comparisons.claims.claim import Claim, judge
 from comparisons.claims.manual.answers import ANSWER, Answers, Curve, answered, deflected, undeformed
 from comparisons.claims.manual.measures import MEASURES
-from comparisons.claims.manual.pictures import draw
+from comparisons.claims.manual.pictures import GUIDE, draw_problem
 from comparisons.claims.manual.problem import Case, Problem, Trial, read_problem
 from comparisons.claims.manual.text import markdown, numbers
 from comparisons.files import writable_folder, write_text
@@ -53,7 +53,7 @@ def _exact(problem: Problem, curves: Sequence[Curve]) -> tuple[Curve, ...]:
     if picture.guide:
         order, first = picture.guide
         ends = np.sort(curves[0].points[[0, -1], 0])
-        return (Curve("exact order", np.stack([ends, first * (ends / ends[0]) ** order], axis=1)),)
+        return (Curve(GUIDE, np.stack([ends, first * (ends / ends[0]) ** order], axis=1)),)
     drawn = () if picture.axes else undeformed(scene)
     if picture.exact:
         drawn += (deflected(scene, answered(scene, picture.exact), ANSWER, picture.shown),)
@@ -86,7 +86,7 @@ def write_manual(folder: Path, report: Report, files: Sequence[Path]) -> Manual:
     for problem in map(read_problem, files):
         case, curves = judged(problem)
         pictures.append(folder / case.picture)
-        draw(problem, [*_exact(problem, curves), *curves], pictures[-1])
+        draw_problem(problem, [*_exact(problem, curves), *curves], pictures[-1])
         cases.append(case)
         report(f"{problem.name}: {'passed' if case.passed else 'FAILED'}, {case.seconds:.1f} s")
         for item in case.judgements:

@@ -5,8 +5,9 @@ from functools import partial
 
 import numpy as np
 
+from comparisons.claims.drawing import SHAPE, Line, Panel, draw
 from comparisons.claims.paper.critical_area import STARTS, lifted
-from comparisons.claims.paper.figure_study import SHAPE, Line, Panel, Study, column, draw
+from comparisons.claims.paper.figure_study import Study, column
 from comparisons.claims.paper.formulations import LABELS, MIXED, TIMOSHENKO, line
 from comparisons.models import ROD, TSM, solve
 from comparisons.models.options import Options

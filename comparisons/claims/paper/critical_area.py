@@ -12,9 +12,10 @@ from typing import Any, Literal
 import numpy as np
 
 from comparisons.cases.settings import changed
+from comparisons.claims.drawing import Line, Panel, draw
 from comparisons.claims.paper import turned_frame
 from comparisons.claims.paper.approach import NEAREST, approaches
-from comparisons.claims.paper.figure_study import Line, Panel, Study, column, draw
+from comparisons.claims.paper.figure_study import Study, column
 from comparisons.claims.paper.force_floor import force_floor
 from comparisons.claims.paper.formulations import CANTILEVER, LABELS, SIMPLE, TIMOSHENKO, line
 from comparisons.models.tsm import to_structure

@@ -1,6 +1,6 @@
 """Fig. 9: two cantilevers pressed by one pin, stage by stage, against the exact rods."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from comparisons.cases.settings import changed
-from comparisons.claims.paper.figure_study import SHAPE, Line, Panel, Study, draw
+from comparisons.claims.drawing import SHAPE, Line, Panel, draw
+from comparisons.claims.paper.figure_study import Study
 from comparisons.claims.paper.formulations import CANTILEVER, SIMPLE, TIMOSHENKO
 from comparisons.claims.problems.double_beam import EVENTS, HAND_OVER, LOWER, TIP, UPPER
 from comparisons.models import ROD, TSM, solve
@@ -17,7 +18,7 @@ from comparisons.output import Report, Row
 from comparisons.response import Array, Response
 from comparisons.scene import Scene, load_scene
 from comparisons.show import palette
-from comparisons.show.pages import Section, Track, motion_section
+from comparisons.show.pages import motion_section, tracks
 
 FINER = 10
 """Load parameters of the picture per load parameter of the scene."""
@@ -53,29 +54,25 @@ def double_beam(*, quick: bool, report: Report) -> Study:
             closed = np.isfinite(contact.arc_position)
             columns[f"{pair} {prefix}force"] = np.where(closed, contact.force, np.nan)
             columns[f"{pair} {prefix}arc"] = contact.arc_position
-    names = {
-        "kind": "kind",
-        "pair": "pair",
-        "element": "element",
-        "arc": "arc_position",
-        "force": "force",
-        "released": "released",
-    }
     events = [
-        {"depth": travel * event.load_parameter, **{key: getattr(event, name) for key, name in names.items()}}
+        {
+            **{name: getattr(event, name) for name in ("kind", "pair", "element", "force", "released")},
+            "depth": travel * event.load_parameter,
+            "arc": event.arc_position,
+        }
         for event in response.events or ()
     ]
     report("the paper's elements")
     tried = (TIMOSHENKO,) if quick else (TIMOSHENKO, SIMPLE, CANTILEVER)
     rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
     stages = list(_stages(columns["depth"]))
-    pictures: dict[str, Callable[..., None]] = {
-        "fig9-forces": partial(draw, _histories(columns, events), tall=3.2, columns=1)
-    }
-    if stages:
-        panels = [_stage(finer, response, stage) for stage in stages]
-        title = "Mixed elements, 10 + 10;\nthe forces act on the touched beams, grey are the beams at rest"
-        pictures["fig9"] = partial(draw, panels, tall=2.8, title=title)
+    title = "Mixed elements, 10 + 10;\nthe forces act on the touched beams, grey are the beams at rest"
+    panels = [_stage(finer, response, stage) for stage in stages]
+    shapes = {"fig9": partial(draw, panels, tall=2.8, title=title)} if stages else {}
+    shown = {BEAMS: response, RODS: exact}
+    moving = motion_section(
+        "Double beam: shapes and histories", finer, {BEAMS: response}, tracks(shown, RODS, finer), focus=BEAMS
+    )
     return Study(
         tables={"fig9": rows},
         numbers={
@@ -92,9 +89,9 @@ def double_beam(*, quick: bool, report: Report) -> Study:
                 if not one.completed
             ],
         },
-        pictures=pictures,
+        pictures={**shapes, "fig9-forces": partial(draw, _histories(columns, events), tall=3.2, columns=1)},
         scenes=(finer,),
-        moving=(_moving(finer, response, columns),),
+        moving=(moving,),
     )
 
 
@@ -153,19 +150,6 @@ def _attempt(scene: Scene, element: str, place: float) -> Row:
         "at_hand_over": response.status == "TWO_CONTACTS"
         and reached < over <= reached + 1.0 / scene.load_parameters,
     }
-
-
-def _moving(scene: Scene, response: Response, columns: Columns) -> Section:
-    histories = [
-        Track(
-            title=f"{title}, {name}", unit=unit, values={BEAMS: beams, RODS: columns[f"{pair} exact_{key}"]}
-        )
-        for pair, name in NAMES.items()
-        for title, unit, key in (("force", "N", "force"), ("arc position", "m", "arc"))
-        if np.isfinite(beams := columns[f"{pair} {key}"]).any()
-    ]
-    title = "Double beam: shapes and histories"
-    return motion_section(title, scene, {BEAMS: response}, histories, focus=BEAMS)
 
 
 def _stage(scene: Scene, response: Response, stage: Row) -> Panel:

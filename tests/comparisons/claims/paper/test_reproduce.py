@@ -71,7 +71,7 @@ def run(figure, folder, capsys):
     if figure == "fig9":
         (double,) = moving.values()
         titles = [track["title"] for track in double["tracks"][:2]]
-        assert titles == ["force, pin on upper", "arc position, pin on upper"]
+        assert titles == ["contact force pin->upper", "contact force upper.end->lower"]
         assert all(len(lines) == 2 for lines in double["runs"][0]["lines"])
     return json.loads((folder / f"{figure}.json").read_text())
 
