@@ -9,26 +9,23 @@ import numpy as np
 
 from comparisons.cases.case import Case
 from comparisons.claims.claim import Allowance
-from comparisons.claims.extremes.cell import Cell
-from comparisons.claims.extremes.checks import Against, Circle
-from comparisons.claims.extremes.rows import (
+from comparisons.claims.extremes.cell import Against, Cell, Circle
+from comparisons.claims.extremes.scenes import (
     beam_case,
     beams,
+    cantilever,
     cell,
+    cycles,
     everything,
     exact_answers,
     exact_rod,
-    kinds,
-    solid,
-)
-from comparisons.claims.extremes.scenes import (
-    cantilever,
-    cycles,
     half_circle,
+    kinds,
     pushed,
     raised,
     rolled_up,
     sheared,
+    solid,
 )
 from comparisons.models import SOLID
 from comparisons.models.options import Options

@@ -13,7 +13,7 @@ from comparisons.models import ROD, SOLID
 from comparisons.models.solid import to_solid
 from comparisons.models.tsm import to_structure
 from comparisons.response import Array
-from comparisons.scene import ContactSpec, LoadSpec, PinSpec, Scene
+from comparisons.scene import LoadSpec, Scene, read_scene
 
 BESIDE = 5
 """Samples to either side of an extreme one through which a polynomial is drawn."""
@@ -207,8 +207,8 @@ def work_over_energy(_: Problem, answers: Answers, panels: int = 20) -> Sequence
 
 
 def invariance(problem: Problem, answers: Answers) -> Sequence[float]:
-    """Largest changes of contact force and clamp moment in a scene that is moved, mirrored or named from the other end."""
-    other = CHANGES[problem.settings["change"]](answers.scene)
+    """Largest changes of contact force and clamp moment in the scene that is moved, mirrored or named from the other end."""
+    other = read_scene(problem.settings["other"], problem.name)
     pair = answers.scene.contacts[0].pair
     first, second = answers.solved(draw=False), answers.solved(other)
     answers.curves.extend(undeformed(other))
@@ -217,47 +217,6 @@ def invariance(problem: Problem, answers: Answers) -> Sequence[float]:
     return [float(np.abs(b - a).max() / np.abs(a).max()) for a, b in (forces, moments)]
 
 
-SWAPPED = {"left": "right", "right": "left", "start": "end", "end": "start"}
-"""Sides and ends seen from the other one."""
-
-
-def moved(scene: Scene, angle: float = 0.7, shift: complex = 2.0 - 3.0j) -> Scene:
-    """Return the scene turned about the origin by an angle [rad], then shifted; places are complex numbers x + iy."""
-    turn = complex(np.cos(angle), np.sin(angle))
-    return _placed(scene, lambda z: turn * z + shift)
-
-
-def mirrored(scene: Scene) -> Scene:
-    """Return the scene mirrored at the x axis: what came from the right comes from the left."""
-    return _placed(scene, lambda z: z.conjugate(), contacts=_seen_from_the_other_side(scene))
-
-
-def reversed_(scene: Scene) -> Scene:
-    """Return the scene with its beams named from their other ends."""
-    beams = tuple(
-        replace(beam, start=beam.end, end=beam.start, clamped=tuple(SWAPPED[end] for end in beam.clamped))
-        for beam in scene.beams
-    )
-    return replace(scene, beams=beams, contacts=_seen_from_the_other_side(scene))
-
-
-def _seen_from_the_other_side(scene: Scene) -> tuple[ContactSpec, ...]:
-    return tuple(replace(contact, side=SWAPPED[contact.side]) for contact in scene.contacts)
-
-
-def _placed(scene: Scene, place: Callable[[complex], complex], **changes: Any) -> Scene:
-    """Return the scene with its beams and pins at other places, and with other changes."""
-
-    def at(point: tuple[float, float]) -> tuple[float, float]:
-        z = place(complex(*point))
-        return z.real, z.imag
-
-    beams = tuple(replace(beam, start=at(beam.start), end=at(beam.end)) for beam in scene.beams)
-    pins = (PinSpec(name=pin.name, path=tuple(map(at, pin.points)), radius=pin.radius) for pin in scene.pins)
-    return replace(scene, beams=beams, pins=tuple(pins), **changes)
-
-
-CHANGES = {"moved": moved, "mirrored": mirrored, "reversed": reversed_}
 Measure = Callable[[Problem, Answers], Sequence[float]]
 MEASURES: dict[str, Measure] = {
     measure.__name__: measure

@@ -19,10 +19,16 @@ from comparisons.cases import Case, measure
 from comparisons.claims.claim import Allowance, Verdict
 from comparisons.claims.extremes import run as runner
 from comparisons.claims.extremes.axes import AXES, matrix
-from comparisons.claims.extremes.cell import Cell, judged
-from comparisons.claims.extremes.checks import LARGEST, Against, Check, allowance
-from comparisons.claims.extremes.rows import against_rod, beam_case, exact_rod, kinds
-from comparisons.claims.extremes.scenes import cantilever, half_circle, sheared
+from comparisons.claims.extremes.cell import LARGEST, Against, Cell, Check, allowance, judged
+from comparisons.claims.extremes.scenes import (
+    against_rod,
+    beam_case,
+    cantilever,
+    exact_rod,
+    half_circle,
+    kinds,
+    sheared,
+)
 from comparisons.cli import main
 from comparisons.models.options import Options
 from comparisons.models.theory import Bending
