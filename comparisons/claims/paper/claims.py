@@ -3,12 +3,13 @@
 import tomllib
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
-from typing import NamedTuple
+from string import Formatter
+from typing import Any, NamedTuple
 
-from comparisons.claims.paper.facts import FACTS
+from comparisons.claims.paper.facts import FACTS, Facts, percent
 from comparisons.claims.paper.figure_study import Study
 
 PAPER = (
@@ -30,20 +31,16 @@ class Verdict(StrEnum):
     """Coarse settings decide nothing: a full run may decide otherwise."""
 
 
+Bounds = Mapping[str, tuple[float, float]]
+"""The least and the greatest value of numbers of `facts`; of a list, of all its values."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Claim:
-    """One claim, however often the paper makes it.
+    """One claim, however often the paper makes it: every place in [P] where it stands, with what is said there.
 
-    Attributes
-    ----------
-    name : str
-        What `facts` calls it.
-    figure : str
-        The figure that decides it.
-    stated : tuple of tuple of str
-        Every place in [P] where it stands, with what is said there.
-    number, why : str
-        The number behind the verdict and its reason, with names of numbers of `facts` in braces.
+    It holds within the bounds `holds` together, or in each of the `readings` of what the paper does not say; in size within `in_size`, too.
+    The number behind the verdict and the reason have names of numbers of `facts` in braces.
     """
 
     name: str
@@ -51,6 +48,36 @@ class Claim:
     stated: tuple[tuple[str, str], ...]
     number: str
     why: str
+    holds: Bounds = field(default_factory=dict)
+    readings: Bounds = field(default_factory=dict)
+    in_size: Bounds = field(default_factory=dict)
+
+    def judged(self, facts: Facts) -> "Judgement":
+        """Return what becomes of the claim by the numbers of its figure."""
+        cases = _within(self.readings, facts) if self.readings else [all(_within(self.holds, facts))]
+        found = verdict(cases, in_size=all(_within(self.in_size, facts)))
+        number, why = (WORDS.vformat(text, (), facts) for text in (self.number, self.why))
+        return Judgement(self, found, number, why)
+
+
+class _Words(Formatter):
+    """Sentences with numbers: the format ``percent`` is `facts.percent`."""
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        return percent(value) if format_spec == "percent" else str(super().format_field(value, format_spec))
+
+
+WORDS = _Words()
+
+
+def _within(bounds: Bounds, facts: Facts) -> list[bool | None]:
+    """Whether each number lies within its bounds; None where there is none."""
+    found = []
+    for name, (least, most) in bounds.items():
+        value = WORDS.get_field(name, (), facts)[0]
+        for one in value if isinstance(value, list) else [value]:
+            found.append(None if one is None else bool(least <= one <= most))
+    return found
 
 
 class Judgement(NamedTuple):
@@ -81,26 +108,22 @@ def verdict(readings: Sequence[bool | None], *, in_size: bool = True) -> Verdict
     A reading is None where this program ends before it does. The claim is reproduced where it holds in all readings, in
     direction only unless `in_size`; not reproduced where it fails in all of them; otherwise it cannot be told.
     """
-    cases = [None if one is None else bool(one) for one in readings]  # bool of numpy, too
-    if not cases:
+    if not readings:
         raise ValueError("readings = (): a claim without a reading cannot be judged")
-    if all(cases):
+    if all(readings):
         return Verdict.REPRODUCED if in_size else Verdict.IN_DIRECTION
-    return Verdict.NOT_REPRODUCED if all(one is False for one in cases) else Verdict.CANNOT_BE_TOLD
+    return Verdict.NOT_REPRODUCED if all(one is False for one in readings) else Verdict.CANNOT_BE_TOLD
 
 
 def judged(found: Mapping[str, Study], *, quick: bool) -> list[Judgement]:
     """Return the judgements on the claims whose figure was studied; coarse settings decide only what does not depend on them."""
     facts = {figure: FACTS[figure](study) for figure, study in found.items()}
-    judgements = []
-    for claim in (one for one in CLAIMS if one.figure in found):
-        told = facts[claim.figure]
-        becomes = verdict(told.readings[claim.name], in_size=claim.name not in told.in_direction)
-        number, why = (text.format(**told.numbers) for text in (claim.number, claim.why))
-        if quick and claim.figure in COARSE:
-            becomes, why = Verdict.PROVISIONAL, f"With coarse settings: {becomes}. {why}"
-        judgements.append(Judgement(claim, becomes, number, why))
-    return judgements
+    judgements = [claim.judged(facts[claim.figure]) for claim in CLAIMS if claim.figure in found]
+    return [_provisional(one) if quick and one.claim.figure in COARSE else one for one in judgements]
+
+
+def _provisional(one: Judgement) -> Judgement:
+    return one._replace(verdict=Verdict.PROVISIONAL, why=f"With coarse settings: {one.verdict}. {one.why}")
 
 
 def counted(judgements: Sequence[Judgement]) -> str:
