@@ -75,8 +75,8 @@ def _within(bounds: Bounds, facts: Facts) -> list[bool | None]:
     found = []
     for name, (least, most) in bounds.items():
         value = WORDS.get_field(name, (), facts)[0]
-        for one in value if isinstance(value, list) else [value]:
-            found.append(None if one is None else bool(least <= one <= most))
+        values = value if isinstance(value, list) else [value]
+        found += [None if one is None else bool(least <= one <= most) for one in values]
     return found
 
 

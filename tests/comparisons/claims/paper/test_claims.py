@@ -38,13 +38,14 @@ def areas(sizes=None, slopes=None, blocked=()):
     ]  # fmt: skip
     steep = {element: (slope, slope) for element, slope in SLOPES.items()} | (slopes or {})
     cases = [
-        (element, *case, study.PSI)
+        (element, end, pair[end == "end"], study.PSI)
         for element, pair in steep.items()
-        for case in zip(("start", "end"), pair, strict=True)
+        for end in ("start", "end")
     ]
+    cases.append((TIMOSHENKO, "end", -3.0, study.PRINTED_SHEAR_PSI))
     floors = [
         {"element": element, "end": end, "psi": psi, "ratio": ratio, "floor": ratio**slope}
-        for element, end, slope, psi in [*cases, (TIMOSHENKO, "end", -3.0, study.PRINTED_SHEAR_PSI)]
+        for element, end, slope, psi in cases
         for ratio in study.RATIOS
     ]
     return Study(
@@ -76,13 +77,8 @@ def lifts(error=1e-5):
 
 
 THROUGH = {
-    "element": TIMOSHENKO,
-    "place": 0.81,
-    "status": "COMPLETED",
-    "depth": 0.76,
-    "passes": 5,
-    "at_hand_over": False,
-}
+    "element": TIMOSHENKO, "place": 0.81, "status": "COMPLETED", "depth": 0.76, "passes": 5, "at_hand_over": False,
+}  # fmt: skip
 AT_EVENT = THROUGH | {"status": "TWO_CONTACTS", "depth": 0.53, "passes": 2, "at_hand_over": True}
 AT_NODE = THROUGH | {"place": 0.8, "status": "CUTBACK_FLOOR", "depth": 0.0, "passes": 0}
 
@@ -90,18 +86,15 @@ AT_NODE = THROUGH | {"place": 0.8, "status": "CUTBACK_FLOOR", "depth": 0.0, "pas
 def beams(*attempts, late="", open_pair="", without=""):
     """A study whose events are where the exact rods have them, but for those that come `late`, and one kind that does not."""
     at = {
-        ("touch", TIP): "touch",
-        ("slip-off", UPPER): "hand-over",
-        ("touch", LOWER): "hand-over",
-        ("slip-off", LOWER): "slip-off",
+        f"touch {TIP}": "touch",
+        f"slip-off {UPPER}": "hand-over",
+        f"touch {LOWER}": "hand-over",
+        f"slip-off {LOWER}": "slip-off",
     }
     events = [
-        {
-            "kind": kind, "pair": pair, "depth": EXACT[name] + 0.01 * (f"{kind} {pair}" == late), "element": 8, "arc": 0.9,
-            "force": 1.0, "released": 0.2,
-        }
-        for (kind, pair), name in at.items()
-        if f"{kind} {pair}" != without
+        dict(zip(("kind", "pair"), one.split(), strict=True), depth=EXACT[name] + 0.01 * (one == late), element=8, released=0.2)
+        for one, name in at.items()
+        if one != without
     ]  # fmt: skip
     history = [
         {"depth": depth, f"{TIP} exact_force": 1.0} | {f"{pair} arc": np.nan if pair == open_pair else 1.0 for pair in (UPPER, TIP, LOWER)}

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 from collections import Counter
 
 import numpy as np
@@ -33,13 +34,12 @@ VERDICTS = dict.fromkeys((claim.name for claim in CLAIMS), REPRODUCED) | {
 
 def check_claims(page, *figures, verdict=None):
     """The page has every claim of some figures once, in the order of the paper, with its verdict or that of coarse settings."""
-    lines = [line for line in page.read_text().splitlines() if line.startswith("| ") and line[2].isdigit()]
+    found = re.findall(
+        r"^\| (\d+) \| .* \| \*\*(.*?)\*\* \| .* \(`(\w+)`\) \|", page.read_text(), re.MULTILINE
+    )
     wanted = [claim for claim in CLAIMS if claim.figure in figures]
-    for number, (line, claim) in enumerate(zip(lines, wanted, strict=True), 1):
-        count, places, texts, found, measured, _ = line.strip("| ").split(" | ")
-        assert (count, found) == (str(number), f"**{verdict or VERDICTS[claim.name]}**"), texts
-        assert all(place in places and text in texts for place, text in claim.stated)
-        assert measured.endswith(f"(`{claim.figure}`)")
+    expected = [(verdict or VERDICTS[claim.name], claim.figure) for claim in wanted]
+    assert found == [(str(number), *one) for number, one in enumerate(expected, 1)]
 
 
 def check_files(folder, figure):
@@ -69,10 +69,7 @@ def run(figure, folder, capsys):
     moving = block(html)
     assert len(moving) == {"fig8": 3, "fig9": 1}.get(figure, 0)
     if figure == "fig9":
-        (double,) = moving.values()
-        titles = [track["title"] for track in double["tracks"][:2]]
-        assert titles == ["contact force pin->upper", "contact force upper.end->lower"]
-        assert all(len(lines) == 2 for lines in double["runs"][0]["lines"])
+        assert all(len(lines) == 2 for one in moving.values() for lines in one["runs"][0]["lines"])
     return json.loads((folder / f"{figure}.json").read_text())
 
 
@@ -81,11 +78,15 @@ def test_fig7a(tmp_path, capsys):
     """Slip-off displacements of theory section 7; bar 5e-4 with 18 elements."""
     found = {one["start"]: one for one in run("fig7a", tmp_path, capsys)["starting_positions"]}
     for start, exact in ((4.05, 1.7814439389), (4.35, 1.0524732309)):
-        assert found[start]["slip_off_rod"] == pytest.approx(exact, rel=1e-10)
-        assert found[start]["slip_off"]["18"] == pytest.approx(exact, rel=5e-4)
-        assert found[start]["slip_off"]["72"] == pytest.approx(exact, rel=2e-4)
-        assert found[start]["force_error"] < 5e-4
-        assert found[start]["reached_in_contact"]["mixed"] == pytest.approx(exact, rel=5e-4)
+        one = found[start]
+        own = (
+            one["slip_off_rod"],
+            one["slip_off"]["18"],
+            one["slip_off"]["72"],
+            one["reached_in_contact"]["mixed"],
+        )
+        assert (np.abs(np.array(own) / exact - 1.0) <= (1e-10, 5e-4, 2e-4, 5e-4)).all()
+        assert one["force_error"] < 5e-4
 
 
 @pytest.mark.slow
@@ -96,10 +97,10 @@ def test_fig8(tmp_path, capsys):
     assert [one["status"] for one in paper] == ["COMPLETED"] * 3
     assert max(one["shape_difference"] for one in paper) < 1e-2
     assert runs["ks-cantilever", "solid"]["error_path_shape"] < 1e-3
-    assert runs["ks-cantilever", "TSM mixed, 20 elements"]["error_path_force"] < 1e-5
-    assert runs["ks-printed-shear", "TSM mixed, 20 elements"]["error_path_force"] < 1e-5
-    assert {reading for reading, _ in runs} == {"ks-cantilever", "ks-printed-shear", "ks-tied-tip"}
-    assert runs["ks-tied-tip", "TSM mixed, 20 elements"]["error_path_shape"] < 1e-5
+    quantities = {"ks-cantilever": "force", "ks-printed-shear": "force", "ks-tied-tip": "shape"}
+    assert {reading for reading, _ in runs} == set(quantities)
+    for reading, quantity in quantities.items():
+        assert runs[reading, "TSM mixed, 20 elements"][f"error_path_{quantity}"] < 1e-5
 
 
 @pytest.mark.slow
