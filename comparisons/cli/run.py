@@ -100,7 +100,7 @@ def _manual(given: "argparse.Namespace") -> int:
     file = None if given.junit is None else result_file(given.junit)
     from comparisons.claims.junit import junit_text
     from comparisons.claims.manual import write_manual
-    from comparisons.claims.manual.text import junit_cases
+    from comparisons.claims.manual.write import junit_cases
 
     manual = write_manual(folder, watch, stated)
     if file is not None:

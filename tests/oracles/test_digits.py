@@ -8,7 +8,10 @@ import pytest
 from scipy.special import ellipe, ellipk
 
 from comparisons.claims.manual import problems, read_problem
-from comparisons.claims.manual.read import readings  # not public: what a problem reads, of the exact rod
+from comparisons.claims.manual.answers import (
+    Answers,
+    readings,
+)  # not public: what a problem reads, of the exact rod
 from comparisons.claims.problems.double_beam import HAND_OVER
 from comparisons.exact import elastica_under_pin, rod_under_pin
 from comparisons.models import solve
@@ -77,7 +80,7 @@ def hysteresis():
 def by_the_rod(name):
     """Values of one rod by collocation, of several by the referee; both share nothing with the models that are judged."""
     problem = PROBLEMS[name]
-    return readings(problem, replace(problem.trials[0], key="rod", options=Options())).values
+    return readings(problem, Answers(problem, replace(problem.trials[0], key="rod", options=Options())))
 
 
 def elastica_of_ks():

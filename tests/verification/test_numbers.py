@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from comparisons.claims.problems import friction
+from comparisons.cases.settings import changed
 from comparisons.compare import ELASTICA, MIXED, PAPER, ROD, RUNS, SOLID
 from comparisons.errors import errors
 from comparisons.models import find, solve
@@ -43,9 +43,27 @@ def test_the_table_of_errors(name, stated):
     stated(f"errors.{name}", *(found[column] for column in COLUMNS), bound=run.options.element == "exact")
 
 
+COEFFICIENTS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)
+
+
+def rubbing(friction, load_parameters=1, material=None):
+    """The main scene with a coefficient of friction, and with another material of the solid."""
+    changes = {("contact", "friction"): friction, ("scene", "load_parameters"): load_parameters}
+    material = {("beam", "material"): material} if material else {}
+    return changed(load_scene("ks-friction"), changes | material)
+
+
+def force(response):
+    return float(response.contacts["pin->cantilever"].force[-1]) if response.completed else np.nan
+
+
+def forces(model, options=None, material=None):
+    return np.array([force(solve(rubbing(mu, material=material), model, options)) for mu in COEFFICIENTS])
+
+
 @cache
 def exact():
-    return friction.forces_over_friction("rod")
+    return forces("rod")
 
 
 @pytest.mark.slow
@@ -57,7 +75,7 @@ def test_the_force_of_the_rod_over_friction(stated):
 
 
 def off(*model):
-    return np.abs(friction.forces_over_friction(*model) / exact() - 1.0)
+    return np.abs(forces(*model) / exact() - 1.0)
 
 
 @pytest.mark.slow
@@ -80,13 +98,7 @@ def test_opensees_over_friction_and_load_steps(tmp_path, stated):
 
     It loses the contact in 10, 50 and 200 load steps, and reports success.
     """
-
-    def force(response):
-        return float(response.contacts["pin->cantilever"].force[-1])
-
-    answers = [
-        solve(friction.rubbing(mu, 20), "opensees", Options(elements=20)) for mu in friction.COEFFICIENTS
-    ]
+    answers = [solve(rubbing(mu, 20), "opensees", Options(elements=20)) for mu in COEFFICIENTS]
     assert [response.status == "COMPLETED" for response in answers] == [True, False, True, True, True, True]
     stated(
         "friction-over-mu.opensees",
@@ -99,9 +111,9 @@ def test_opensees_over_friction_and_load_steps(tmp_path, stated):
         file.write_text(
             f'[program]\nname = "in-{steps}-steps"\ncommand = {json.dumps(words)}\nelements = [20]\n'
         )
-        response = solve(friction.rubbing(0.3, 10), str(file), Options(elements=20))
+        response = solve(rubbing(0.3, 10), str(file), Options(elements=20))
         assert response.reported_success
         found.append(force(response))
     assert found[:3] == [0.0, 0.0, 0.0]
-    right = exact()[friction.COEFFICIENTS.index(0.3)]
+    right = exact()[COEFFICIENTS.index(0.3)]
     stated("friction-over-mu.steps", *(abs(force / right - 1.0) for force in found[3:]))

@@ -1,7 +1,7 @@
 """The matrix: what varies along each axis, as cells."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -9,27 +9,23 @@ import numpy as np
 
 from comparisons.cases.case import Case
 from comparisons.claims.claim import Allowance
-from comparisons.claims.extremes.cell import Cell
-from comparisons.claims.extremes.checks import Against, Circle
-from comparisons.claims.extremes.rows import (
-    against,
+from comparisons.claims.extremes.cell import Against, Cell, Circle
+from comparisons.claims.extremes.scenes import (
     beam_case,
     beams,
+    cantilever,
+    cell,
+    cycles,
     everything,
     exact_answers,
     exact_rod,
-    kinds,
-    solids,
-    with_check,
-)
-from comparisons.claims.extremes.scenes import (
-    cantilever,
-    cycles,
     half_circle,
+    kinds,
     pushed,
     raised,
     rolled_up,
     sheared,
+    solid,
 )
 from comparisons.models import SOLID
 from comparisons.models.options import Options
@@ -38,131 +34,136 @@ from tsm.elements import MIXED, TIMOSHENKO, ClosedForm
 
 MESH = (50, 2)
 COARSE = (25, 2)
+HALF_CIRCLE = "the half circle of Konyukhov and Schweizerhof"
+TARGET = Allowance(error=1e-6, why="the target for 40 elements up to L/h = 1e5")
+UNITS = Allowance(error=1e-9, why="units do not matter")
+CUT_BACK = 100
+"""Cycles of what cuts back several steps in each."""
+Cells = Callable[[bool], Iterator[Cell]]
+"""The cells of an axis, fewer if quick."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Axis:
-    """One axis of the matrix.
-
-    Attributes
-    ----------
-    name, title : str
-        In the files; for people, with the range.
-    scene : str
-        What is solved.
-    cells : callable
-        ``cells(name, quick)``: its cells, fewer if quick.
-    """
+    """One axis of the matrix: its name in the files, its title with the range, what is solved, and its cells."""
 
     name: str
     title: str
     scene: str
-    cells: Callable[[str, bool], list[Cell]]
+    cells: Cells
 
 
-def _units(axis: str, quick: bool) -> list[Cell]:
-    plain = everything(axis, "", half_circle(cantilever()), 10, COARSE)
+AXES: list[Axis] = []
+"""In the order of the report."""
+
+
+def axis(name: str, title: str, scene: str) -> Callable[[Cells], Cells]:
+    """Mark the function that yields the cells of an axis."""
+
+    def marked(cells: Cells) -> Cells:
+        AXES.append(Axis(name=name, title=title, scene=scene, cells=cells))
+        return cells
+
+    return marked
+
+
+def matrix(*, quick: bool = False) -> list[Cell]:
+    """Return the cells of all axes."""
+    return [replace(one, axis=axis.name) for axis in AXES for one in axis.cells(quick)]
+
+
+@axis("units", "units: lengths 1e-9 to 1e6, E 1e-6 to 1e15", HALF_CIRCLE)
+def _units(quick: bool) -> Iterator[Cell]:
+    plain = list(everything("", half_circle(cantilever()), 10, COARSE))
     lengths = (1e-9, 1.0, 1e6) if quick else (1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e6)
     moduli = (1e-6, 1e15) if quick else (1e-6, 1.0, 1e5, 1e10, 1e15)
-    same = Allowance(error=1e-9, why="units do not matter")
-    cells = []
     for length, modulus in product(lengths, moduli):
         scene = half_circle(cantilever(length=length, youngs_modulus=modulus))
-        own = everything(axis, f"L {length:g}, E {modulus:g}", scene, 10, COARSE)
-        for cell, unit in zip(own, plain, strict=True):
-            check = Against(case=unit.case, name="itself at L = 1, E = 1", allowed=same)
-            cells.append(with_check(cell, check))
-    return cells
+        own = everything(f"L {length:g}, E {modulus:g}", scene, 10, COARSE)
+        for one, unit in zip(own, plain, strict=True):
+            yield one.also(Against(case=unit.case, name="itself at L = 1, E = 1", allowed=UNITS))
 
 
-TARGET = Allowance(error=1e-6, why="the target for 40 elements up to L/h = 1e5")
-
-
-def _slenderness(axis: str, quick: bool) -> list[Cell]:
-    cells = []
+@axis("slenderness", "slenderness L/h", HALF_CIRCLE + "; beams of 40 elements")
+def _slenderness(quick: bool) -> Iterator[Cell]:
     fourth = {kind.name for kind in kinds() if isinstance(kind, ClosedForm) and kind.order >= 4}
     for slenderness in (2, 50, 1e3, 1e5, 1e6) if quick else (2, 5, 10, 20, 50, 100, 1e3, 1e4, 1e5, 1e6):
         scene = half_circle(cantilever(slenderness=slenderness))
-        promised = (Against(case=exact_rod(scene), allowed=TARGET),) if 50 <= slenderness <= 1e5 else ()
         mesh = MESH if slenderness <= 1e3 and not (quick and slenderness == 1e3) else None
-        cells += [
-            with_check(cell, *promised) if cell.row in fourth else cell
-            for cell in everything(axis, f"{slenderness:g}", scene, 40, mesh)
-        ]
-    return cells
+        for one in everything(f"{slenderness:g}", scene, 40, mesh):
+            promised = one.row in fourth and 50 <= slenderness <= 1e5
+            yield one.also(Against(case=exact_rod(scene), allowed=TARGET)) if promised else one
 
 
-def _shear(axis: str, quick: bool) -> list[Cell]:
+@axis("shear", "shear Psi/l0^2", HALF_CIRCLE + "; beams of 20 elements")
+def _shear(quick: bool) -> Iterator[Cell]:
     elements = 20
     powers = (-14, -4, 0, 4) if quick else (-14, -11, -8, -6, -4, -2, -1, 0, 1, 2, 3, 4)
     scenes = {f"1e{power}": half_circle(sheared(10.0**power / elements**2)) for power in powers}
     scenes["[P] 4.2"] = replace(load_scene("ks-printed-shear"), load_parameters=10)
-    return [cell for column, scene in scenes.items() for cell in everything(axis, column, scene, elements)]
+    for column, scene in scenes.items():
+        yield from everything(column, scene, elements)
 
 
-def _elements(axis: str, quick: bool) -> list[Cell]:
+@axis("elements", "number of elements", HALF_CIRCLE)
+def _elements(quick: bool) -> Iterator[Cell]:
     scene = half_circle(cantilever())
-    cells = [*exact_answers(axis, "1", scene)]
+    yield from exact_answers("1", scene)
     for count in (1, 2, 5, 50) if quick else (1, 2, 3, 5, 10, 20, 50, 200, 1000, 5000):
-        column = f"{count}"
-        cells += beams(axis, column, scene, count, only=kinds(meshed=True))
+        yield from beams(f"{count}", scene, count, only=kinds(meshed=True))
         for kind in kinds(meshed=False) if count <= 1000 else ():
             case = beam_case(scene, kind, None)
-            case = replace(case, options=replace(case.options, elements=count))
-            cells.append(against(axis, kind.name, column, case))
+            yield cell(kind.name, f"{count}", replace(case, options=replace(case.options, elements=count)))
         if 2 <= count <= 1000:
-            cells += solids(axis, column, scene, (count, 2))
-    return cells
+            yield solid(f"{count}", scene, (count, 2))
 
 
-def _ratio(axis: str, quick: bool) -> list[Cell]:
-    cells = []
+@axis("ratio", "longest over shortest of 20 elements", HALF_CIRCLE)
+def _ratio(quick: bool) -> Iterator[Cell]:
     for power in (3, 6) if quick else (1, 2, 3, 4, 5, 6):
         growth = np.logspace(0, power, 20)
         at_clamp = np.cumsum(growth / growth.sum())[:-1]
         for where, nodes in (("clamp", at_clamp), ("tip", 1 - at_clamp[::-1])):
             scene = half_circle(cantilever(nodes=tuple(nodes.tolist())))
-            cells += beams(axis, f"1e{power}, fine at {where}", scene, None, only=kinds(meshed=True))
-    return cells
+            yield from beams(f"1e{power}, fine at {where}", scene, None, only=kinds(meshed=True))
 
 
-def _contact(axis: str, quick: bool) -> list[Cell]:
+@axis("contact", "contact position, l an element", "a pin that lifts the beam a little; beams of 10 elements")
+def _contact(quick: bool) -> Iterator[Cell]:
     """A pin beside a node in the middle, beside the clamp, beside the tip, in parts of one of ten elements."""
     elements = 10
     part = 1 / elements
     parts = (1e-16, 1e-8, 1e-1) if quick else (1e-16, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-3, 1e-2, 1e-1)
-    signed = [
-        (f"{sign}{size:g} l", factor * size) for size in parts for sign, factor in (("+", 1), ("-", -1))
-    ]
-    places = [
-        ("at node", 0.5, 0.02),
-        ("node +ulp", math.nextafter(0.5, 1), 0.02),
-        ("node -ulp", math.nextafter(0.5, 0), 0.02),
-        *((f"node {text}", 0.5 + away * part, 0.02) for text, away in signed),
-        ("at clamp", 0.0, 0.02),
-        *((f"clamp +{size:g} l", size * part, 0.1 * size * part) for size in parts),
-    ]
-    tips = [("at tip", 1.0), ("tip +ulp", math.nextafter(1, 2)), ("tip -ulp", math.nextafter(1, 0))]
-    tips += [(f"tip -{size:g} l", 1 - size * part) for size in parts]
-    scenes = {column: raised(cantilever(), x, lift) for column, x, lift in places}
-    scenes |= {column: pushed(cantilever(), (x, 0.0), (x - 0.02, 0.02), steps=10) for column, x in tips}
-    return [cell for column, scene in scenes.items() for cell in everything(axis, column, scene, elements)]
+    ulp = {f"{sign}ulp": toward for sign, toward in (("+", math.inf), ("-", -math.inf))}
+    lifts = {
+        "at node": (0.5, 0.02),
+        **{f"node {by}": (math.nextafter(0.5, to), 0.02) for by, to in ulp.items()},
+    }
+    for size, (sign, away) in product(parts, (("+", 1), ("-", -1))):
+        lifts[f"node {sign}{size:g} l"] = 0.5 + away * size * part, 0.02
+    lifts |= {"at clamp": (0.0, 0.02)}
+    lifts |= {f"clamp +{size:g} l": (size * part, 0.1 * size * part) for size in parts}
+    tips = {"at tip": 1.0, **{f"tip {by}": math.nextafter(1, to) for by, to in ulp.items()}}
+    tips |= {f"tip -{size:g} l": 1 - size * part for size in parts}
+    scenes = {column: raised(cantilever(), x, lift) for column, (x, lift) in lifts.items()}
+    scenes |= {
+        column: pushed(cantilever(), (x, 0.0), (x - 0.02, 0.02), steps=10) for column, x in tips.items()
+    }
+    for column, scene in scenes.items():
+        yield from everything(column, scene, elements)
 
 
-def _load_step(axis: str, quick: bool) -> list[Cell]:
-    cells = []
+@axis("load-step", "load steps for the whole path", HALF_CIRCLE + "; beams of 20 elements")
+def _load_step(quick: bool) -> Iterator[Cell]:
     for steps in (1, 5, 100) if quick else (1, 2, 5, 10, 100, 1000, 10_000):
-        column, scene = f"{steps}", half_circle(cantilever(), steps=steps)
-        cells += everything(axis, column, scene, 20, COARSE)
-        cells += [
-            against(axis, f"{kind.name}, 200 elements", column, beam_case(scene, kind, 200))
-            for kind in ((MIXED, TIMOSHENKO) if steps <= 1000 else ())
-        ]
-    return cells
+        scene = half_circle(cantilever(), steps=steps)
+        yield from everything(f"{steps}", scene, 20, COARSE)
+        for kind in (MIXED, TIMOSHENKO) if steps <= 1000 else ():
+            yield cell(f"{kind.name}, 200 elements", f"{steps}", beam_case(scene, kind, 200))
 
 
-def _penalty(axis: str, quick: bool) -> list[Cell]:
-    cells = []
+@axis("penalty", "penalty over the default", HALF_CIRCLE)
+def _penalty(quick: bool) -> Iterator[Cell]:
     beam, width = cantilever(), 1 / 50
     for surface in ("axis", "face"):
         plain = Case(scene=half_circle(beam, surface=surface), model=SOLID.name, options=Options(mesh=MESH))
@@ -172,91 +173,37 @@ def _penalty(axis: str, quick: bool) -> list[Cell]:
             softness = 10 * beam.EI / penalty
             allowed = Allowance(error=4 * 10 * softness + 1e-6, why="what the penalty lets the beam give way")
             check = Against(case=plain, name="itself with the default penalty", allowed=allowed)
-            cells += solids(axis, f"1e{power}", scene, MESH, row=f"{SOLID.name}, {surface}", checks=(check,))
-    return cells
+            yield solid(f"1e{power}", scene, MESH, check, row=f"{SOLID.name}, {surface}")
 
 
-def _poissons_ratio(axis: str, quick: bool) -> list[Cell]:
-    ratios = (-0.9, 0.0, 0.4999) if quick else (-0.9, -0.5, -0.1, 0.0, 0.3, 0.45, 0.49, 0.499, 0.4999)
-    scenes = {f"{nu:g}": half_circle(cantilever(poissons_ratio=nu)) for nu in ratios}
-    return [cell for column, scene in scenes.items() for cell in everything(axis, column, scene, 20, MESH)]
+@axis("poissons-ratio", "Poisson's ratio", HALF_CIRCLE)
+def _poissons_ratio(quick: bool) -> Iterator[Cell]:
+    for nu in (-0.9, 0.0, 0.4999) if quick else (-0.9, -0.5, -0.1, 0.0, 0.3, 0.45, 0.49, 0.499, 0.4999):
+        yield from everything(f"{nu:g}", half_circle(cantilever(poissons_ratio=nu)), 20, MESH)
 
 
-def _depth(axis: str, _: bool) -> list[Cell]:
-    cells = []
+@axis("depth", "depth", "up to slip-off, past the limit point, roll-up by an end moment")
+def _depth(_: bool) -> Iterator[Cell]:
     places = {
         "4.1, slip-off at .99 of the way": (load_scene("cantilever-critical-area"), 18),
         "limit point of the force": (raised(cantilever(length=4.0, slenderness=200), 1.0, 2.0, steps=20), 22),
         "behind the clamp": (pushed(cantilever(), (0.5, 0.0), (0.5, 0.1), (-0.3, 0.1), steps=20), 31),
     }
     for column, (scene, elements) in places.items():
-        cells += everything(axis, column, scene, elements, None if scene.beams[0].height is None else MESH)
+        yield from everything(column, scene, elements, None if scene.beams[0].height is None else MESH)
     for turns, kind in product((1, 2), kinds()):
         case = beam_case(rolled_up(cantilever(), turns), kind, 40 * turns)
-        cells.append(
-            Cell(axis=axis, row=kind.name, column=f"roll-up, {turns}", case=case, checks=(Circle(),))
-        )
-    return cells
+        yield cell(kind.name, f"roll-up, {turns}", case, Circle())
 
 
-CUT_BACK = 100
-"""Cycles of what cuts back several steps in each."""
-
-
-def _time(axis: str, quick: bool) -> list[Cell]:
-    cells = []
+@axis(
+    "time", "cycles of touch and release", "a pin that lifts the beam by L/10 and leaves it, again and again"
+)
+def _time(quick: bool) -> Iterator[Cell]:
     unknown = [kind for kind in kinds() if kind.contact_unknowns]
     for count in (1, 20) if quick else (1, 20, 100, 1000, 10_000):
         column, scene = f"{count}", cycles(cantilever(), count)
-        some = kinds() if count <= CUT_BACK else unknown
-        cells += [*beams(axis, column, scene, 15, only=some), *exact_answers(axis, column, scene)]
+        yield from beams(column, scene, 15, only=kinds() if count <= CUT_BACK else unknown)
+        yield from exact_answers(column, scene)
         if count <= CUT_BACK:
-            cells += solids(axis, column, scene, COARSE)
-    return cells
-
-
-HALF_CIRCLE = "the half circle of Konyukhov and Schweizerhof"
-AXES = (
-    Axis(name="units", title="units: lengths 1e-9 to 1e6, E 1e-6 to 1e15", scene=HALF_CIRCLE, cells=_units),
-    Axis(
-        name="slenderness",
-        title="slenderness L/h",
-        scene=HALF_CIRCLE + "; beams of 40 elements",
-        cells=_slenderness,
-    ),
-    Axis(name="shear", title="shear Psi/l0^2", scene=HALF_CIRCLE + "; beams of 20 elements", cells=_shear),
-    Axis(name="elements", title="number of elements", scene=HALF_CIRCLE, cells=_elements),
-    Axis(name="ratio", title="longest over shortest of 20 elements", scene=HALF_CIRCLE, cells=_ratio),
-    Axis(
-        name="contact",
-        title="contact position, l an element",
-        scene="a pin that lifts the beam a little; beams of 10 elements",
-        cells=_contact,
-    ),
-    Axis(
-        name="load-step",
-        title="load steps for the whole path",
-        scene=HALF_CIRCLE + "; beams of 20 elements",
-        cells=_load_step,
-    ),
-    Axis(name="penalty", title="penalty over the default", scene=HALF_CIRCLE, cells=_penalty),
-    Axis(name="poissons-ratio", title="Poisson's ratio", scene=HALF_CIRCLE, cells=_poissons_ratio),
-    Axis(
-        name="depth",
-        title="depth",
-        scene="up to slip-off, past the limit point, roll-up by an end moment",
-        cells=_depth,
-    ),
-    Axis(
-        name="time",
-        title="cycles of touch and release",
-        scene="a pin that lifts the beam by L/10 and leaves it, again and again",
-        cells=_time,
-    ),
-)
-"""In the order of the report."""
-
-
-def matrix(*, quick: bool = False) -> list[Cell]:
-    """Return the cells of all axes."""
-    return [cell for axis in AXES for cell in axis.cells(axis.name, quick)]
+            yield solid(column, scene, COARSE)

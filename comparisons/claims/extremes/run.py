@@ -1,36 +1,134 @@
-"""Run the matrix, judge every cell, write the maps."""
+"""Run the matrix, judge every cell, write the maps: one table for each axis, models down, values across."""
 
+import math
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from html import escape
 from pathlib import Path
 from shutil import rmtree
+from typing import NamedTuple
+
+import numpy as np
 
 from comparisons.cases.case import Case
 from comparisons.cases.run import Progress
 from comparisons.cases.run import run as run_cases
 from comparisons.cases.workers import Workers
 from comparisons.claims.claim import Verdict
-from comparisons.claims.extremes.axes import AXES, matrix
-from comparisons.claims.extremes.cell import Cell, Judgement, judged
-from comparisons.claims.extremes.checks import Results
-from comparisons.claims.extremes.maps import counted, sections
+from comparisons.claims.extremes.axes import AXES, Axis, matrix
+from comparisons.claims.extremes.cell import Judgement, judged
 from comparisons.files import write_text
 from comparisons.output import Row, write_numbers, write_rows
-from comparisons.show.pages import page, provenance
+from comparisons.show.pages import Section, page, provenance
+
+MARKS = {Verdict.RIGHT: "", Verdict.STOPPED: "■ ", Verdict.WITHDRAWN: "□ ", Verdict.WRONG: "✗ "}
+"""Marks that distinguish the verdicts without colour."""
+STYLE = """
+<style>
+.map { overflow-x: auto; } .map table, .key { border-collapse: separate; border-spacing: 2px; }
+.map thead th { font-weight: 400; text-align: center; font-size: .75rem; white-space: normal; max-width: 7em; }
+.map tbody th { position: sticky; left: 0; background: var(--paper); }
+.map td, .key td { text-align: center; padding: 3px 6px; min-width: 5em; font-size: .75rem; border: 0; print-color-adjust: exact; }
+td.stopped { background: repeating-linear-gradient(45deg, var(--line) 0 6px, transparent 6px 9px) var(--paper); outline: 1px solid var(--line); }
+td.withdrawn { outline: 2px dashed var(--line); }
+td.wrong { background: #d55e00; color: #fff; font-weight: 700; }
+td.none { color: var(--line); } .key td { min-width: 0; }
+</style>
+"""
+LEGEND = """A cell shows the largest error of force, arc position, moment and tip over all load parameters reached: of the comparisons that
+must hold, the one that comes nearest to what is allowed. A cell that stopped shows the name of the reason, one that is withdrawn by its own
+checks the error that it would have had. Hover over it to see what it
+is compared with, what is allowed and why."""
+POWERS = (-14.0, -10.0, -6.0, -3.0, 0.0)
+SHADES = ((8, 33, 107, 189, 255), (48, 113, 174, 215, 247), (107, 181, 214, 231, 188))
+"""Red, green and blue by the error's decimal logarithm: blue for small errors to pale yellow, safe for the colour-blind."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Extremes:
-    """What became of the matrix.
+def sections(axes: Iterable[Axis], judgements: Sequence[Judgement]) -> list[Section]:
+    """Return the key and one map for each axis that has cells."""
+    parts = [Section(title="How to read the maps", html=f"{STYLE}<p>{LEGEND}</p>{_key()}")]
+    for axis in axes:
+        own = [item for item in judgements if item.cell.axis == axis.name]
+        if own:
+            about = f"<p>{escape(axis.scene)}. {counted(own)}.</p>"
+            parts.append(Section(title=axis.title, html=about + _map(own)))
+    return parts
 
-    Attributes
-    ----------
-    judgements : tuple of Judgement
-        One for each cell.
-    files : tuple of Path
-        What was written.
-    """
+
+def counted(judgements: Sequence[Judgement]) -> str:
+    """Return the number of cells, their number by verdict, and the number of withdrawn cells that are right."""
+    number = Counter(item.verdict for item in judgements)
+    needless = sum(item.needless for item in judgements)
+    counts = {verdict: f"{number[verdict]} {verdict}" for verdict in Verdict}
+    counts[Verdict.WITHDRAWN] += f" ({needless} needlessly)" if needless else ""
+    return f"{len(judgements)} cells: " + ", ".join(counts.values())
+
+
+def _key() -> str:
+    shades = "".join(_shaded(10.0**power) for power in (-14, -10, -6, -3, -1))
+    words = {
+        Verdict.STOPPED: "stopped by name", Verdict.WITHDRAWN: "withdrawn by its own checks", Verdict.WRONG: "wrong",
+    }  # fmt: skip
+    marks = "".join(f'<td class="{verdict}">{MARKS[verdict]}{text}</td>' for verdict, text in words.items())
+    return f'<table class="key"><tr><th>completed and right, error</th>{shades}{marks}</tr></table>'
+
+
+def _map(judgements: Sequence[Judgement]) -> str:
+    rows = dict.fromkeys(item.cell.row for item in judgements)
+    columns = dict.fromkeys(item.cell.column for item in judgements)
+    at = {(item.cell.row, item.cell.column): item for item in judgements}
+    head = "".join(f'<th scope="col">{escape(column)}</th>' for column in columns)
+    body = "\n".join(
+        f'<tr><th scope="row">{escape(row)}</th>{"".join(_cell(at.get((row, column))) for column in columns)}</tr>'
+        for row in rows
+    )
+    return f'<div class="map"><table><thead><tr><th></th>{head}</tr></thead><tbody>\n{body}\n</tbody></table></div>'
+
+
+def _cell(item: Judgement | None) -> str:
+    if item is None:
+        return '<td class="none">·</td>'
+    decisive, about = item.decisive, f' class="{item.verdict}" title="{escape(_details(item))}"'
+    if item.verdict is Verdict.RIGHT and decisive:
+        return _shaded(decisive.error, about)
+    named = item.verdict is Verdict.STOPPED or decisive is None
+    shown = item.own.response.status if named or decisive is None else _number(decisive.error)
+    return f"<td{about}>{MARKS[item.verdict]}{escape(shown)}</td>"
+
+
+def _details(item: Judgement) -> str:
+    own = item.own.response
+    found = (
+        f"against {finding.name}: error {_number(finding.error)}, allowed {_number(finding.allowed)} ({finding.why})"
+        for finding in item.findings
+    )
+    return "\n".join(
+        [
+            f"{item.cell.case.label}, {item.cell.column}: {item.verdict}",
+            f"{own.status}: {own.message}",
+            f"reached {item.reached:.4g} of 1",
+            *found,
+            f"{own.iterations} iterations, {own.cutbacks} cut-backs",
+        ]
+    )
+
+
+def _number(value: float) -> str:
+    if not math.isfinite(value):
+        return "∞"
+    return f"{value:.1e}".replace("e-0", "e-").replace("e+0", "e+") if value else "0"
+
+
+def _shaded(error: float, about: str = "") -> str:
+    """Return a cell with the colour of an error."""
+    power = math.log10(max(error, 1e-300))
+    red, green, blue = (round(float(np.interp(power, POWERS, shades))) for shades in SHADES)
+    ink = "#fff" if 0.3 * red + 0.59 * green + 0.11 * blue < 130 else "#111"
+    return f'<td{about} style="background:rgb({red},{green},{blue});color:{ink}">{_number(error)}</td>'
+
+
+class Extremes(NamedTuple):
+    """What became of every cell of the matrix, and the files that were written."""
 
     judgements: tuple[Judgement, ...]
     files: tuple[Path, ...]
@@ -51,19 +149,13 @@ def extremes(folder: Path, workers: Workers, progress: Progress, *, quick: bool 
     OutputError, WorkersError
         If a file cannot be written, or the workers are gone.
     """
-    cells = matrix(quick=quick)
-    kept = folder / ".extremes"
-    results = measured(cells, kept, workers, progress)
+    cells, kept = matrix(quick=quick), folder / ".extremes"
+    cases = sorted(dict.fromkeys(case for cell in cells for case in cell.cases), key=_cost, reverse=True)
+    results = run_cases(cases, kept, workers, repeats=0, progress=progress)
     judgements = tuple(judged(cell, results) for cell in cells)
     files = write(folder, judgements, quick=quick)
     rmtree(kept)
     return Extremes(judgements=judgements, files=files)
-
-
-def measured(cells: Sequence[Cell], kept: Path, workers: Workers, progress: Progress) -> Results:
-    """Return the results of all cases of `cells`, kept in the folder `kept` as they come."""
-    cases = sorted(dict.fromkeys(case for cell in cells for case in cell.cases), key=_cost, reverse=True)
-    return run_cases(cases, kept, workers, repeats=0, progress=progress)
 
 
 def _cost(case: Case) -> int:
@@ -76,12 +168,8 @@ def _cost(case: Case) -> int:
 def write(folder: Path, judgements: Sequence[Judgement], *, quick: bool) -> tuple[Path, ...]:
     """Write the three files and return their names."""
     html, rows = folder / "extremes.html", [row(item) for item in judgements]
-    tables = (
-        write_rows(folder / "extremes.csv", rows),
-        write_numbers(
-            folder / "extremes.json", {"quick": quick, "verdicts": counts(judgements), "cells": rows}
-        ),
-    )
+    numbers = {"quick": quick, "verdicts": counts(judgements), "cells": rows}
+    tables = (write_rows(folder / "extremes.csv", rows), write_numbers(folder / "extremes.json", numbers))
     part = ", a part of the matrix (quick)" if quick else ""
     whole = [*sections(AXES, judgements), *provenance((), tables, folder)[1:]]
     write_text(html, page("Where it holds, where it stops", f"{counted(judgements)}{part}.", whole))
@@ -99,7 +187,9 @@ def counts(judgements: Sequence[Judgement]) -> dict[str, dict[str, int]]:
 
 def row(item: Judgement) -> Row:
     """Return one line of the table: the cell, its verdict, and the comparison that decides it."""
-    decisive = item.decisive
+    own, decisive = item.own.response, item.decisive
+    about = ("error", "allowed", "against", "why")
+    found = (decisive.error, decisive.allowed, decisive.name, decisive.why) if decisive else (None,) * 4
     return {
         "axis": item.cell.axis,
         "model": item.cell.row,
@@ -107,14 +197,11 @@ def row(item: Judgement) -> Row:
         "label": item.cell.case.label,
         "verdict": str(item.verdict),
         "needless": item.needless,
-        "status": item.status,
+        "status": own.status,
         "reached": item.reached,
-        "error": decisive.error if decisive else None,
-        "allowed": decisive.allowed if decisive else None,
-        "against": decisive.name if decisive else None,
-        "why": decisive.why if decisive else None,
-        "iterations": item.iterations,
-        "cutbacks": item.cutbacks,
-        "seconds": item.seconds,
-        "message": item.message,
+        **dict(zip(about, found, strict=True)),
+        "iterations": own.iterations,
+        "cutbacks": own.cutbacks,
+        "seconds": item.own.seconds,
+        "message": own.message,
     }

@@ -1,74 +1,66 @@
-"""The scenes of the matrix: one cantilever of length 1 and modulus 1 along +x, clamped at the origin, unless they say otherwise."""
+"""The scenes of the matrix and the rows of its maps: models, each with its options and with what its answers are compared.
+
+One cantilever of length 1 and modulus 1 along +x, clamped at the origin, unless a scene says otherwise.
+"""
 
 import math
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from typing import Any
 
+from comparisons.cases.case import Case
+from comparisons.claims.extremes.cell import Against, Cell, Check, Energy
+from comparisons.models import MODELS, ROD, SOLID, TSM
+from comparisons.models.options import Options
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene
 from comparisons.scene.rules import Point
+from tsm.elements import ELEMENTS, ElementType
 
 SLENDERNESS = 50.0
 """Default slenderness L/h, taken from Konyukhov and Schweizerhof's cantilever."""
 
 
 def cantilever(
-    *, length: float = 1.0, youngs_modulus: float = 1.0, slenderness: float = SLENDERNESS, **more: object
+    *, length: float = 1.0, youngs_modulus: float = 1.0, slenderness: float = SLENDERNESS, **more: Any
 ) -> BeamSpec:
     """Return a beam of square section; `more` goes to `BeamSpec`."""
     h = length / slenderness
-    given: dict[str, object] = {"width": h, "height": h, "poissons_ratio": 0.3, "material": "biot-linear"}
-    return BeamSpec(
-        name="beam",
-        start=(0.0, 0.0),
-        end=(length, 0.0),
-        youngs_modulus=youngs_modulus,
-        clamped=("start",),
-        **(given | more),  # type: ignore[arg-type]
-    )
+    section = {"width": h, "height": h, "poissons_ratio": 0.3, "material": "biot-linear"}
+    return _clamped(length=length, youngs_modulus=youngs_modulus, **section | more)
+
+
+def _clamped(*, length: float = 1.0, youngs_modulus: float = 1.0, **section: Any) -> BeamSpec:
+    ends: dict[str, Any] = {"start": (0.0, 0.0), "end": (length, 0.0)}
+    return BeamSpec(name="beam", **ends, youngs_modulus=youngs_modulus, clamped=("start",), **section)
 
 
 def sheared(psi: float) -> BeamSpec:
     """Return the cantilever with ``psi = EI/(GA L^2)``, and with EA and EI of `cantilever`."""
     h = 1 / SLENDERNESS
     second_moment = h**4 / 12
-    return BeamSpec(
-        name="beam",
-        start=(0.0, 0.0),
-        end=(1.0, 0.0),
-        youngs_modulus=1.0,
-        shear_modulus=second_moment / psi / h**2,
-        area=h**2,
-        second_moment=second_moment,
-        clamped=("start",),
-    )
+    return _clamped(shear_modulus=second_moment / psi / h**2, area=h**2, second_moment=second_moment)
 
 
 def rigid_in_shear(beam: BeamSpec) -> BeamSpec:
     """Return `beam` as an Euler-Bernoulli element sees it, rigid in shear."""
-    values = {**vars(beam), "poissons_ratio": None, "shear_modulus": 1e9 * beam.youngs_modulus}
-    return BeamSpec(**values)
+    return replace(beam, poissons_ratio=None, shear_modulus=1e9 * beam.youngs_modulus)
 
 
-def pushed(
-    beam: BeamSpec, *path: Point, steps: int, surface: str = "axis", penalty: float | None = None
-) -> Scene:
-    """Return `beam` under a pin that follows `path` from below."""
+def pushed(beam: BeamSpec, *path: Point, steps: int, **contact: Any) -> Scene:
+    """Return `beam` under a pin that follows `path` from below; `contact` goes to `ContactSpec`."""
     return Scene(
         name="pushed",
         load_parameters=steps,
         beams=(beam,),
         pins=(PinSpec(name="pin", path=path),),
-        contacts=(ContactSpec(node="pin", beam="beam", side="right", surface=surface, penalty=penalty),),
+        contacts=(ContactSpec(node="pin", beam="beam", side="right", **contact),),
     )
 
 
-def half_circle(
-    beam: BeamSpec, *, steps: int = 10, surface: str = "axis", penalty: float | None = None
-) -> Scene:
+def half_circle(beam: BeamSpec, *, steps: int = 10, surface: str = "axis", **contact: Any) -> Scene:
     """Return the path of Konyukhov and Schweizerhof: from the tip to the end of a half circle with the beam's length."""
-    below = 0.0 if surface == "axis" else -beam.height_at(0.5) / 2
-    L = beam.length
-    return pushed(
-        beam, (L, below), (0.0, below + 2 * L / math.pi), steps=steps, surface=surface, penalty=penalty
-    )
+    L, below = beam.length, 0.0 if surface == "axis" else -beam.height_at(0.5) / 2
+    return pushed(beam, (L, below), (0.0, below + 2 * L / math.pi), steps=steps, surface=surface, **contact)
 
 
 def raised(beam: BeamSpec, x: float, lift: float, *, steps: int = 10) -> Scene:
@@ -92,3 +84,67 @@ def cycles(beam: BeamSpec, count: int) -> Scene:
     L = beam.length
     low, high = (0.9 * L, -0.1 * L), (0.9 * L, 0.1 * L)
     return pushed(beam, low, *(high, low) * count, steps=2 * count)
+
+
+def kinds(*, meshed: bool | None = None) -> list[ElementType]:
+    """Return the types of TSM elements of the matrix, those without a mesh first; with `meshed` only those with one, or without."""
+    found = sorted((kind for kind in ELEMENTS.values() if not kind.variant), key=lambda kind: kind.meshed)
+    return [kind for kind in found if meshed in (None, kind.meshed)]
+
+
+def exact_rod(scene: Scene) -> Case:
+    """Return the exact rod on `scene`."""
+    return Case(scene=scene, model=ROD.name)
+
+
+def beam_case(scene: Scene, kind: ElementType, elements: int | None) -> Case:
+    """Return TSM on `scene`; elements without a mesh are one per beam, None leaves the others to the scene."""
+    options = Options(element=kind.name, elements=elements if kind.meshed else 1)
+    return Case(scene=scene, model=TSM.name, options=options)
+
+
+def against_rod(case: Case) -> Against:
+    """Return the comparison of a TSM or solid case with the exact rod of the same shear stiffness."""
+    scene = case.scene
+    if case.model == TSM.name and not TSM.element(case.options).sheared:
+        scene = replace(scene, beams=tuple(rigid_in_shear(beam) for beam in scene.beams))
+    return Against(case=exact_rod(scene))
+
+
+def cell(row: str, column: str, case: Case, *checks: Check) -> Cell:
+    """Return the cell of a case, by default against the rod."""
+    return Cell(row=row, column=column, case=case, checks=checks or (against_rod(case),))
+
+
+def beams(
+    column: str, scene: Scene, elements: int | None, *, only: Iterable[ElementType] | None = None
+) -> Iterator[Cell]:
+    """Yield the cells of TSM, and of other models of beams with a mesh as they are, against the rod."""
+    for kind in kinds() if only is None else only:
+        yield cell(kind.name, column, beam_case(scene, kind, elements))
+    for model in MODELS.values():
+        if model.meshed and not model.continuum and model is not TSM:
+            yield cell(model.name, column, Case(scene=scene, model=model.name))
+
+
+def solid(column: str, scene: Scene, mesh: tuple[int, int], *checks: Check, row: str = SOLID.name) -> Cell:
+    """Return the cell of the solid, by default against the rod."""
+    return cell(row, column, Case(scene=scene, model=SOLID.name, options=Options(mesh=mesh)), *checks)
+
+
+def exact_answers(column: str, scene: Scene) -> Iterator[Cell]:
+    """Yield the cells of the models without a mesh: against their energy, and against the rod."""
+    rod = Against(case=exact_rod(scene))
+    for model in (one for one in MODELS.values() if not one.meshed):
+        checks = (Energy(rigid=not model.rod), *(() if model is ROD else (rod,)))
+        yield cell(model.name, column, Case(scene=scene, model=model.name), *checks)
+
+
+def everything(
+    column: str, scene: Scene, elements: int | None, mesh: tuple[int, int] | None = None
+) -> Iterator[Cell]:
+    """Yield the cells of all models on a scene: beams, the solid if it has a mesh, exact answers."""
+    yield from beams(column, scene, elements)
+    if mesh:
+        yield solid(column, scene, mesh)
+    yield from exact_answers(column, scene)

@@ -1,5 +1,6 @@
 """Benchmark cards: a problem of the manual as one JSON file, complete in itself."""
 
+import json
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -22,6 +23,8 @@ SYMBOLS = {
     "EA, GA, EI": "stiffnesses of a beam's section in stretch, shear and bending; they are listed under stiffness",
 }
 """Symbols that the names of quantities use."""
+SCHEMA = Path(__file__).with_name("card.schema.json")
+"""The JSON Schema of a card, but for its scene."""
 MOST_DIGITS = 15
 """Digits of a value that is exact up to double precision."""
 
@@ -62,58 +65,10 @@ def _quantity(quantity: Quantity, uncertainty: float) -> dict[str, Any]:
 
 def card_schema() -> dict[str, Any]:
     """Return the JSON Schema of cards; the scene has the schema of scene files."""
+    schema: dict[str, Any] = json.loads(SCHEMA.read_text(encoding="utf-8"))
     scene = {key: value for key, value in json_schema().items() if key != "$schema"}
-    number = {"type": "number"}
-    text = {"type": "string", "minLength": 1}
-    quantity = {
-        "name": {**text, "description": "The quantity, with its unit; without a unit it is dimensionless."},
-        "value": {**number, "description": "The reference value."},
-        "digits": {
-            "type": "integer",
-            "minimum": 0,
-            "maximum": MOST_DIGITS,
-            "description": "Significant digits of the value that hold.",
-        },
-        "uncertainty": {
-            **number,
-            "minimum": 0,
-            "description": "Bound of the error of the value, in its unit.",
-        },
-    }
-    stiffness = {name: {**number, "exclusiveMinimum": 0} for name in ("EA", "GA", "EI")}
-    properties = {
-        "$schema": text,
-        "name": {**text, "pattern": r"^[\w-]+$"},
-        "title": text,
-        "purpose": {**text, "description": "What the problem tests."},
-        "statement": {**text, "description": "The problem in words, with its sizes and units."},
-        "source": {**text, "description": "Where the values come from: literature, or the closed form."},
-        "scene": {
-            **scene,
-            "description": "The tables of a scene file; what is varied stands in the statement.",
-        },
-        "stiffness": {
-            "type": "object",
-            "description": "Stiffnesses of every beam's section, in the scene's units.",
-            "additionalProperties": _record(stiffness),
-        },
-        "quantities": {"type": "array", "minItems": 1, "items": _record(quantity)},
-        "symbols": {"type": "object", "additionalProperties": text},
-    }
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "Benchmark card of tsm-crossval",
-        **_record(properties),
-    }
-
-
-def _record(properties: dict[str, Any]) -> dict[str, Any]:
-    return {
-        "type": "object",
-        "properties": properties,
-        "required": list(properties),
-        "additionalProperties": False,
-    }
+    schema["properties"]["scene"] = {**scene, **schema["properties"]["scene"]}
+    return schema
 
 
 def write_cards(folder: Path, report: Report, stated: Sequence[Path]) -> tuple[Path, ...]:

@@ -5,10 +5,14 @@ from pathlib import Path
 from typing import Any
 
 from comparisons import models as registry
-from comparisons.claims.manual.problem import Curve, Problem
+from comparisons.claims.drawing import Line, Panel, draw
+from comparisons.claims.manual.answers import ANSWER, Curve
+from comparisons.claims.manual.problem import Problem
 from comparisons.show import palette
-from comparisons.show.plot import SOLID, figure, save
+from comparisons.show.plot import SOLID
 
+GUIDE = "exact order"
+EXACT = {"color": palette.GREY, "linewidth": 0.8, "linestyle": (0, (4, 3))}
 STYLES: dict[str, dict[str, Any]] = {
     "undeformed": {"color": "0.6", "linewidth": 1.0, "linestyle": "--"},
     "path of the pin": {"color": "0.6", "linewidth": 0.8, "linestyle": ":"},
@@ -18,31 +22,24 @@ STYLES: dict[str, dict[str, Any]] = {
     "tsm exact": {"color": palette.colour("TSM exact"), "linewidth": 2.2},
     registry.ROD.name: {"color": palette.colour("exact rod"), "linewidth": 1.2},
     registry.ELASTICA.name: {"color": palette.colour(registry.ELASTICA.name), "linewidth": 1.2},
-    "exact answer": {"color": palette.GREY, "linewidth": 0.8, "linestyle": (0, (4, 3))},
-    "exact order": {"color": palette.GREY, "linewidth": 0.8, "linestyle": (0, (4, 3))},
+    ANSWER: EXACT,
+    GUIDE: EXACT,
 }
 """Drawn in this order, each line narrower than those below it, so that those that agree are all seen."""
 
 
-def draw(problem: Problem, curves: Iterable[Curve], *paths: Path) -> None:
+def draw_problem(problem: Problem, curves: Iterable[Curve], *paths: Path) -> None:
     """Draw curves as the picture of a problem to `paths`, in the formats of their suffixes."""
     picture, length = problem.picture, problem.scene.units.split(",")[1].strip()
-    fig = figure(figsize=(6.4, 4.4))
-    axes = fig.subplots()
-    named: set[str] = set()
-    order = list(STYLES)
-    for curve in sorted(curves, key=lambda one: order.index(one.style)):
-        label = None if curve.style in named else curve.style
-        found = picture.logarithmic and curve.style != "exact order"
-        marks = {"marker": "o", "markersize": 10, "linewidth": 1.5} if found else {}
-        axes.plot(*curve.points.T, label=label, **{**STYLES[curve.style], **marks})
-        named.add(curve.style)
     x, y = picture.axes or (f"x [{length}]", f"y [{length}]")
-    axes.set(xlabel=x, ylabel=y, title=problem.title)
+    settings = {"xlabel": x, "ylabel": y}
     if picture.shape:
-        axes.set_aspect("equal", adjustable="datalim")
+        settings |= {"aspect": "equal", "adjustable": "datalim"}
     if picture.logarithmic:
-        axes.set(xscale="log", yscale="log")
-    axes.grid(visible=True, linewidth=0.3)
-    axes.legend(loc="best", fontsize="small")
-    save(fig, *paths)
+        settings |= {"xscale": "log", "yscale": "log"}
+    order, lines = list(STYLES), list[Line]()
+    for curve in sorted(curves, key=lambda one: order.index(one.style)):
+        found = picture.logarithmic and curve.style != GUIDE
+        marks = {"marker": "o", "markersize": 10, "linewidth": 1.5} if found else {}
+        lines.append((*curve.points.T, {**STYLES[curve.style], **marks, "label": curve.style}))
+    draw([Panel(title=problem.title, lines=lines, settings=settings)], *paths, tall=3.6, columns=1)

@@ -9,7 +9,6 @@ from typing import Any
 from comparisons.cases.settings import changed
 from comparisons.claims.claim import Allowance, Judgement, Quantity
 from comparisons.models.options import Options
-from comparisons.response import Array
 from comparisons.scene import InputError, Scene, built_in_scenes, load_scene, read_scene
 
 FOLDER = Path(__file__).parent / "problems"
@@ -25,38 +24,11 @@ Changes = Mapping[str, Any]
 """New values of a scene's settings by the names of a study file, ``contact.friction``."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Curve:
-    """A line of a picture; its style also is its label, and rows of nan part its points (n, 2) into pieces."""
-
-    style: str
-    points: Array
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Measured:
-    """A value for every quantity of a problem, and the curves that a model adds to the picture."""
-
-    values: tuple[float, ...]
-    curves: tuple[Curve, ...] = ()
-
-
 @dataclass(frozen=True, kw_only=True)
 class Picture:
-    """The picture of a problem.
+    """The picture of a problem: labels of the axes, by default places; load parameters whose axes are drawn; a model whose answer is the exact one.
 
-    Attributes
-    ----------
-    axes : sequence of str
-        Labels of the axes; by default places in the scene's unit of length.
-    shown : sequence of float
-        Load parameters whose deflected axes are drawn.
-    exact : str
-        Model whose answer is drawn as the exact one; empty for none.
-    guide : sequence of float
-        Order of a line for the eye and its first value, if any.
-    logarithmic, shape : bool
-        Whether both axes are logarithmic; whether both are lengths and have one scale.
+    `guide` is the order of a line for the eye and its first value; `shape` says that both axes are lengths.
     """
 
     axes: Sequence[str] = ()
@@ -69,19 +41,7 @@ class Picture:
 
 @dataclass(frozen=True, kw_only=True)
 class Reading:
-    """Where an answer has a quantity.
-
-    Attributes
-    ----------
-    words : str
-        What is read, as `comparisons.claims.manual.read.value` takes it.
-    at : float
-        At which load parameter.
-    times : float
-        What it is multiplied by.
-    changes : mapping
-        What is changed in the scene.
-    """
+    """Where an answer has a quantity: its words, as `answers.value` takes them, a load parameter, a factor, and changes of the scene."""
 
     words: str = ""
     at: float = 1.0
@@ -140,12 +100,12 @@ class Problem:
         What is compared, and where an answer has it.
     trials : tuple of Trial
         The models.
-    measure : str
-        Name of a function of `comparisons.claims.manual.measures` that finds the values; empty where they are read from the answer.
-    settings : mapping
-        For that function.
     picture : Picture
         What is drawn.
+    measure : str
+        Name of a function of `comparisons.claims.manual.measures` that finds the values; by default they are read from the answer.
+    settings : mapping
+        For that function.
     """
 
     name: str
@@ -159,17 +119,16 @@ class Problem:
     readings: tuple[Reading, ...]
     trials: tuple[Trial, ...]
     picture: Picture
-    measure: str = ""
+    measure: str = "readings"
     settings: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """A problem, a judgement for every model, and the name of the picture's file."""
+    """A problem with a judgement for every model."""
 
     problem: Problem
     judgements: tuple[Judgement, ...]
-    picture: str
 
     @property
     def passed(self) -> bool:
@@ -180,6 +139,11 @@ class Case:
     def seconds(self) -> float:
         """Wall time of all models."""
         return sum(item.seconds for item in self.judgements)
+
+    @property
+    def picture(self) -> str:
+        """Name of the picture's file."""
+        return f"{self.problem.name}.svg"
 
 
 def read_problem(path: Path) -> Problem:
@@ -218,27 +182,17 @@ def varied(scene: Scene, changes: Changes) -> Scene:
 def _trial(row: dict[str, Any], scene: Scene, path: Path) -> Trial:
     key, _, element = row["model"].partition(" ")
     elements, mesh = row.get("elements"), row.get("mesh")
-    setting = (
-        f"{elements} elements a beam"
-        if elements
-        else f"{mesh} elements"
-        if mesh
-        else "1 element a beam"
-        if element
-        else ""
-    )
-    if "scene" in row:
-        scene = _scene(row["scene"], {}, path)
+    beams = f"{elements} elements a beam" if elements else "1 element a beam" if element else ""
     return Trial(
         model=row["model"],
-        setting=row.get("setting", setting),
+        setting=row.get("setting", f"{mesh} elements" if mesh else beams),
         key=key,
         options=Options(
             element=element or None,
             elements=elements,
             mesh=tuple(map(int, mesh.split("x"))) if mesh else None,  # type: ignore[arg-type]
         ),
-        scene=varied(scene, row.get("changes", {})),
+        scene=varied(_scene(row["scene"], {}, path) if "scene" in row else scene, row.get("changes", {})),
         allowance=Allowance(error=row["allowed"], why=row["why"]),
     )
 

@@ -48,7 +48,7 @@ class Approach:
     @property
     def smallest(self) -> float:
         """Smallest ratio with equilibrium, the measured critical area; nan if there is none."""
-        return float(self.ratio.min()) if len(self.ratio) else np.nan
+        return float(min(self.ratio, default=np.nan))
 
 
 def approaches(structure: Structure, tolerance: float) -> tuple[Approach, ...]:
@@ -104,20 +104,18 @@ class _Contact:
 
 def _towards(contact: _Contact, history: list[State], node: float) -> list[State]:
     """Equilibria with the contact nearer and nearer to the node."""
-    states = list(history)
-    step = _LARGEST / 2
+    states, step = list(history), _LARGEST / 2
     while (ratio := (node - contact.arc(states[-1])) / contact.l0) > NEAREST:
         if len(states) > 1:
             step = min(_LARGEST, _SHRINK * ratio / max(_rate(contact, states), _SLOWEST))
-        for _ in range(_HALVINGS):
-            target = states[-1].load_parameter + step
+        targets = (states[-1].load_parameter + step / 2**halvings for halvings in range(_HALVINGS))
+        for target in targets:
             if target > 1.0:
                 return states
             found = contact.equilibrium(extrapolate(contact.model, states[-4:], target))
             if found is not None and contact.arc(found) < node:
                 states.append(found)
                 break
-            step /= 2
         else:
             return states
     return states

@@ -1,71 +1,155 @@
-"""Every claim of [P] with its verdict: abstract, sections 4.1 to 4.3, conclusions."""
+"""The claims of [P], which ``claims.toml`` states: abstract, sections 4.1 to 4.3, conclusions. Verdicts, and their table."""
 
+import tomllib
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field
+from enum import StrEnum
+from pathlib import Path
+from string import Formatter
+from typing import Any, NamedTuple
 
-from comparisons.claims.paper import claims_critical_area, claims_examples
+from comparisons.claims.paper.facts import FACTS, Facts, percent
 from comparisons.claims.paper.figure_study import Study
-from comparisons.claims.paper.verdict import STATED, Claim, Judgement, Verdict
 
 PAPER = (
     "Nizam, Obiya, Ijima, Tokubuchi, Ishibashi, *Effect of Shear Deformation on Convergability of Simple Contact Analysis "
     "with Large Displacement*"
 )
-_ORDER = ("abstract", "4.1", "4.2", "4.3", "conclusion 1", "conclusion 2", "conclusion 3")
-_MODULES = (claims_critical_area.__name__, claims_examples.__name__)
-
-CLAIMS: tuple[Claim, ...] = tuple(
-    sorted(
-        STATED,
-        key=lambda one: (
-            _ORDER.index(one.stated[0][0].split(",", maxsplit=1)[0]), _MODULES.index(one.judge.__module__)
-        ),
-    )
-)  # fmt: skip
-"""By the section that makes them first, in the order of the paper; each once, however often the paper makes it."""
 COARSE = ("fig7a", "fig7b", "fig8")
 """Figures whose coarse settings bear on their claims: fewer starting positions, tolerances, samples, load parameters or elements."""
 
 
-def judged(found: Mapping[str, Study], *, quick: bool) -> list[tuple[Claim, Judgement]]:
-    """Return the claims whose figure was studied, with their judgements; coarse settings decide only what does not depend on them."""
-    judgements = [(claim, claim.judge(found[claim.figure])) for claim in CLAIMS if claim.figure in found]
-    return [
-        (claim, _provisional(judgement) if quick and claim.figure in COARSE else judgement)
-        for claim, judgement in judgements
-    ]
+class Verdict(StrEnum):
+    """What becomes of a claim."""
+
+    REPRODUCED = "reproduced"
+    IN_DIRECTION = "reproduced in direction, not in size"
+    NOT_REPRODUCED = "not reproduced"
+    CANNOT_BE_TOLD = "cannot be told"
+    PROVISIONAL = "provisional"
+    """Coarse settings decide nothing: a full run may decide otherwise."""
 
 
-def _provisional(judgement: Judgement) -> Judgement:
-    why = f"With coarse settings: {judgement.verdict}. {judgement.why}"
-    return replace(judgement, verdict=Verdict.PROVISIONAL, why=why)
+Bounds = Mapping[str, tuple[float, float]]
+"""The least and the greatest value of numbers of `facts`; of a list, of all its values."""
 
 
-def counted(judgements: Sequence[tuple[Claim, Judgement]]) -> str:
+@dataclass(frozen=True, kw_only=True)
+class Claim:
+    """One claim, however often the paper makes it: every place in [P] where it stands, with what is said there.
+
+    It holds within the bounds `holds` together, or in each of the `readings` of what the paper does not say; in size within `in_size`, too.
+    The number behind the verdict and the reason have names of numbers of `facts` in braces.
+    """
+
+    name: str
+    figure: str
+    stated: tuple[tuple[str, str], ...]
+    number: str
+    why: str
+    holds: Bounds = field(default_factory=dict)
+    readings: Bounds = field(default_factory=dict)
+    in_size: Bounds = field(default_factory=dict)
+
+    def judged(self, facts: Facts) -> "Judgement":
+        """Return what becomes of the claim by the numbers of its figure."""
+        cases = _within(self.readings, facts) if self.readings else [all(_within(self.holds, facts))]
+        found = verdict(cases, in_size=all(_within(self.in_size, facts)))
+        number, why = (WORDS.vformat(text, (), facts) for text in (self.number, self.why))
+        return Judgement(self, found, number, why)
+
+
+class _Words(Formatter):
+    """Sentences with numbers: the format ``percent`` is `facts.percent`."""
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        return percent(value) if format_spec == "percent" else str(super().format_field(value, format_spec))
+
+
+WORDS = _Words()
+
+
+def _within(bounds: Bounds, facts: Facts) -> list[bool | None]:
+    """Whether each number lies within its bounds; None where there is none."""
+    found = []
+    for name, (least, most) in bounds.items():
+        value = WORDS.get_field(name, (), facts)[0]
+        values = value if isinstance(value, list) else [value]
+        found += [None if one is None else bool(least <= one <= most) for one in values]
+    return found
+
+
+class Judgement(NamedTuple):
+    """A claim with its verdict, the number behind it and the reason."""
+
+    claim: Claim
+    verdict: Verdict
+    number: str
+    why: str
+
+    @property
+    def cells(self) -> tuple[str, ...]:
+        """Every place in [P] where the claim stands, what it says at all of them, verdict, number and reason."""
+        places, texts = zip(*self.claim.stated, strict=True)
+        return "; ".join(places), " ".join(texts), self.verdict, self.number, self.why
+
+
+CLAIMS = tuple(
+    Claim(**{**row, "stated": tuple(map(tuple, row["stated"]))})
+    for row in tomllib.loads((Path(__file__).parent / "claims.toml").read_text(encoding="utf-8"))["claim"]
+)
+"""By the section that makes them first, in the order of the paper; each once, however often the paper makes it."""
+
+
+def verdict(readings: Sequence[bool | None], *, in_size: bool = True) -> Verdict:
+    """Return whether a claim holds in every reading of what the paper does not say.
+
+    A reading is None where this program ends before it does. The claim is reproduced where it holds in all readings, in
+    direction only unless `in_size`; not reproduced where it fails in all of them; otherwise it cannot be told.
+    """
+    if not readings:
+        raise ValueError("readings = (): a claim without a reading cannot be judged")
+    if all(readings):
+        return Verdict.REPRODUCED if in_size else Verdict.IN_DIRECTION
+    return Verdict.NOT_REPRODUCED if all(one is False for one in readings) else Verdict.CANNOT_BE_TOLD
+
+
+def judged(found: Mapping[str, Study], *, quick: bool) -> list[Judgement]:
+    """Return the judgements on the claims whose figure was studied; coarse settings decide only what does not depend on them."""
+    facts = {figure: FACTS[figure](study) for figure, study in found.items()}
+    judgements = [claim.judged(facts[claim.figure]) for claim in CLAIMS if claim.figure in found]
+    return [_provisional(one) if quick and one.claim.figure in COARSE else one for one in judgements]
+
+
+def _provisional(one: Judgement) -> Judgement:
+    return one._replace(verdict=Verdict.PROVISIONAL, why=f"With coarse settings: {one.verdict}. {one.why}")
+
+
+def counted(judgements: Sequence[Judgement]) -> str:
     """Return how many claims are judged, and how many have each verdict."""
-    counts = Counter(judgement.verdict for _, judgement in judgements)
-    summary = "; ".join(f"{counts[verdict]} {verdict}" for verdict in Verdict if counts[verdict])
+    counts = Counter(one.verdict for one in judgements)
+    summary = "; ".join(f"{counts[name]} {name}" for name in Verdict if counts[name])
     statements = sum(len(claim.stated) for claim in CLAIMS)
     return f"{len(judgements)} of {len(CLAIMS)} claims judged ({statements} statements){': ' if summary else ''}{summary}"
 
 
-def claims_text(judgements: Sequence[tuple[Claim, Judgement]], *, quick: bool) -> str:
+def claims_text(judgements: Sequence[Judgement], *, quick: bool) -> str:
     """Return the verdicts as Markdown."""
-    lines = [
-        "# The claims of the paper and what became of them",
-        "",
-        f"{PAPER}: {counted(judgements)}.",
-        "",
-        f"Every number below is computed by the run that wrote this file{', with coarse settings (`--quick`)' if quick else ''}.",
-        "Timoshenko, Euler-Bernoulli: the paper's elements with their misprints corrected. Mixed: the element of this project",
-        "whose contact force is an unknown. EI/L^2 is the unit of the unbalanced force.",
-        "",
-        "| | where | claim | verdict | number | why |",
-        "|---|---|---|---|---|---|",
-    ]
-    for number, (claim, one) in enumerate(judgements, 1):
-        measured = f"{one.number} (`{claim.figure}`)"
-        cells = (str(number), claim.source, claim.text, f"**{one.verdict}**", measured, one.why)
-        lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
-    return "\n".join(lines) + "\n"
+    head = f"""# The claims of the paper and what became of them
+
+{PAPER}: {counted(judgements)}.
+
+Every number below is computed by the run that wrote this file{", with coarse settings (`--quick`)" if quick else ""}.
+Timoshenko, Euler-Bernoulli: the paper's elements with their misprints corrected. Mixed: the element of this project
+whose contact force is an unknown. EI/L^2 is the unit of the unbalanced force.
+
+| | where | claim | verdict | number | why |
+|---|---|---|---|---|---|
+"""
+    rows = []
+    for number, one in enumerate(judgements, 1):
+        place, text, found, measured, why = one.cells
+        cells = (str(number), place, text, f"**{found}**", f"{measured} (`{one.claim.figure}`)", why)
+        rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |\n")
+    return head + "".join(rows)

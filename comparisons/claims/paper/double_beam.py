@@ -3,14 +3,13 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from comparisons.cases.settings import changed
-from comparisons.claims.paper.figure_study import Study, legend, shape_panels
+from comparisons.claims.drawing import SHAPE, Line, Panel, draw
+from comparisons.claims.paper.figure_study import Study
 from comparisons.claims.paper.formulations import CANTILEVER, SIMPLE, TIMOSHENKO
 from comparisons.claims.problems.double_beam import EVENTS, HAND_OVER, LOWER, TIP, UPPER
 from comparisons.models import ROD, TSM, solve
@@ -19,8 +18,7 @@ from comparisons.output import Report, Row
 from comparisons.response import Array, Response
 from comparisons.scene import Scene, load_scene
 from comparisons.show import palette
-from comparisons.show.pages import Section, Track, motion_section
-from comparisons.show.plot import WIDTH, figure, save
+from comparisons.show.pages import motion_section, tracks
 
 FINER = 10
 """Load parameters of the picture per load parameter of the scene."""
@@ -34,10 +32,8 @@ STYLES: dict[str, dict[str, Any]] = {
     TIP: {"color": palette.PURPLE, "linestyle": (0, (6, 1))},
     LOWER: {"color": palette.GREEN, "linestyle": (0, (2, 1))},
 }
-ROOM = 1.7
-"""Height of the forces' diagram over the largest force; the list of the events stands above."""
 ARROW = 0.16
-"""Length of an arrow per force [m/N]."""
+"""Length of the line of a force per force [m/N]."""
 Columns = Mapping[str, Array]
 """The depth of the pin [m]; by pair, forces [N] and arc positions [m] of the beams and the exact rods, nan where the pair is open."""
 
@@ -60,13 +56,9 @@ def double_beam(*, quick: bool, report: Report) -> Study:
             columns[f"{pair} {prefix}arc"] = contact.arc_position
     events = [
         {
-            "kind": event.kind,
+            **{name: getattr(event, name) for name in ("kind", "pair", "element", "force", "released")},
             "depth": travel * event.load_parameter,
-            "pair": event.pair,
-            "element": event.element,
             "arc": event.arc_position,
-            "force": event.force,
-            "released": event.released,
         }
         for event in response.events or ()
     ]
@@ -74,7 +66,13 @@ def double_beam(*, quick: bool, report: Report) -> Study:
     tried = (TIMOSHENKO,) if quick else (TIMOSHENKO, SIMPLE, CANTILEVER)
     rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
     stages = list(_stages(columns["depth"]))
-    pictures = {"fig9": partial(plot_stages, finer, response, stages)} if stages else {}
+    title = "Mixed elements, 10 + 10;\nthe forces act on the touched beams, grey are the beams at rest"
+    panels = [_stage(finer, response, stage) for stage in stages]
+    shapes = {"fig9": partial(draw, panels, tall=2.8, title=title)} if stages else {}
+    shown = {BEAMS: response, RODS: exact}
+    moving = motion_section(
+        "Double beam: shapes and histories", finer, {BEAMS: response}, tracks(shown, RODS, finer), focus=BEAMS
+    )
     return Study(
         tables={"fig9": rows},
         numbers={
@@ -91,9 +89,9 @@ def double_beam(*, quick: bool, report: Report) -> Study:
                 if not one.completed
             ],
         },
-        pictures={**pictures, "fig9-forces": partial(plot_histories, finer, columns, events)},
+        pictures={**shapes, "fig9-forces": partial(draw, _histories(columns, events), tall=3.2, columns=1)},
         scenes=(finer,),
-        moving=(_moving(finer, response, columns),),
+        moving=(moving,),
     )
 
 
@@ -101,13 +99,12 @@ def _checks(columns: Columns) -> Iterator[Row]:
     """Yield the largest errors against the exact rods by stage: of the force over its largest, and of the arc position [m]."""
     depth = columns["depth"]
     before, after = depth < EVENTS["touch"], depth > EVENTS["hand-over"]
-    parts: tuple[tuple[str, str, NDArray[np.bool_]], ...] = (
+    for stage, pair, part in (
         ("one rod under the pin", UPPER, before),
         ("coupled", UPPER, ~before & ~after),
         ("coupled", TIP, ~before & ~after),
         ("the other rod under the pin", LOWER, after),
-    )
-    for stage, pair, part in parts:
+    ):
         exact = columns[f"{pair} exact_force"]
         force, arc = (
             np.abs(columns[f"{pair} {name}"] - columns[f"{pair} exact_{name}"]) for name in ("force", "arc")
@@ -155,69 +152,48 @@ def _attempt(scene: Scene, element: str, place: float) -> Row:
     }
 
 
-def _moving(scene: Scene, response: Response, columns: Columns) -> Section:
-    histories = [
-        Track(
-            title=f"{title}, {name}", unit=unit, values={BEAMS: beams, RODS: columns[f"{pair} exact_{key}"]}
-        )
-        for pair, name in NAMES.items()
-        for title, unit, key in (("force", "N", "force"), ("arc position", "m", "arc"))
-        if np.isfinite(beams := columns[f"{pair} {key}"]).any()
-    ]
-    title = "Double beam: shapes and histories"
-    return motion_section(title, scene, {BEAMS: response}, histories, focus=BEAMS)
-
-
-def plot_stages(scene: Scene, response: Response, stages: list[Row], *paths: Path) -> None:
-    """Draw both beams, the pin and the contact forces at the six stages."""
-    fig, grid = shape_panels(len(stages), 2.8)
-    for axes, stage in zip(grid.flat, stages, strict=True):
-        _draw_stage(axes, scene, response, stage["index"])
-        words = f"({stage['key']}) {stage['title']},\ndepth {stage['depth']:.3f} m"
-        axes.set_title(words, fontsize="small")
-        axes.set(xlim=(-0.05, 1.08), ylim=(-0.8, 0.2))
-    legend(fig, grid, 3)
-    fig.suptitle(
-        "Mixed elements, 10 + 10;\narrows are the forces on the touched beams, grey the beams at rest",
-        fontsize="medium",
-    )
-    save(fig, *paths)
-
-
-def _draw_stage(axes: Any, scene: Scene, response: Response, k: int) -> None:
+def _stage(scene: Scene, response: Response, stage: Row) -> Panel:
+    """Both beams, the pin and the contact forces at a stage."""
+    lines: list[Line] = []
+    notes, k = [], stage["index"]
     for beam in scene.beams:
-        rest, color = np.array([beam.start, beam.end]), COLOURS[beam.name]
+        rest, style = (
+            np.array([beam.start, beam.end]),
+            {"color": COLOURS[beam.name], "marker": "o", "markersize": 3},
+        )
         line = rest if k < 0 else response.axis_line(beam.name, k)[1]
-        nodes = np.linspace(0, len(line) - 1, beam.divisions + 1).round().astype(int)
-        axes.plot(*rest.T, color="0.75", linewidth=0.8)
-        axes.plot(*line.T, color=color, linewidth=1.8, label=f"{beam.name} beam")
-        if k >= 0:
-            axes.plot(*line[nodes].T, color=color, marker="o", markersize=3, linestyle="none")
+        nodes = np.linspace(0, len(line) - 1, beam.divisions + 1).round().astype(int).tolist()
+        lines += [
+            (*rest.T, {"color": "0.75", "linewidth": 0.8}),
+            (*line.T, {**style, "markevery": nodes, "linewidth": 1.8, "label": f"{beam.name} beam"}),
+        ]
     pin = np.array(scene.pins[0].position(0.0 if k < 0 else float(response.load_parameter[k])))
-    for row, pair in enumerate(NAMES if k >= 0 else ()):
-        point = response.tips["upper"][k] if pair == TIP else pin
-        _draw_force(axes, response, pair, k, point, -0.62 - 0.07 * row)
-    mark = {"marker": "o", "markersize": 6, "markerfacecolor": "white", "linestyle": "none", "zorder": 6}
-    axes.plot(*pin, color="black", label="pin", **mark)
+    for row, (pair, name) in enumerate(NAMES.items() if k >= 0 else ()):
+        contact, point = response.contacts[pair], response.tips["upper"][k] if pair == TIP else pin
+        if np.isfinite(contact.arc_position[k]) and contact.vector is not None:
+            ends = np.array([point - ARROW * contact.vector[k], point])
+            lines.append(
+                (*ends.T, {"color": STYLES[pair]["color"], "linewidth": 1.8, "label": f"force of {name}"})
+            )
+            notes.append((f"{name}: {contact.force[k]:.3f} N", (0.0, -0.62 - 0.07 * row)))
+    mark = {"color": "black", "marker": "o", "markerfacecolor": "white", "linestyle": "none", "label": "pin"}
+    lines.append((*pin, mark))
+    title = f"({stage['key']}) {stage['title']},\ndepth {stage['depth']:.3f} m"
+    settings = {**SHAPE, "xlim": (-0.05, 1.08), "ylim": (-0.8, 0.2)}
+    return Panel(title=title, lines=lines, settings=settings, notes=notes)
 
 
-def _draw_force(axes: Any, response: Response, pair: str, k: int, point: Array, height: float) -> None:
-    contact, color = response.contacts[pair], STYLES[pair]["color"]
-    if not np.isfinite(contact.arc_position[k]) or contact.vector is None:
-        return
-    arrow = {"arrowstyle": "-|>", "color": color, "linewidth": 1.8, "shrinkA": 0.0, "shrinkB": 0.0}
-    axes.annotate("", point, point - ARROW * contact.vector[k], arrowprops=arrow)
-    axes.plot([], [], color=color, linewidth=1.8, label=f"force of {NAMES[pair]}")
-    axes.annotate(f"{NAMES[pair]}: {contact.force[k]:.3f} N", (0.0, height), color=color, fontsize="small")
-
-
-def plot_histories(scene: Scene, columns: Columns, events: list[Row], *paths: Path) -> None:
-    """Draw forces and places of all contacts against the depth, with the exact rods and the events."""
-    fig = figure(figsize=(WIDTH, 8.0))
-    forces, places = fig.subplots(2, 1, sharex=True, height_ratios=(1.5, 1.0))
-    depth = columns["depth"]
-    for axes, quantity in ((forces, "force"), (places, "arc")):
+def _histories(columns: Columns, events: list[Row]) -> list[Panel]:
+    """Forces and places of all contacts against the depth, with the exact rods and the events."""
+    marks: dict[float, list[str]] = {}
+    for event in (one for one in events if one["depth"] > 0.0):
+        near = next((depth for depth in marks if abs(depth - event["depth"]) < 2e-3), event["depth"])
+        marks.setdefault(near, []).append(f"{event['kind']}, {NAMES[event['pair']]}")
+    panels = []
+    for quantity, label in (("force", "contact force [N]"), ("arc", "arc position [m]")):
+        lines: list[Line] = []
         for pair, name in NAMES.items():
+<<<<<<< HEAD
             exact = "exact rods" if pair == UPPER else "_"
             axes.plot(depth, columns[f"{pair} exact_{quantity}"], color="0.7", linewidth=5.0, label=exact)
             axes.plot(depth, columns[f"{pair} {quantity}"], **STYLES[pair], linewidth=1.6, label=name)
@@ -252,3 +228,18 @@ def _mark_events(events: list[Row], forces: Any, places: Any) -> None:
         "\n".join(lines), (0.012, 0.975), xycoords="axes fraction", va="top", fontsize="small",
         bbox={"facecolor": "white", "edgecolor": "0.8"},
     )  # fmt: skip
+=======
+            exact = {"color": "0.7", "linewidth": 5.0, "label": RODS}
+            lines.append((columns["depth"], columns[f"{pair} exact_{quantity}"], exact))
+            lines.append((columns["depth"], columns[f"{pair} {quantity}"], {**STYLES[pair], "label": name}))
+        high = max(float(np.nanmax(line[1])) for line in lines)
+        for number, (depth, texts) in enumerate(marks.items(), 1):
+            words = f"{number}: {depth:.4f} m, {'; '.join(texts)}"
+            lines.append(([depth, depth], [0.0, high], {"color": "0.4", "linestyle": ":", "label": words}))
+        notes = [(f"{number}", (depth, high)) for number, depth in enumerate(marks, 1)]
+        settings = {"xlabel": "depth of the pin [m]", "ylabel": label}
+        panels.append(
+            Panel(title="Double beam, 10 + 10 mixed elements", lines=lines, settings=settings, notes=notes)
+        )
+    return panels
+>>>>>>> r8

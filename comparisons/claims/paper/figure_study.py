@@ -1,4 +1,4 @@
-"""What a figure of [P] leaves: rows and numbers, by which its claims are judged, and pictures; one way to write and to lay them out."""
+"""What a figure of [P] leaves: rows and numbers, by which its claims are judged, and pictures."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -11,10 +11,6 @@ from comparisons.output import Row, write_numbers, write_rows
 from comparisons.response import Array
 from comparisons.scene import Scene
 from comparisons.show.pages import Section
-from comparisons.show.plot import WIDTH, figure
-
-COLUMNS = 2
-"""Panels beside each other."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,9 +30,9 @@ class Study:
     def write(self, name: str, folder: Path) -> list[Path]:
         """Draw the pictures and write the numbers, those of the JSON file under a name; return the files."""
         files = []
-        for stem, draw in self.pictures.items():
+        for stem, draw_to in self.pictures.items():
             paths = [folder / f"{stem}.png", folder / f"{stem}.svg"]
-            draw(*paths)
+            draw_to(*paths)
             files += paths
         files += [write_rows(folder / f"{stem}.csv", rows) for stem, rows in self.tables.items()]
         return [*files, write_numbers(folder / f"{name}.json", self.numbers)]
@@ -45,37 +41,3 @@ class Study:
 def column(rows: list[Row], name: str) -> Array:
     """Return a column of a table."""
     return np.array([row[name] for row in rows])
-
-
-def panels(count: int, tall: float, rest: float = 0.0, **options: Any) -> tuple[Any, Any]:
-    """Return a figure and its grid of `count` panels, each `tall` inches high, with `rest` inches for all else."""
-    rows = -(-count // COLUMNS)
-    fig = figure(figsize=(WIDTH, rest + tall * rows))
-    grid = fig.subplots(rows, min(count, COLUMNS), sharey=True, squeeze=False, **options)
-    for axes in grid.flat[:count]:
-        axes.grid(visible=True, linewidth=0.3)
-    for axes in grid.flat[count:]:
-        axes.set_axis_off()
-    return fig, grid
-
-
-def shape_panels(count: int, tall: float, rest: float = 0.0) -> tuple[Any, Any]:
-    """Return `panels` for the shapes of beams."""
-    fig, grid = panels(count, tall, rest, sharex=True)
-    for axes in grid.flat[:count]:
-        axes.set_aspect("equal", adjustable="box")
-    for axes in grid[-1]:
-        axes.set_xlabel("x [m]")
-    for axes in grid[:, 0]:
-        axes.set_ylabel("y [m]")
-    return fig, grid
-
-
-def legend(fig: Any, grid: Any, columns: int) -> None:
-    """Name the lines of all panels below them, each once."""
-    found: dict[str, Any] = {}
-    for axes in grid.flat:
-        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
-            found.setdefault(label, handle)
-    place = {"loc": "outside lower center", "fontsize": "small", "frameon": False}
-    fig.legend(found.values(), found.keys(), ncols=columns, **place)

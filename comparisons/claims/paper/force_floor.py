@@ -41,6 +41,22 @@ class _Element(NamedTuple):
     start: Array
     contact_force: float
 
+    def contact(self, state: _State) -> tuple[Array, Array]:
+        """Gradient of the contact's energy, and its tangent; of the turned frame the stiffnesses of its deformations."""
+        lever = self.start + state.x[:2] - state.node
+        if self.kind is None:
+            return turned_frame.contact(self.p, state.x, lever)
+        return self.kind.contact.response(self.p, state.x, lever, state.xi, state.force, _SIDE, _OFFSET)
+
+    def forces(self, state: _State) -> Array:
+        """Forces on element and node, and the contact's equation of direction where it has one."""
+        gradient, _ = self.contact(state)
+        if self.kind is None or not self.kind.contact_unknowns:
+            return gradient
+        column = Properties(*(np.array([value]) for value in self.p))
+        own, _ = beam.response(self.kind.coefficients(column), state.x[:, None])
+        return np.concatenate([gradient[:6] + own[:, 0], gradient[6:8], gradient[10:]])
+
 
 def force_floor(
     element: str,
@@ -80,17 +96,16 @@ def force_floor(
         If `element` or `end` is not known, `ratio` does not lie in [0, 1], another number is not positive, and where the
         platform has no floating-point type beyond double precision.
     """
-    if element not in (known := (*CLOSED_FORM, turned_frame.NAME)):
-        raise ValueError(f"element = {element!r}: must be one of {', '.join(known)}")
-    if end not in {"start", "end"}:
-        raise ValueError(f'end = {end!r}: must be "start" or "end"')
-    if not 0 <= ratio <= 1:
-        raise ValueError(f"ratio = {ratio!r}: must lie in [0, 1]")
-    for name, value in (("Psi", Psi), ("elements", elements), ("samples", samples)):
-        if not value > 0:
-            raise ValueError(f"{name} = {value!r}: must be positive")
-    if np.finfo(_Extended).eps > 1e-3 * np.finfo(float).eps:
-        raise ValueError("numpy.longdouble: this platform's is no wider than double precision")
+    known = (*CLOSED_FORM, turned_frame.NAME)
+    for name, value, valid, rule in (
+        ("element", element, element in known, f"one of {', '.join(known)}"),
+        ("end", end, end in {"start", "end"}, '"start" or "end"'),
+        ("ratio", ratio, 0 <= ratio <= 1, "in [0, 1]"),
+        *((name, value, value > 0, "positive") for name, value in (("Psi", Psi), ("elements", elements), ("samples", samples))),
+        ("numpy.longdouble", _Extended, np.finfo(_Extended).eps < 1e-3 * np.finfo(float).eps, "wider than double precision"),
+    ):  # fmt: skip
+        if not valid:
+            raise ValueError(f"{name} = {value!r}: must be {rule}")
     rng = np.random.default_rng(0)
     xi = _Extended(ratio) if end == "start" else 1 - _Extended(ratio)
     kind = CLOSED_FORM.get(element)
@@ -104,12 +119,9 @@ def _sample(kind: ClosedForm | None, xi: Any, Psi: float, elements: int, rng: np
     p = p if kind is None else kind.constants(p)
     element = _Element(kind, p, elements * rng.uniform(-1, 1, 2), 1 / elements**2)
     x = _random_displacements(p, rng).astype(_Extended)
-    if kind is None:
-        state = _across_the_section(element, x, xi)
-    else:
-        state = (_carried if kind.contact_unknowns else _deflected)(element, x, xi)
+    state = (_carried if kind is not None and kind.contact_unknowns else _deflected)(element, x, xi)
     rounded = _State(*(np.asarray(part).astype(float) for part in state))
-    error = np.abs(_forces(element, rounded) - _forces(element, state)) / element.contact_force
+    error = np.abs(element.forces(rounded) - element.forces(state)) / element.contact_force
     error[[2, 5]] /= elements
     return float(error.max())
 
@@ -125,56 +137,29 @@ def _random_displacements(p: Properties, rng: np.random.Generator) -> Array:
 
 
 def _deflected(element: _Element, x: Array, xi: Any) -> _State:
-    """State whose contact force follows from the deflection: the node moves across the chord until it is as stated."""
-    p = element.p
-    d = np.array([p.dx0, p.dy0]) + (x[3:5] - x[:2])
-    n = np.array([-d[1], d[0]]) / np.sqrt(d @ d)
+    """State whose contact force follows from the deflection: the node moves across the chord, or the section at end i, until it is as stated."""
+    p, turned = element.p, element.kind is None
+    d = turned_frame.frame(p, x)[0] if turned else np.array([p.dx0, p.dy0]) + (x[3:5] - x[:2])
+    n = np.array([-d[1], d[0]]) / (1.0 if turned else np.sqrt(d @ d))
     node = element.start + x[:2] + xi * d
-    for _ in range(3):
-        force, tangent = _contact(element, _State(x, node, xi, np.zeros(2)))
-        node = node + n * (element.contact_force - force[6:8] @ n) / (n @ tangent[6:8, 6:8] @ n)
-    return _State(x, node, xi, np.zeros(2))
-
-
-def _across_the_section(element: _Element, x: Array, xi: Any) -> _State:
-    """State of the turned frame: the node moves across the section at end i, along which a is measured, until the force is as stated."""
-    p = element.p
-    t, n = turned_frame.frame(p, x)
-    node = element.start + x[:2] + xi * p.l0 * t
-    force, K = turned_frame.contact(p, x, element.start + x[:2] - node)
-    node = node + n * (element.contact_force - force[6:8] @ n) / K[1, 1]
+    for _ in range(1 if turned else 3):
+        force, tangent = element.contact(_State(x, node, xi, np.zeros(2)))
+        stiffness = tangent[1, 1] if turned else n @ tangent[6:8, 6:8] @ n
+        node = node + n * (element.contact_force - force[6:8] @ n) / stiffness
     return _State(x, node, xi, np.zeros(2))
 
 
 def _carried(element: _Element, x: Array, xi: Any) -> _State:
     """State whose contact force is an unknown: the force in the direction it must have, the node where it must be."""
     unloaded = _State(x, element.start + x[:2], xi, np.zeros(2, dtype=_Extended))
-    _, tangent = _contact(element, unloaded)
+    _, tangent = element.contact(unloaded)
     along = -tangent[10, 8:10] * element.p.l0
     speed = np.sqrt(along @ along)
     t = along / speed
     n = np.array([-t[1], t[0]])
     # F . p' + C' F.F/2 = 0, C' from what is left of it at F = n
-    gradient, _ = _contact(element, unloaded._replace(force=n))
+    gradient, _ = element.contact(unloaded._replace(force=n))
     sine = gradient[10] * element.p.l0 * element.contact_force / speed
     force = element.contact_force * (n * np.sqrt(1 - sine * sine) + sine * t)
-    gradient, _ = _contact(element, unloaded._replace(force=force))
+    gradient, _ = element.contact(unloaded._replace(force=force))
     return _State(x, unloaded.node - gradient[8:10], xi, force)
-
-
-def _contact(element: _Element, state: _State) -> tuple[Array, Array]:
-    assert element.kind is not None
-    lever = element.start + state.x[:2] - state.node
-    return element.kind.contact.response(element.p, state.x, lever, state.xi, state.force, _SIDE, _OFFSET)
-
-
-def _forces(element: _Element, state: _State) -> Array:
-    """Forces on element and node, and the contact's equation of direction where it has one."""
-    if element.kind is None:
-        return turned_frame.contact(element.p, state.x, element.start + state.x[:2] - state.node)[0]
-    gradient, _ = _contact(element, state)
-    if not element.kind.contact_unknowns:
-        return gradient
-    column = Properties(*(np.array([value]) for value in element.p))
-    own, _ = beam.response(element.kind.coefficients(column), state.x[:, None])
-    return np.concatenate([gradient[:6] + own[:, 0], gradient[6:8], gradient[10:]])

@@ -4,13 +4,12 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from comparisons.claims.paper.cantilever_shapes import cantilever_shapes
-from comparisons.claims.paper.claims import claims_text, counted, judged
+from comparisons.claims.paper.claims import Judgement, claims_text, counted, judged
 from comparisons.claims.paper.critical_area import critical_areas
 from comparisons.claims.paper.double_beam import double_beam
 from comparisons.claims.paper.figure_study import Study
 from comparisons.claims.paper.figures import FIGURES
 from comparisons.claims.paper.ks_shapes import ks_shapes
-from comparisons.claims.paper.verdict import Claim, Judgement
 from comparisons.files import writable_folder, write_text
 from comparisons.output import Report
 from comparisons.show.pages import Section, picture, provenance, table, write_page
@@ -55,11 +54,11 @@ def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[
     return [page, *files], stopped
 
 
-def _claims(judgements: Sequence[tuple[Claim, Judgement]]) -> Section:
-    rows = [
-        (number, claim.source, claim.text, one.verdict, f"{one.number} ({claim.figure})", one.why)
-        for number, (claim, one) in enumerate(judgements, 1)
-    ]
+def _claims(judgements: Sequence[Judgement]) -> Section:
+    rows = []
+    for number, one in enumerate(judgements, 1):
+        place, text, verdict, measured, why = one.cells
+        rows.append((number, place, text, verdict, f"{measured} ({one.claim.figure})", why))
     caption = f"{counted(judgements)}. Every number is computed by the run that wrote this page."
     header = ("", "where", "claim", "verdict", "number", "why")
     return Section(title="Claims", html=table(caption, header, rows, prose=True))

@@ -87,13 +87,9 @@ def press(problem: "SolidProblem", steps: int, penalty: float) -> Answer:
 def _tip_row(strip: "Strip", load: float) -> Row:
     force = load * strip.bending_stiffness / strip.length**2
     (u, _), other = dead_load(strip, force), tip_load(strip, force).tip[-1]
-    return _row(
-        f"tip load {load:g} EI/L^2",
-        strip,
-        fem_reference=float(np.hypot(*u)),
-        calculix=float(np.hypot(*other)),
-        difference=float(np.hypot(*(other - u)) / np.hypot(*u)),
-    )
+    own, apart = float(np.hypot(*u)), float(np.hypot(*(other - u)))
+    found = {"fem_reference": own, "calculix": float(np.hypot(*other)), "difference": apart / own}
+    return _row(f"tip load {load:g} EI/L^2", strip, **found)
 
 
 def _pin_rows(problem: "SolidProblem", steps: int, penalty: float) -> Iterator[Row]:
@@ -105,22 +101,15 @@ def _pin_rows(problem: "SolidProblem", steps: int, penalty: float) -> Iterator[R
     calculix = np.hypot(*answer.force.T)
     solid = contact_forces(problem, steps, max(calculix.size, round(steps * SHOWN[-1])))
     differences = calculix / solid[: calculix.size] - 1.0
+    ended = {"reached": float(answer.load_parameter[-1]), "largest": float(np.abs(differences).max())}
     for t in SHOWN:
         k = round(steps * t) - 1
-        there = k < calculix.size
-        yield _row(
-            "pin on the face",
-            problem.strips[0],
-            penalty=penalty,
-            step=1 / steps,
-            load_parameter=t,
-            reached=float(answer.load_parameter[-1]),
-            fem_reference=float(solid[k]),
-            calculix=float(calculix[k]) if there else None,
-            difference=float(differences[k]) if there else None,
-            largest=float(np.abs(differences).max()),
-            message="" if there and t != SHOWN[-1] else answer.stopped,
-        )
+        found: Row = {"fem_reference": float(solid[k]), "message": answer.stopped}
+        if k < calculix.size:
+            found |= {"calculix": float(calculix[k]), "difference": float(differences[k])}
+            found["message"] = answer.stopped if t == SHOWN[-1] else ""
+        path = {"penalty": penalty, "step": 1 / steps, "load_parameter": t}
+        yield _row("pin on the face", problem.strips[0], **path, **ended, **found)
 
 
 def _row(case: str, strip: "Strip", **values: float | str | None) -> Row:

@@ -1,7 +1,7 @@
 """How far the solid can be trusted: one question each, as rows of numbers."""
 
 from collections.abc import Callable, Iterator, Mapping
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -37,20 +37,18 @@ def locking(report: Report) -> Iterator[Row]:
 
     The rod of a strip in plane strain has ``E / (1 - nu^2)`` in place of E. All elements have the same nodes.
     """
-    for slenderness in (0.02, 0.002):
-        for nu in (0.3, 0.49, 0.4999):
-            scene = _slender(slenderness, nu)
-            E = scene.beams[0].youngs_modulus
-            stiff = _beam(
-                scene, youngs_modulus=E / (1 - nu**2), poissons_ratio=None, shear_modulus=E / (2 * (1 + nu))
-            )
-            exact = solve(stiff, ROD.name).contacts[scene.contacts[0].pair].force[STEPS // 2 - 1]
-            row: Row = {"h_over_L": slenderness, "poissons_ratio": nu}
-            for element, mesh in (("Q1", (100, 4)), ("Q2-full", (50, 2)), ("Q2", (50, 2))):
-                strip = _beam(scene, solid_element=element, mesh=mesh, material="biot-linear")
-                row[element] = float(_contact(strip, STEPS // 2, plane="strain").force[-1] / exact - 1.0)
-            report(f"h/L = {slenderness:g}, nu = {nu:g}")
-            yield row
+    for slenderness, nu in product((0.02, 0.002), (0.3, 0.49, 0.4999)):
+        scene = _slender(slenderness, nu)
+        E = scene.beams[0].youngs_modulus
+        moduli = {"youngs_modulus": E / (1 - nu**2), "shear_modulus": E / (2 * (1 + nu))}
+        (rod,) = solve(_beam(scene, poissons_ratio=None, **moduli), ROD.name).contacts.values()
+        row: Row = {"h_over_L": slenderness, "poissons_ratio": nu}
+        for element, mesh in (("Q1", (100, 4)), ("Q2-full", (50, 2)), ("Q2", (50, 2))):
+            strip = _beam(scene, solid_element=element, mesh=mesh, material="biot-linear")
+            force = _contact(strip, STEPS // 2, plane="strain").force[-1]
+            row[element] = float(force / rod.force[STEPS // 2 - 1] - 1.0)
+        report(f"h/L = {slenderness:g}, nu = {nu:g}")
+        yield row
 
 
 def thin_beams(report: Report) -> Iterator[Row]:
@@ -58,16 +56,16 @@ def thin_beams(report: Report) -> Iterator[Row]:
     last: Row = {}
     for slenderness in (0.02, 0.01, 0.005):
         scene = _slender(slenderness, 0.3)
-        rod = solve(scene, ROD.name).contacts[scene.contacts[0].pair]
-        solid = _contact(_beam(changed(scene, ROD_LAW), mesh=(100, 2)))
-        row = {
-            "contact_force": float(np.abs(solid.force / rod.force - 1.0)[LATE].max()),
-            "arc_position": float(np.abs(solid.arc_position / rod.arc_position - 1.0)[LATE].max()),
+        (rod,), solid = (
+            solve(scene, ROD.name).contacts.values(),
+            _contact(_beam(changed(scene, ROD_LAW), mesh=(100, 2))),
+        )
+        pairs = {
+            "contact_force": (solid.force, rod.force),
+            "arc_position": (solid.arc_position, rod.arc_position),
         }
-        orders = {
-            f"{name}_order": float(np.log2(last[name] / value)) if last else None
-            for name, value in row.items()
-        }
+        row = {name: float(np.abs(own / exact - 1.0)[LATE].max()) for name, (own, exact) in pairs.items()}
+        orders = {f"{name}_order": float(np.log2(last[name] / row[name])) if last else None for name in row}
         report(f"h/L = {slenderness:g}")
         last = row
         yield {"h_over_L": slenderness, **row, **orders}
@@ -140,7 +138,5 @@ def _beam(scene: Scene, **changes: object) -> Scene:
 
 def _contact(scene: Scene, count: int = STEPS, **strip: Any) -> "ContactHistory":
     """Return the contact of the solid over the first load parameters; `strip` changes what a scene does not state."""
-    contact: ContactHistory = next(
-        iter(solved(to_solid(scene), scene.times[:count], **strip).contacts.values())
-    )
+    (contact,) = solved(to_solid(scene), scene.times[:count], **strip).contacts.values()
     return contact

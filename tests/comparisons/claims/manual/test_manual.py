@@ -3,63 +3,27 @@
 import json
 import math
 import re
-from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 from xml.etree import ElementTree as ET
 
+import numpy as np
 import pytest
 from jsonschema import Draft202012Validator
 
 from comparisons.claims.claim import StoppedError
 from comparisons.claims.manual import judged, problems, read_problem
 
-# not public: measures that no model has, changes of a scene, and the styles of pictures
-from comparisons.claims.manual.measures import MEASURES, mirrored, moved, reversed_
+# not public: measures that no model has, and the styles of pictures
+from comparisons.claims.manual.measures import MEASURES
 from comparisons.claims.manual.pictures import STYLES
 from comparisons.cli import main
-from comparisons.scene import load_scene, read_scene
+from comparisons.scene import read_scene
 
 PROBLEMS = {path.stem: path for path in problems()}
-FAST = [
-    "clamped-column",
-    "euler-column",
-    "force-limit",
-    "pinned-column",
-    "portal-frame",
-    "post-buckling",
-    "sleeve",
-    "touch-again",
-    "two-pins",
-]
+FAST = (
+    "clamped-column", "euler-column", "force-limit", "pinned-column", "portal-frame", "post-buckling", "sleeve", "touch-again", "two-pins",
+)  # fmt: skip
 """Problems of less than a second; the golden answers have three more."""
-THREE = [
-    "dead-load",
-    "roll-up",
-    "clamped-column",
-    "pinned-column",
-    "lees-frame",
-    "williams-toggle",
-    "portal-frame",
-    "ks-elastica",
-    "slip-off",
-    "ks-tied-tip",
-    "two-pins",
-    "ks-friction",
-    "energy-balance",
-    "objectivity",
-    "mirror",
-    "reversal",
-]
-ANSWERS = (
-    dict.fromkeys(PROBLEMS, 2)
-    | dict.fromkeys(THREE, 3)
-    | {"short-cantilever": 5, "ks-axis": 5, "ks-face": 4}
-    | dict.fromkeys(
-        ("ks-biot", "mixed-order", "timoshenko-order", "thin-strips", "penalty-slope", "locking"), 1
-    )
-)
-"""Models that answer a problem."""
 
 
 def cards(folder, *names):
@@ -90,14 +54,11 @@ def test_a_problem_of_the_table_passes(name, tmp_path):
     assert read_scene(toml(card["scene"]), name) == problem.scene
     case, _ = judged(problem)
     assert [item.failure for item in case.judgements if not item.passed] == []
-    assert case.problem.name == name
     for quantity, stated in zip(problem.quantities, card["quantities"], strict=True):
         assert math.isfinite(quantity.exact)
         assert stated["value"] == quantity.exact
         scale = quantity.scale or abs(quantity.exact)
-        for trial in problem.trials:
-            assert stated["uncertainty"] < trial.allowance.error * scale
-    assert len(case.judgements) == ANSWERS[name]
+        assert stated["uncertainty"] < min(trial.allowance.error for trial in problem.trials) * scale
     for trial in problem.trials:
         assert trial.model in STYLES
         assert 0.0 < trial.allowance.error <= 0.3
@@ -106,8 +67,7 @@ def test_a_problem_of_the_table_passes(name, tmp_path):
 
 def test_the_page_counts_the_problems_and_their_answers(stated):
     stated("manual.problems", len(PROBLEMS))
-    assert PROBLEMS.keys() == ANSWERS.keys()
-    assert sum(ANSWERS.values()) == 96
+    assert sum(len(read_problem(path).trials) for path in PROBLEMS.values()) == 96
 
 
 def test_a_card_states_the_digits_that_its_uncertainty_leaves(tmp_path, monkeypatch, capsys):
@@ -117,12 +77,8 @@ def test_a_card_states_the_digits_that_its_uncertainty_leaves(tmp_path, monkeypa
     reported = capsys.readouterr()
     assert reported.out == "2 cards and their schema in cards\n"
     assert reported.err == "roll-up: 3 quantities\nlocking: 2 quantities\n"
-    assert sorted(path.name for path in tmp_path.rglob("[!.]*")) == [
-        "card.schema.json",
-        "cards",
-        "locking.json",
-        "roll-up.json",
-    ]
+    files = {"card.schema.json", "cards", "locking.json", "roll-up.json"}
+    assert {path.name for path in tmp_path.rglob("[!.]*")} == files
     quarter, _, whole = card["quantities"]
     assert quarter["value"] == pytest.approx(2.0 / math.pi, rel=1e-15)
     assert quarter["uncertainty"] == pytest.approx(1e-14 * quarter["value"])
@@ -161,11 +117,11 @@ def made_up(folder, count):
 def telling(*answers):
     """A measure by which the models answer so."""
 
-    def measure(_, trial):
-        answer = answers[int(trial.setting)]
+    def measure(_, given):
+        answer = answers[int(given.trial.setting)]
         if isinstance(answer, StoppedError):
             raise answer
-        return SimpleNamespace(values=answer, curves=())
+        return answer
 
     return measure
 
@@ -224,15 +180,20 @@ def test_errors_are_relative_and_the_worst_is_named_on_every_way_out(tmp_path, m
 
 
 def test_a_scene_that_is_moved_is_the_scene():
-    """Turned by a quarter, mirrored, reversed: beams, pins and sides are where they must be."""
-    scene = replace(load_scene("ks-face"), load_parameters=4)
-    turned, image = moved(scene, math.pi / 2, (1.0, 2.0)), mirrored(scene)
-    assert turned.beams[0].end == pytest.approx((1.0, 3.0), abs=1e-15)
-    assert turned.pins[0].points[0] == pytest.approx((1.01, 3.0), abs=1e-15)
-    assert turned.contacts == scene.contacts
-    assert image.pins[0].points[1] == (0.0, 0.01 - 0.6366197723675814)
-    assert image.contacts[0].side == reversed_(scene).contacts[0].side == "left"
-    assert reversed_(scene).beams[0].clamped == ("end",)
+    """Turned by .7 and shifted, mirrored, reversed: axes, paths and sides are where they must be."""
+    places = {"objectivity": lambda z: np.exp(0.7j) * z + 2 - 3j, "mirror": np.conj, "reversal": lambda z: z}
+    for name, place in places.items():
+        problem = read_problem(PROBLEMS[name])
+        scene, other = problem.scene, read_scene(problem.settings["other"], name)
+        for own, seen in ((scene.pins, other.pins), (scene.beams, other.beams)):
+            points = [
+                [one.points if hasattr(one, "points") else (one.start, one.end) for one in both]
+                for both in (own, seen)
+            ]
+            given, found = (np.array(one) @ [1.0, 1.0j] for one in points)
+            found = found[:, ::-1] if name == "reversal" and own is scene.beams else found
+            assert found == pytest.approx(place(given), abs=1e-15)
+        assert [one.side for one in other.contacts] == ["right" if name == "objectivity" else "left"]
 
 
 NEW = """

@@ -1,29 +1,25 @@
-"""Every verdict on the paper follows from numbers: each judge says something else about other numbers; the floor of round-off below them."""
+"""Every verdict on the paper follows from numbers, and is another one with other numbers; the floor of round-off below them."""
 
 import numpy as np
 import pytest
 
-# not public: judges of numbers that no run gives, and the floor of an element's forces, which no solution shows
-from comparisons.claims.paper import claims_critical_area as critical
-from comparisons.claims.paper import claims_examples as examples
+# not public: verdicts on numbers that no run gives, and the floor of an element's forces, which no solution shows
 from comparisons.claims.paper import critical_area as study
 from comparisons.claims.paper.approach import NEAREST, approaches
-from comparisons.claims.paper.claims import CLAIMS, claims_text, judged
+from comparisons.claims.paper.claims import CLAIMS, Verdict, claims_text, judged
+from comparisons.claims.paper.claims import verdict as verdict_of
+from comparisons.claims.paper.facts import KS
 from comparisons.claims.paper.figure_study import Study
 from comparisons.claims.paper.force_floor import force_floor
+from comparisons.claims.paper.formulations import CANTILEVER, MIXED, SIMPLE, TIMOSHENKO
 from comparisons.claims.paper.turned_frame import NAME as TURNED
-from comparisons.claims.paper.verdict import Verdict, holds
 from comparisons.claims.problems.double_beam import EVENTS as EXACT
 from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER
 from comparisons.compare import PAPER, SOLID
 from comparisons.models.tsm import to_structure
 from comparisons.quantities import KEPT
-from tests.comparisons.claims.paper.test_reproduce import PAPER as STATED
 
 REPRODUCED, IN_DIRECTION, NOT, OPEN = list(Verdict)[:4]
-SIMPLE, CANTILEVER, TIMOSHENKO, MIXED = (
-    critical.SIMPLE, critical.CANTILEVER, critical.TIMOSHENKO, critical.MIXED,
-)  # fmt: skip
 SLOPES = {SIMPLE: -3.0, CANTILEVER: -3.0, TURNED: -3.0, TIMOSHENKO: -1.0, MIXED: 0.0}
 TOLERANCES = (1e-6, 1e-8)
 
@@ -42,13 +38,14 @@ def areas(sizes=None, slopes=None, blocked=()):
     ]  # fmt: skip
     steep = {element: (slope, slope) for element, slope in SLOPES.items()} | (slopes or {})
     cases = [
-        (element, *case, study.PSI)
+        (element, end, pair[end == "end"], study.PSI)
         for element, pair in steep.items()
-        for case in zip(("start", "end"), pair, strict=True)
+        for end in ("start", "end")
     ]
+    cases.append((TIMOSHENKO, "end", -3.0, study.PRINTED_SHEAR_PSI))
     floors = [
         {"element": element, "end": end, "psi": psi, "ratio": ratio, "floor": ratio**slope}
-        for element, end, slope, psi in [*cases, (TIMOSHENKO, "end", -3.0, study.PRINTED_SHEAR_PSI)]
+        for element, end, slope, psi in cases
         for ratio in study.RATIOS
     ]
     return Study(
@@ -62,7 +59,7 @@ def shapes(status="COMPLETED", error=(4e-3, 1e-3, 5e-4), force=3.0, seconds=0.1)
     def run(label, value, unknowns=30, seconds=seconds, status="COMPLETED"):
         errors = {f"error_path_{name}": force * value for name in KEPT} | {"error_path_shape": value}
         return errors | {
-            "reading": examples.KS, "label": label, "status": status, "unknowns": unknowns, "iterations": 1, "seconds": seconds,
+            "reading": KS, "label": label, "status": status, "unknowns": unknowns, "iterations": 1, "seconds": seconds,
             "shape_difference": value, "follows_the_rod": status == "COMPLETED" and value < 0.05,
         }  # fmt: skip
 
@@ -80,13 +77,8 @@ def lifts(error=1e-5):
 
 
 THROUGH = {
-    "element": TIMOSHENKO,
-    "place": 0.81,
-    "status": "COMPLETED",
-    "depth": 0.76,
-    "passes": 5,
-    "at_hand_over": False,
-}
+    "element": TIMOSHENKO, "place": 0.81, "status": "COMPLETED", "depth": 0.76, "passes": 5, "at_hand_over": False,
+}  # fmt: skip
 AT_EVENT = THROUGH | {"status": "TWO_CONTACTS", "depth": 0.53, "passes": 2, "at_hand_over": True}
 AT_NODE = THROUGH | {"place": 0.8, "status": "CUTBACK_FLOOR", "depth": 0.0, "passes": 0}
 
@@ -94,18 +86,15 @@ AT_NODE = THROUGH | {"place": 0.8, "status": "CUTBACK_FLOOR", "depth": 0.0, "pas
 def beams(*attempts, late="", open_pair="", without=""):
     """A study whose events are where the exact rods have them, but for those that come `late`, and one kind that does not."""
     at = {
-        ("touch", TIP): "touch",
-        ("slip-off", UPPER): "hand-over",
-        ("touch", LOWER): "hand-over",
-        ("slip-off", LOWER): "slip-off",
+        f"touch {TIP}": "touch",
+        f"slip-off {UPPER}": "hand-over",
+        f"touch {LOWER}": "hand-over",
+        f"slip-off {LOWER}": "slip-off",
     }
     events = [
-        {
-            "kind": kind, "pair": pair, "depth": EXACT[name] + 0.01 * (f"{kind} {pair}" == late), "element": 8, "arc": 0.9,
-            "force": 1.0, "released": 0.2,
-        }
-        for (kind, pair), name in at.items()
-        if f"{kind} {pair}" != without
+        dict(zip(("kind", "pair"), one.split(), strict=True), depth=EXACT[name] + 0.01 * (one == late), element=8, released=0.2)
+        for one, name in at.items()
+        if one != without
     ]  # fmt: skip
     history = [
         {"depth": depth, f"{TIP} exact_force": 1.0} | {f"{pair} arc": np.nan if pair == open_pair else 1.0 for pair in (UPPER, TIP, LOWER)}
@@ -118,67 +107,60 @@ def beams(*attempts, late="", open_pair="", without=""):
     return Study(tables={"fig9": history}, numbers=numbers)
 
 
-RANGE = critical.PRINTED_RANGES
 LOW, _ = study.PRINTED[TIMOSHENKO]
 TWICE = 2 * LOW
 BOTH = {CANTILEVER: (-1, -1), TURNED: (-1, -1)}
-JUDGED = [
-    (critical.exists, REPRODUCED, [(areas({SIMPLE: (1e-8, 1e-8)}), NOT)]),
-    (critical.cantilever_effective, NOT, [(areas(slopes=BOTH), REPRODUCED), (areas(slopes={TURNED: (-1, -1)}), OPEN)]),
-    (critical.cantilever_effective, NOT, [(areas(slopes=dict.fromkeys(BOTH, (-1, -3))), OPEN)]),
-    (critical.shear_effective, REPRODUCED, [(areas(slopes={TIMOSHENKO: (-1, -3)}), NOT)]),
-    (critical.shear_effective, REPRODUCED, [(areas({TIMOSHENKO: (0.002, 0.02)}), NOT)]),
-    (critical.singular, REPRODUCED, [(areas(slopes={CANTILEVER: (-3, -2)}), NOT)]),
-    # the second is between two tolerances
-    (RANGE[SIMPLE], NOT, [(areas({SIMPLE: (0.01, 0.1)}), OPEN), (areas({SIMPLE: (0.01, 0.5)}), OPEN)]),
-    (RANGE[SIMPLE], NOT, [(areas({SIMPLE: (0.1, 0.1)}), REPRODUCED)]),
-    (RANGE[CANTILEVER], NOT, [(areas({CANTILEVER: (0.03, 0.03)}), REPRODUCED)]),
-    (RANGE[TIMOSHENKO], NOT, [(areas({TIMOSHENKO: (TWICE, TWICE)}), REPRODUCED)]),
-    (critical.order, REPRODUCED, [(areas({CANTILEVER: (0.005, 0.05)}), NOT), (areas({TIMOSHENKO: (0.0035, 0.03)}), NOT)]),
-    (critical.cantilever_reduces, IN_DIRECTION, [(areas({CANTILEVER: (0.001, 0.02)}), REPRODUCED)]),
-    (critical.cantilever_reduces, IN_DIRECTION, [(areas({CANTILEVER: (0.005, 0.05)}), NOT)]),
-    (critical.shear_reduces, REPRODUCED, [(areas({TIMOSHENKO: (0.001, 0.01)}), IN_DIRECTION)]),
-    (critical.shear_reduces, REPRODUCED, [(areas({TIMOSHENKO: (0.1, 0.01)}), NOT)]),
-    (critical.passes, NOT, [(areas(blocked=(SIMPLE, CANTILEVER)), REPRODUCED)]),
-    (critical.passes, NOT, [(areas(blocked=(SIMPLE, CANTILEVER, TIMOSHENKO)), NOT)]),
-    (critical.discontinuity_solved, REPRODUCED, [(areas(blocked=(TIMOSHENKO,)), NOT)]),
-    (critical.every_edge, REPRODUCED, [(areas({TIMOSHENKO: (1e-7, TWICE)}), OPEN), (areas({TIMOSHENKO: (TWICE, TWICE)}), NOT)]),
-    (examples.anything, OPEN, [(shapes(status="CUTBACK_FLOOR"), NOT), (shapes(error=(4e-3, 1e-3, 0.1)), NOT)]),
-    (examples.alike, REPRODUCED, [(shapes(error=(0.02, 1e-3, 5e-4)), NOT), (shapes(error=(np.nan, 1e-3, 5e-4)), NOT)]),
-    (examples.few_elements, REPRODUCED, [(shapes(error=(4e-3, 0.02, 5e-4)), NOT)]),
-    (examples.simple_enough, OPEN, [(shapes(force=1.0), REPRODUCED), (shapes(error=(0.03, 0.02, 0.015)), NOT)]),
-    (examples.less_division, REPRODUCED, [(shapes(force=20.0), NOT)]),
-    (examples.cheaper, REPRODUCED, [(shapes(seconds=2.0), NOT)]),
-    (examples.followed, REPRODUCED, [(lifts(1e-3), NOT)]),
-    (examples.begins, REPRODUCED, [(beams(late=f"touch {TIP}"), NOT), (beams(without=f"touch {TIP}"), NOT)]),
-    (examples.begins, REPRODUCED, [(beams(open_pair=UPPER), NOT)]),
-    (examples.hands_over, REPRODUCED, [(beams(late=f"slip-off {UPPER}"), NOT), (beams(without=f"touch {LOWER}"), NOT)]),
-    (examples.leaves, REPRODUCED, [(beams(without=f"slip-off {LOWER}"), NOT)]),
-    (examples.passes_every_edge, OPEN, [(beams(THROUGH, THROUGH), REPRODUCED), (beams(AT_NODE, AT_NODE), NOT)]),
-    (examples.passes_every_edge, OPEN, [(beams(THROUGH, AT_EVENT), OPEN), (beams(AT_EVENT, AT_EVENT), OPEN)]),
-    (examples.simultaneous, REPRODUCED, [(beams(AT_NODE), NOT)]),
-]  # fmt: skip
-"""Judges, with their verdicts on the studies without changes and with them."""
 BASE = {"fig7a": lifts(), "fig7b": areas(), "fig8": shapes(), "fig9": beams()}
+OTHERS = [
+    ("exists", REPRODUCED, [(areas({SIMPLE: (1e-8, 1e-8)}), NOT)]),
+    ("cantilever-effective", NOT, [(areas(slopes=BOTH), REPRODUCED), (areas(slopes={TURNED: (-1, -1)}), OPEN)]),
+    ("cantilever-effective", NOT, [(areas(slopes=dict.fromkeys(BOTH, (-1, -3))), OPEN)]),
+    ("shear-effective", REPRODUCED, [(areas(slopes={TIMOSHENKO: (-1, -3)}), NOT), (areas({TIMOSHENKO: (0.002, 0.02)}), NOT)]),
+    ("singular", REPRODUCED, [(areas(slopes={CANTILEVER: (-3, -2)}), NOT)]),
+    # the second is between two tolerances
+    (f"range-{SIMPLE}", NOT, [(areas({SIMPLE: (0.01, 0.1)}), OPEN), (areas({SIMPLE: (0.01, 0.5)}), OPEN)]),
+    (f"range-{SIMPLE}", NOT, [(areas({SIMPLE: (0.1, 0.1)}), REPRODUCED)]),
+    (f"range-{CANTILEVER}", NOT, [(areas({CANTILEVER: (0.03, 0.03)}), REPRODUCED)]),
+    (f"range-{TIMOSHENKO}", NOT, [(areas({TIMOSHENKO: (TWICE, TWICE)}), REPRODUCED)]),
+    ("order", REPRODUCED, [(areas({CANTILEVER: (0.005, 0.05)}), NOT), (areas({TIMOSHENKO: (0.0035, 0.03)}), NOT)]),
+    ("cantilever-reduces", IN_DIRECTION, [(areas({CANTILEVER: (0.001, 0.02)}), REPRODUCED), (areas({CANTILEVER: (0.005, 0.05)}), NOT)]),
+    ("shear-reduces", REPRODUCED, [(areas({TIMOSHENKO: (0.001, 0.01)}), IN_DIRECTION), (areas({TIMOSHENKO: (0.1, 0.01)}), NOT)]),
+    ("passes", NOT, [(areas(blocked=(SIMPLE, CANTILEVER)), REPRODUCED), (areas(blocked=(SIMPLE, CANTILEVER, TIMOSHENKO)), NOT)]),
+    ("discontinuity-solved", REPRODUCED, [(areas(blocked=(TIMOSHENKO,)), NOT)]),
+    ("every-edge", REPRODUCED, [(areas({TIMOSHENKO: (1e-7, TWICE)}), OPEN), (areas({TIMOSHENKO: (TWICE, TWICE)}), NOT)]),
+    ("anything", OPEN, [(shapes(status="CUTBACK_FLOOR"), NOT), (shapes(error=(4e-3, 1e-3, 0.1)), NOT)]),
+    ("alike", REPRODUCED, [(shapes(error=(0.02, 1e-3, 5e-4)), NOT), (shapes(error=(np.nan, 1e-3, 5e-4)), NOT)]),
+    ("few-elements", REPRODUCED, [(shapes(error=(4e-3, 0.02, 5e-4)), NOT)]),
+    ("simple-enough", OPEN, [(shapes(force=1.0), REPRODUCED), (shapes(error=(0.03, 0.02, 0.015)), NOT)]),
+    ("less-division", REPRODUCED, [(shapes(force=20.0), NOT)]),
+    ("cheaper", REPRODUCED, [(shapes(seconds=2.0), NOT)]),
+    ("followed", REPRODUCED, [(lifts(1e-3), NOT)]),
+    ("begins", REPRODUCED, [(beams(late=f"touch {TIP}"), NOT), (beams(without=f"touch {TIP}"), NOT), (beams(open_pair=UPPER), NOT)]),
+    ("hands-over", REPRODUCED, [(beams(late=f"slip-off {UPPER}"), NOT), (beams(without=f"touch {LOWER}"), NOT)]),
+    ("leaves", REPRODUCED, [(beams(without=f"slip-off {LOWER}"), NOT)]),
+    ("passes-every-edge", OPEN, [(beams(THROUGH, THROUGH), REPRODUCED), (beams(AT_NODE, AT_NODE), NOT)]),
+    ("passes-every-edge", OPEN, [(beams(THROUGH, AT_EVENT), OPEN), (beams(AT_EVENT, AT_EVENT), OPEN)]),
+    ("simultaneous", REPRODUCED, [(beams(AT_NODE), NOT)]),
+]  # fmt: skip
+"""Claims, with their verdicts on the studies without changes and with them."""
 
 
-def test_every_claim_is_judged_once_and_by_its_numbers():
-    """Two of the 25 claims are made twice in the paper; no judge always says the same."""
-    figures = {claim.judge: claim.figure for claim in CLAIMS}
-    assert set(figures) == {judge for judge, *_ in JUDGED}
-    for judge, verdict, others in JUDGED:
-        for found, expected in ((BASE[figures[judge]], verdict), *others):
-            assert judge(found).verdict is expected, (judge, found)
-    for claim, (where, words, figure, _) in zip(CLAIMS, STATED, strict=True):
-        assert (claim.source, claim.figure, len(claim.stated)) == (where, figure, len(words))
-        assert all(word in text for word, (_, text) in zip(words, claim.stated, strict=True))
-    assert (len(CLAIMS), sum(len(claim.stated) for claim in CLAIMS)) == (25, 27)
-    assert "0 of 25 claims judged (27 statements)." in claims_text([], quick=True)
+def test_every_claim_is_judged_by_its_numbers():
+    """Two of the 25 claims are made twice in the paper; no verdict is always the same."""
+    claims = {claim.name: claim for claim in CLAIMS}
+    assert set(claims) == {name for name, *_ in OTHERS}
+    for name, verdict, others in OTHERS:
+        figure = claims[name].figure
+        for found, expected in ((BASE[figure], verdict), *others):
+            told = {one.claim.name: one for one in judged({figure: found}, quick=False)}
+            assert told[name].verdict is expected, told[name]
+            assert "{" not in told[name].number + told[name].why
+    assert (len(claims), sum(len(claim.stated) for claim in CLAIMS)) == (25, 27)
     quick = claims_text(judged({"fig7b": BASE["fig7b"]}, quick=True), quick=True)
     assert "13 of 25 claims judged (27 statements): 13 provisional" in quick
     assert "With coarse settings: not reproduced." in quick
-    with pytest.raises(ValueError, match="cases"):
-        holds((), "", "")
+    with pytest.raises(ValueError, match="readings"):
+        verdict_of(())
 
 
 def ways(element, tolerance):
