@@ -21,7 +21,7 @@ from comparisons.output import json_text
 from comparisons.quantities import KEPT, PATH
 from comparisons.referee import Verdict
 from comparisons.response import Response
-from comparisons.response.to_json import as_dict
+from comparisons.response.file import as_dict
 from comparisons.scene import Scene, to_toml
 from comparisons.scene.keys import special_keys
 from comparisons.show.budget_plot import plot_budget, write_budget

@@ -22,9 +22,8 @@ from comparisons.output import plain
 from comparisons.referee import Verdict
 from comparisons.response import Response
 from comparisons.response.axis import storable
-from comparisons.response.from_json import restated
+from comparisons.response.file import as_dict, restated
 from comparisons.response.record import unanswered
-from comparisons.response.to_json import as_dict
 from comparisons.scene import to_toml
 
 REFUSED = "REFUSED"

@@ -163,7 +163,7 @@ def _solved(scene: "Scene", given: "argparse.Namespace") -> "tuple[Response, str
 def _write(given: "argparse.Namespace", response: "Response", scene: "Scene", more: dict[str, Any]) -> None:
     """Write the files that were asked for."""
     if given.json is not None:
-        from comparisons.response.to_json import as_json
+        from comparisons.response.file import as_json
 
         if given.json == "-":
             sys.stdout.write(as_json(response, **more))

@@ -5,10 +5,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from comparisons.response.file import SCHEMA, resolved
 from docs.extensions.markdown import table, text
 
 FOLDER = Path(__file__).parents[1] / "reference"
-SCHEMA: dict[str, Any] = json.loads((FOLDER / "response.schema.json").read_text(encoding="utf-8"))
 SCENE: dict[str, Any] = json.loads((FOLDER / "resolved-scene.schema.json").read_text(encoding="utf-8"))
 
 
@@ -23,37 +23,28 @@ def scene_page() -> str:
 
 
 def _rows(prefix: str, schema: dict[str, Any]) -> Iterator[tuple[str, str, str]]:
-    for key, item in schema.get("properties", {}).items():
+    for key, field in schema.get("properties", {}).items():
+        item = resolved(field)
         yield f"`{prefix}{key}`", _sort(item), text(item["description"])
         yield from _inner(f"{prefix}{key}", item)
 
 
 def _inner(prefix: str, item: dict[str, Any]) -> Iterator[tuple[str, str, str]]:
     """Yield the rows of what a key holds: a table by name, a list of tables, a table."""
-    named = item.get("additionalProperties")
+    named, listed = item.get("additionalProperties"), resolved(item.get("items", {}))
     if isinstance(named, dict):
-        yield from _rows(f"{prefix}.NAME.", _resolved(named))
-    elif "properties" in item.get("items", {}):
-        yield from _rows(f"{prefix}[].", item["items"])
+        yield from _rows(f"{prefix}.NAME.", resolved(named))
+    elif "properties" in listed:
+        yield from _rows(f"{prefix}[].", listed)
     elif "properties" in item:
         yield from _rows(f"{prefix}.", item)
 
 
-def _resolved(schema: dict[str, Any]) -> dict[str, Any]:
-    if "$ref" not in schema:
-        return schema
-    found: dict[str, Any] = SCHEMA["$defs"][schema["$ref"].rpartition("/")[2]]
-    return found
-
-
 def _sort(item: dict[str, Any]) -> str:
-    if "$ref" in item:
-        return {
-            "history": "s numbers",
-            "vectors": "s pairs of numbers",
-            "support": "table",
-            "vector": "2 numbers",
-        }[item["$ref"].rpartition("/")[2]]
+    shapes = {"history": "s numbers", "vectors": "s pairs of numbers", "vector": "2 numbers"}
+    name = item.get("$ref", "").rpartition("/")[2]
+    if name in shapes:
+        return shapes[name]
     if "enum" in item:
         return " or ".join(f"`{value}`" for value in item["enum"])
     kind = item["type"]

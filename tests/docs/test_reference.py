@@ -109,7 +109,7 @@ def test_json_output_obeys_its_schema(scene, options, tmp_path, monkeypatch):
         assert set(contact["friction"]["slip"]) == {-1, 0, 1}
         assert contact["friction"]["dissipated"][-1] > 0.0
         assert ("work" in found) is ("solid" not in options)
-    kinds = response.SCHEMA["properties"]["events"]["items"]["properties"]["kind"]["enum"]
+    kinds = response.SCHEMA["$defs"]["event"]["properties"]["kind"]["enum"]
     assert set(kinds) == {kind.value for kind in tsm.EventKind}
 
 
