@@ -6,7 +6,7 @@ import numpy as np
 
 from comparisons.errors import Errors
 from comparisons.output import aligned, csv_text
-from comparisons.quantities import KEPT, PATH, SCOPES
+from comparisons.quantities import SCOPES, names, table_columns
 from comparisons.response import Response
 
 
@@ -36,25 +36,10 @@ class Row:
     cause: str = ""
 
 
-HEADER = (
-    "model",
-    "unknowns",
-    "force",
-    "arc position",
-    "moment",
-    "tip",
-    "friction",
-    "stable",
-    "iterations",
-    "seconds",
-)
-SHOWN = ("force", "arc", "moment", "tip", "friction")
-"""The quantities of the middle columns."""
-
-
 def table_text(rows: list[Row], reference: str) -> str:
     """Return the table as aligned text; errors are the largest over all load parameters."""
-    first, *rest = aligned([HEADER, *map(cells, rows)], [False] + [True] * (len(HEADER) - 1))
+    head = header()
+    first, *rest = aligned([head, *map(cells, rows)], [False] + [True] * (len(head) - 1))
     title = (
         f"Largest error over the load parameters reached, against the {reference}; forces and moments relative to their\n"
         "largest, positions to the length, friction to the contact forces; Newton iterations and seconds for the whole path"
@@ -62,10 +47,16 @@ def table_text(rows: list[Row], reference: str) -> str:
     return "\n".join([title, "", first, "-" * len(first), *rest])
 
 
+def header() -> tuple[str, ...]:
+    """Return the names of the columns, the quantities that have one in the middle."""
+    middle = (row.words for row in table_columns().values())
+    return "model", "unknowns", *middle, "stable", "iterations", "seconds"
+
+
 def cells(row: Row) -> tuple[str, ...]:
-    """Return a run as text under `HEADER`."""
+    """Return a run as text under `header`."""
     # a dash where the run or the scene does not have the quantity
-    errors = [np.nan if row.errors is None else row.errors["path"][name] for name in SHOWN]
+    errors = [np.nan if row.errors is None else row.errors["path"][name] for name in table_columns()]
     shown = ["-" if np.isnan(value) else f"{value:.1e}" for value in errors]
     response = row.response
     label = row.label if response.completed else f"{row.label} ({response.status})"
@@ -93,7 +84,7 @@ def table_csv(rows: list[Row]) -> str:
             **{
                 f"error_{scope}_{name}": row.errors and row.errors[scope].get(name)
                 for scope in SCOPES
-                for name in (*KEPT, *PATH)
+                for name in names(mesh=False)
             },
             "stable": _stable(row.response),
             "newton_iterations": row.response.iterations,

@@ -18,10 +18,10 @@ from comparisons.cost.limit import end_state, extrapolated
 from comparisons.cost.orders import orders
 from comparisons.cost.points import TARGETS, Point, Trade, cheapest, front
 from comparisons.cost.references import NoReferenceError, Reference, best_reference, reference_cases
-from comparisons.errors import errors, scales
+from comparisons.errors import errors
 from comparisons.models import MODELS
 from comparisons.models.options import Options
-from comparisons.quantities import KEPT, SCOPES
+from comparisons.quantities import KEPT, SCOPES, scales
 from comparisons.response import ContactHistory, SupportHistory
 from comparisons.response.axis import STATIONS, SampledAxes
 from comparisons.scene import built_in_scenes, load_scene
