@@ -13,6 +13,7 @@ PAGES = {
     "statuses.md": statuses.page,
     "response.md": response.page,
     "resolved-scene.md": response.scene_page,
+    "quantities.md": response.quantities_page,
 }
 """What makes the text of each page."""
 

@@ -1,10 +1,11 @@
-"""The JSON texts of a response and of a resolved scene, from their schemas."""
+"""The JSON texts of a response and of a resolved scene, from their schemas, and the quantities that are compared."""
 
 import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from comparisons.quantities import QUANTITIES
 from comparisons.response.file import SCHEMA, resolved
 from docs.extensions.markdown import table, text
 
@@ -15,6 +16,12 @@ SCENE: dict[str, Any] = json.loads((FOLDER / "resolved-scene.schema.json").read_
 def page() -> str:
     """Return a table with a row for every key of a response."""
     return table(("key", "type", "meaning"), _rows("", SCHEMA)) + "\n"
+
+
+def quantities_page() -> str:
+    """Return a table with a row for every quantity that is compared."""
+    rows = ((f"`{name}`", row.unit, text(row.meaning)) for name, row in QUANTITIES.items())
+    return table(("quantity", "unit", "what is compared"), rows) + "\n"
 
 
 def scene_page() -> str:
