@@ -23,7 +23,6 @@ from comparisons.referee import Verdict
 from comparisons.response import Response
 from comparisons.response.axis import storable
 from comparisons.response.file import as_dict, restated
-from comparisons.response.record import unanswered
 from comparisons.scene import to_toml
 
 REFUSED = "REFUSED"
@@ -141,4 +140,4 @@ def _processor_seconds() -> float:
 
 def unmeasured(status: str, message: str) -> Measurement:
     """Return the measurement of a case that gave neither answer nor cost, and why."""
-    return Measurement(response=storable(unanswered(status, message)))
+    return Measurement(response=storable(Response(status=status, message=message)))

@@ -69,7 +69,6 @@ def of_result(
         scene=scene.name,
         status=result.status.name,
         message=result.message,
-        completed=result.status.name == "COMPLETED",
         load_parameter=result.load_parameter,
         supports=held,
         springs=springs,

@@ -143,14 +143,14 @@ def restated(data: Any) -> Response:
         If a table, a list of numbers or a name is missing or of another shape.
     """
     found = _read(SCHEMA, data, "", {})
-    axes, completed = found.pop("axes"), found["status"] == "COMPLETED"
+    axes = found.pop("axes")
     if found["reported_success"] is None:
-        found["reported_success"] = completed
+        found["reported_success"] = found["status"] == "COMPLETED"
     if found["newton_iterations"] is None:
         found["newton_iterations"] = np.zeros(len(found["load_parameter"]), dtype=np.int64)
     arcs, places = ({beam: axis[key] for beam, axis in axes.items()} for key in ("arc_length", "position"))
     line = SampledAxes(arc_length=arcs, position=places)
-    return Response(**found, completed=completed, axis_line=line, grid=no_grid)
+    return Response(**found, axis_line=line, grid=no_grid)
 
 
 def resolved(field: Field) -> Field:

@@ -14,7 +14,6 @@ from comparisons.referee.certificate import Verdict
 from comparisons.response import Array, ContactHistory, Response, SupportHistory
 from comparisons.response.axis import SampledAxes, axis_grid, sampled_axes
 from comparisons.response.file import SCHEMA, NotFiniteError, contradictions, parsed, restated
-from comparisons.response.record import unanswered
 from comparisons.scene import Scene
 from comparisons.scene.rules import FieldError
 from comparisons.scene.tables import check_keys
@@ -112,8 +111,9 @@ def silent(
 ) -> Response:
     """Return a response without any load parameter, which states why there is none."""
     none, pairs = np.empty(0), np.empty((0, 2))
-    return replace(
-        unanswered(status, one_line(message)),
+    return Response(
+        status=status,
+        message=one_line(message),
         model=model,
         scene=scene.name,
         outside=True,

@@ -137,7 +137,7 @@ def point(case, seconds, error, own, status="COMPLETED"):
     """A case with known seconds, unknowns and errors."""
     own_errors, tables = ({scope: dict.fromkeys(KEPT, value) for scope in SCOPES} for value in (own, error))
     made = unmeasured(status, "")
-    response = replace(made.response, completed=status == "COMPLETED", unknowns=round(100 * seconds))
+    response = replace(made.response, status=status, unknowns=round(100 * seconds))
     measured = replace(made, response=response, seconds=seconds)
     return Point(case=case, measured=measured, errors=tables, own_errors=own_errors)
 
