@@ -98,7 +98,7 @@ def _columns(response: Response) -> Iterator[_Column]:
     along = {} if response.definition is None else extremes_along(response, response.definition)
     for beam, extremes in along.items():
         for name, extreme in extremes.items():
-            yield f"{beam}.{name}", ALONG[name], extreme.value
+            yield f"{beam}.{name}", ALONG[name][0], extreme.value
             yield f"{beam}.{name}_at", "length", extreme.arc_position
     for beam, force in response.material_force.items():
         yield f"{beam}.material_force", "force", force
