@@ -100,7 +100,7 @@ def _solved(scene: Scene, options: Options, watch: Watch) -> Response:
     from comparisons.models.sections import j_integrals, section_forces
     from comparisons.models.shared import history, of_result
     from comparisons.response import Deformation, FrictionHistory, Grid
-    from comparisons.response.deferred import Deferred
+    from comparisons.response.material import Deferred
 
     problem = to_solid(scene, mesh=options.mesh)
     settings = fem_reference.Settings(branch=options.branch or "stop")

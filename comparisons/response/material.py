@@ -10,6 +10,8 @@ tangential contact forces, positive away from the clamp: physical friction or, w
 """
 
 import math
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
 
 import numpy as np
 
@@ -19,6 +21,22 @@ from comparisons.scene.keys import MATERIAL, unstated
 
 UNDEFINED = "no touched beam is held by one clamp alone and loaded by contacts alone"
 """Reason why a scene has no material force."""
+
+
+class Deferred(Mapping[str, Array]):
+    """A table that takes long and is computed once, when it is first asked for."""
+
+    def __init__(self, compute: Callable[[], Mapping[str, Array]]) -> None:
+        self._table = cache(compute)
+
+    def __getitem__(self, name: str) -> Array:
+        return self._table()[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._table())
+
+    def __len__(self) -> int:
+        return len(self._table())
 
 
 def clamped(scene: Scene) -> dict[str, SupportSpec]:
