@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,47 +39,28 @@ class Pair:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Quantity:
-    """How a quantity is read and compared, and how it is called.
+    """How a quantity is read and compared, and how it is called."""
 
-    Attributes
-    ----------
-    meaning, words : str
-        What is compared and what its errors are relative to; its name in a table.
-    read, compare : callable, optional
-        ``read(response)``: its values by pair, support or beam, shape (s,) or (s, 2), nan where there is none; the error is infinite where
-        one response alone has a value. ``compare(pair)``: its errors, shape (n,), of a quantity that is not compared value by value.
-    unit, over : str
-        Kind of its unit, ``force``, ``length``, ``moment``, ``stress`` or ``number``; what its errors are relative to, ``largest`` value,
-        ``length`` of the beam, or what its values are relative to already.
-    kind : str
-        ``mesh``: read from fields that beams and stored responses do not have. ``path``: tells that two responses follow one path, and
-        is no accuracy that can be asked for. Empty otherwise.
-    column : int
-        Its place among the columns of a comparison's table; 0 without one.
-    acting : bool
-        Whether a pair or support is left out where it is zero in both responses.
-    title, drawn : callable, optional
-        ``title(scene)``: its name on a page, if not `words`. ``drawn(response, scene)``: what a page draws over the load parameters.
-    refusal : callable
-        ``refusal(scene, continuum)``: why a scene or its models do not have it; None if they do.
-    absent, place : callable
-        ``absent(response, reference)``: why they do not have it, empty if it is the scene; ``place``: where the error is largest.
-    """
-
-    meaning: str
-    words: str
+    meaning: str  #: What is compared, and what its errors are relative to.
+    words: str  #: Its name in a table.
+    #: Its values by pair, support or beam, shape (s,) or (s, 2), nan where there is none. The error is infinite where one response alone
+    #: has a value.
     read: Callable[[Response], Columns] | None = None
-    compare: Callable[[Pair], Columns] | None = None
-    unit: str = "length"
+    compare: Callable[[Pair], Columns] | None = None  #: Its errors (n,), if not value by value.
+    unit: str = "length"  #: Kind of its unit: ``force``, ``length``, ``moment``, ``stress`` or ``number``.
+    #: What its errors are relative to: ``largest`` value, ``length`` of the beam, or what its values are relative to already.
     over: str = "length"
+    #: ``mesh``: read from fields that beams and stored responses do not have. ``path``: tells that two responses follow one path, and is
+    #: no accuracy that can be asked for.
     kind: str = ""
-    column: int = 0
-    acting: bool = False
-    title: Callable[[Scene], str] | None = None
-    drawn: Callable[[Response, Scene], Columns] | None = None
+    column: int = 0  #: Its place among the columns of a comparison's table; 0 without one.
+    acting: bool = False  #: Whether a pair or support is left out where it is zero in both responses.
+    title: Callable[[Scene], str] | None = None  #: Its name on a page, if not `words`.
+    drawn: Callable[[Response, Scene], Columns] | None = None  #: What a page draws.
+    #: Why a scene, or its models, bodies if the second argument is true, do not have it; None if they do.
     refusal: Callable[[Scene, bool], str | None] = lambda _, __: None
-    absent: Callable[[Response, Response], str] = lambda _, __: ""
-    place: Callable[[Response, Response], str] | None = None
+    absent: Callable[[Response, Response], str] = lambda _, __: ""  #: Why both do not have it.
+    place: Callable[[Response, Response], str] | None = None  #: Where the error is largest, in words.
 
     def columns(self, pair: Pair) -> Columns:
         """Return the errors by pair, support or beam, shape (n,)."""
@@ -215,8 +197,7 @@ def _friction_title(scene: Scene) -> str:
     return "friction" if any(contact.friction for contact in scene.contacts) else "spurious friction"
 
 
-@dataclass(frozen=True, kw_only=True)
-class EventDifference:
+class EventDifference(NamedTuple):
     """An event of a pair in two responses; a load parameter is nan where a response has no such event."""
 
     kind: str
@@ -239,29 +220,25 @@ class EventDifference:
 def event_differences(response: Response, reference: Response) -> list[EventDifference]:
     """Return the events of both responses up to the last load parameter that both have, without the passing of nodes and the touch at rest.
 
-    A model may state its slip-offs alone; they are compared where both have one.
+    They are paired so that the sum of the differences is least. A model may state its slip-offs alone, which are compared where both
+    have one.
     """
-    shared = np.intersect1d(response.load_parameter, reference.load_parameter)
-    both = [_events(item, shared[-1]) if len(shared) else {} for item in (response, reference)]
-    stated = response.events is not None and reference.events is not None
-    return [
-        EventDifference(kind=kind, pair=pair, own=own, true=true)
-        for kind, pair in sorted(
-            both[0].keys() | both[1].keys() if stated else both[0].keys() & both[1].keys()
-        )
-        for own, true in _nearest(*(item.get((kind, pair), []) for item in both))
-    ]
-
-
-def _nearest(own: list[float], true: list[float]) -> list[tuple[float, float]]:
-    """Pair load parameters so that the sum of their differences is least; nan stands beside those that are left over."""
     from scipy.optimize import linear_sum_assignment
 
-    rows, columns = linear_sum_assignment(np.abs(np.subtract.outer(own, true)))
-    pairs = [(own[i], true[j]) for i, j in zip(rows, columns, strict=True)]
-    pairs += [(t, np.nan) for i, t in enumerate(own) if i not in rows]
-    pairs += [(np.nan, t) for j, t in enumerate(true) if j not in columns]
-    return sorted(pairs, key=lambda pair: float(np.fmin(*pair)))
+    last = np.intersect1d(response.load_parameter, reference.load_parameter).max(initial=0.0)
+    own, true = (_events(item, float(last)) for item in (response, reference))
+    stated = response.events is not None and reference.events is not None
+    found = []
+    for key in sorted(own.keys() | true.keys() if stated else own.keys() & true.keys()):
+        first, second = own.get(key, []), true.get(key, [])
+        rows, columns = linear_sum_assignment(np.abs(np.subtract.outer(first, second)))
+        pairs = [(first[i], second[j]) for i, j in zip(rows, columns, strict=True)]
+        pairs += [(t, np.nan) for i, t in enumerate(first) if i not in rows]
+        pairs += [(np.nan, t) for j, t in enumerate(second) if j not in columns]
+        found += [
+            EventDifference(*key, *pair) for pair in sorted(pairs, key=lambda pair: float(np.fmin(*pair)))
+        ]
+    return found
 
 
 def _events(response: Response, last: float) -> dict[tuple[str, str], list[float]]:

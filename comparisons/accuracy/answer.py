@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from comparisons.accuracy import trials
-from comparisons.accuracy.trials import Trial
 from comparisons.models import MODELS, SOLID, TSM, Model, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.quantities import QUANTITIES, names
 from comparisons.response import Array, Response
+from comparisons.response.file import SCHEMA
 from comparisons.scene import BeamSpec, Scene
-from tsm.elements import MIXED, ClosedForm
+from tsm.elements import ClosedForm
 
 STOCKY = 0.1
 """Height over length from which a beam is solved as a solid."""
@@ -24,86 +24,48 @@ LOOKED_AT = 8
 
 @dataclass(frozen=True, kw_only=True)
 class Theory:
-    """Error of beam theory against the solid body, which no finer mesh of the beam removes.
+    """Error of beam theory against the solid body, which no finer mesh of the beam removes."""
 
-    Attributes
-    ----------
-    error : float
-        Expected relative error of a contact force.
-    slenderness, strain : float
-        Largest h/L, and largest bending strain at a face, ``h kappa/2``.
-    kink : float
-        Largest angle by which shear kinks the axis at a contact, ``F/GA`` [rad].
-    """
-
-    error: float
-    slenderness: float
-    strain: float
-    kink: float
+    error: float  #: Expected relative error of a contact force.
+    slenderness: float  #: Largest h/L.
+    strain: float  #: Largest bending strain at a face, ``h kappa/2``.
+    kink: float  #: Largest angle by which shear kinks the axis at a contact, ``F/GA`` [rad].
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Answer:
-    """A response to a stated accuracy.
+    """A response to a stated accuracy."""
 
-    Attributes
-    ----------
-    response, scene : Response, Scene
-        The response at all load parameters; the solved scene, with the chosen elements and meshes.
-    model, resolution : str
-        The model that was chosen, and its elements or mesh.
-    quantity : str
-        A name in `comparisons.quantities.QUANTITIES`.
-    accuracy, estimate : float
-        The error of the quantity that was asked for, and the one that is left, infinite without an estimate.
-    theory : Theory or None
-        The beam theory's own error; None for the solid, and where a section's height is not known.
-    decisions : tuple of str
-        Every decision, in order.
-    seconds : float
-        Total time [s].
-    """
-
-    response: Response
-    scene: Scene
-    model: str
-    resolution: str
-    quantity: str
-    accuracy: float
-    estimate: float
-    theory: Theory | None
-    decisions: tuple[str, ...]
-    seconds: float
+    response: Response  #: The response at all load parameters.
+    scene: Scene  #: The solved scene, with the chosen elements and meshes.
+    model: str  #: The model that was chosen.
+    resolution: str  #: Its elements or mesh.
+    quantity: str  #: A name in `comparisons.quantities.QUANTITIES`.
+    asked: float  #: The error of the quantity that was asked for.
+    estimate: float  #: The error that is left, infinite without an estimate.
+    beam_theory: Theory | None  #: None for the solid, and where a section's height is not known.
+    decisions: tuple[str, ...]  #: Every decision, in order.
+    seconds: float  #: Total time [s].
 
     @property
     def reached(self) -> bool:
         """Whether the solution is complete and its estimate within the accuracy."""
-        return self.response.completed and self.estimate <= self.accuracy
+        return self.response.completed and self.estimate <= self.asked
 
     def as_dict(self) -> dict[str, Any]:
         """Return the choice and the estimates by the names of the JSON file."""
-        return {
-            "asked": self.accuracy,
-            "quantity": self.quantity,
-            "reached": self.reached,
-            "model": self.model,
-            "resolution": self.resolution,
-            "estimate": self.estimate,
-            "beam_theory": self.theory,
-            "decisions": self.decisions,
-            "seconds": self.seconds,
-        }
+        return {key: getattr(self, key) for key in SCHEMA["properties"]["accuracy"]["properties"]}
 
     def lines(self) -> Iterator[tuple[str, str]]:
         """Yield the choice and the estimates in words."""
         yield "resolution", f"{self.model}: {self.resolution}"
         mark = "" if self.reached else ", NOT REACHED"
-        yield "estimated error", f"{self.estimate:.2g} of {self.quantity}, asked {self.accuracy:g}{mark}"
-        if self.theory is not None:
-            what = f"h/L {self.theory.slenderness:.3g}, strain {self.theory.strain:.2g}, shear kink {self.theory.kink:.2g}"
-            exceeds = self.theory.error > self.accuracy
+        yield "estimated error", f"{self.estimate:.2g} of {self.quantity}, asked {self.asked:g}{mark}"
+        if self.beam_theory is not None:
+            what = f"h/L {self.beam_theory.slenderness:.3g}, strain {self.beam_theory.strain:.2g}, shear kink {self.beam_theory.kink:.2g}"
+            exceeds = self.beam_theory.error > self.asked
             more = ": more than asked; the solid has no such error" if exceeds else ""
-            yield "beam theory itself", f"about {self.theory.error:.1g} ({what}){more}"
+            yield "beam theory itself", f"about {self.beam_theory.error:.1g} ({what}){more}"
         yield "seconds in all", f"{self.seconds:.3f}"
 
 
@@ -150,35 +112,24 @@ def solve_to(
     elif isinstance(kind, ClosedForm):
         tried = trials.graded(loaded, accuracy, quantity, kind)
     else:
-        tried = trials.exact(loaded, accuracy, quantity)
-    trial, response, found = _first(tried, accuracy, chosen)
-    said += found
-    if response.status == "INACCURATE" and element is None and not chosen.continuum:
-        instead = f"{kind.name} stopped: INACCURATE; {MIXED.name} instead"
-        trial, response, found = _first(trials.graded(loaded, accuracy, quantity, MIXED), accuracy, chosen)
-        said += (instead, *found)
+        tried = trials.exact(loaded, accuracy, quantity, alone=element is not None)
+    for trial in tried:
+        said += trial.said
+        if trial.estimate <= accuracy:
+            break
+    response = trial.response or solve(trial.scene, chosen.name, trial.options)
     return Answer(
         response=response,
         scene=trial.scene,
         model=chosen.name,
         resolution=f"{trial.words}, {response.unknowns} unknowns",
         quantity=quantity,
-        accuracy=accuracy,
+        asked=accuracy,
         estimate=trial.estimate,
-        theory=None if chosen.continuum else beam_theory(response, trial.scene),
+        beam_theory=None if chosen.continuum else beam_theory(response, trial.scene),
         decisions=said,
         seconds=perf_counter() - began,
     )
-
-
-def _first(tried: Iterator[Trial], accuracy: float, model: Model) -> tuple[Trial, Response, tuple[str, ...]]:
-    """Return the first trial that suffices, or the last one, with its response and what is said of all."""
-    said: tuple[str, ...] = ()
-    for trial in tried:
-        said += trial.said
-        if trial.estimate <= accuracy:
-            break
-    return trial, trial.response or solve(trial.scene, model.name, trial.options), said
 
 
 def _required(scene: Scene, quantity: str, element: str | None) -> tuple[str, str]:

@@ -12,7 +12,7 @@ from comparisons.models.options import Options
 from comparisons.quantities import QUANTITIES, size
 from comparisons.response import Array, Response
 from comparisons.scene import Scene
-from tsm.elements import ClosedForm
+from tsm.elements import EXACT, MIXED, ClosedForm
 
 FEWEST = 8
 """Least number of load parameters at which meshes are compared, if the scene has as many."""
@@ -47,11 +47,12 @@ class Trial:
     response: Response | None = None
 
 
-def exact(scene: Scene, accuracy: float, quantity: str) -> Iterator[Trial]:
+def exact(scene: Scene, accuracy: float, quantity: str, *, alone: bool) -> Iterator[Trial]:
     """Yield trials with one exact element a beam, at the tolerance of its integration that the accuracy needs.
 
     The estimate is the integration error inside the elements plus Newton's tolerance, both divided by the size of the quantity.
-    A small load therefore needs a more accurate integration for the same relative error.
+    A small load therefore needs a more accurate integration for the same relative error. Graded elements follow where the exact ones cannot
+    be accurate, unless they are to stand `alone`.
     """
     tolerance = 1e-9
     while True:
@@ -60,15 +61,21 @@ def exact(scene: Scene, accuracy: float, quantity: str) -> Iterator[Trial]:
         size = _size(response, scene, quantity)
         estimate = (response.integration_error + NEWTON) / size if size else math.inf
         words = f"integration error {response.integration_error:.1e}, estimate {estimate:.1e} of {quantity}"
+        said = [f"exact, one element a beam: {words}"]
+        replaced = response.status == "INACCURATE" and not alone
+        if replaced:
+            said.append(f"{EXACT.name} stopped: INACCURATE; {MIXED.name} instead")
         yield Trial(
             scene=scene,
             options=options,
             words="exact elements, one a beam",
             estimate=estimate if response.completed else math.inf,
-            said=(f"exact, one element a beam: {words}",),
+            said=tuple(said),
             response=response,
         )
         sharper = max(SHARPEST * 1.01, accuracy * size / 4)
+        if replaced:
+            yield from graded(scene, accuracy, quantity, MIXED)
         if not response.completed or sharper >= tolerance:
             return
         tolerance = sharper

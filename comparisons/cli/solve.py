@@ -102,9 +102,7 @@ def run(given: "argparse.Namespace") -> int:
     status = exit_status(scene, [("", response)])
     if answer is None or answer.reached or status != DONE:
         return status
-    report(
-        f"crossval: ACCURACY_NOT_REACHED: estimated error {answer.estimate:.2g}, asked {answer.accuracy:g}"
-    )
+    report(f"crossval: ACCURACY_NOT_REACHED: estimated error {answer.estimate:.2g}, asked {answer.asked:g}")
     return STOPPED
 
 

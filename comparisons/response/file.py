@@ -215,42 +215,45 @@ def _table(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
 def _numbers(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
     """Return a number or an array of numbers."""
     names = field.get("shape", [])
-    shape = tuple(sizes.get(size, None) if isinstance(size, str) else size for size in names)
-    if not _plain(value, len(shape)):
-        raise FieldError(key, value, _rule(shape))
-    try:
-        found = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError):
-        raise FieldError(key, value, _rule(shape)) from None
-    if found.size == 0 and 0 in shape:
+    shape = tuple(sizes.get(size) if isinstance(size, str) else size for size in names)
+    found = _array(value, len(shape))
+    if found is not None and found.size == 0 and 0 in shape:
         found = np.zeros([size or 0 for size in shape])
-    if found.ndim != len(shape) or any(
-        size not in (None, own) for size, own in zip(shape, found.shape, strict=True)
-    ):
-        has = f", has {_sizes(found.shape)}" if found.ndim else ""
+    if found is None or found.ndim != len(shape) or any(map(_differ, shape, found.shape)):
+        has = f", has {_sizes(found.shape)}" if found is not None and found.ndim else ""
         raise FieldError(key, value, _rule(shape) + has)
     _check_finite(found, key, ~np.isnan(found) if "gaps" in field else np.True_)
+    if not shape:
+        return float(found)
     if names == ["m"] and sizes["s"] and (len(found) < 2 or not np.all(np.diff(found) > 0.0)):
         raise FieldError(key, value, "must be two or more increasing numbers")
     sizes |= {name: own for name, own in zip(names, found.shape, strict=True) if isinstance(name, str)}
-    if not shape:
-        return float(found)
     item = field["items"]
-    whole = "enum" in item or item.get("type") == "integer"
     if "enum" in item and not np.isin(found, item["enum"]).all():
         raise FieldError(key, value, f"must be a list of {', '.join(map(str, item['enum']))}")
-    if not whole:
+    if "enum" not in item and item.get("type") != "integer":
         return found
     if np.any(np.abs(found) > LARGEST_WHOLE) or np.any(found % 1.0):
         raise FieldError(key, value, "must be a list of whole numbers")
     return found.astype(np.int64)
 
 
-def _plain(value: object, depth: int) -> bool:
-    """Whether a value is a number or null, or a list of these that is so deep at most; a text or truth value is no number."""
-    if isinstance(value, list) and depth:
-        return all(_plain(item, depth - 1) for item in value)
-    return value is None or type(value) in (int, float)
+def _array(value: object, depth: int) -> Array | None:
+    """Return a number, or lists of numbers that are so deep at most; None for anything else, as a text or truth value."""
+
+    def plain(value: object, depth: int) -> bool:
+        if isinstance(value, list) and depth:
+            return all(plain(item, depth - 1) for item in value)
+        return value is None or type(value) in (int, float)
+
+    try:
+        return np.array(value, dtype=np.float64) if plain(value, depth) else None
+    except (ValueError, OverflowError):
+        return None
+
+
+def _differ(size: int | None, own: int) -> bool:
+    return size not in (None, own)
 
 
 def _check_finite(numbers: Array, key: str, needed: Any) -> None:

@@ -31,9 +31,7 @@ class ContactHistory:
     gap: (
         Array  #: Gap (s,): 0 where closed, or minus the penetration of a penalty; positive or nan where open.
     )
-    compliance: float | Array = (
-        0.0  #: Penetration per normal force of a penalty, ``gap = -compliance force``.
-    )
+    compliance: float | Array = 0.0  #: Penetration per normal force of a penalty, ``-gap / force``.
     slip_off: float = np.nan  #: Load parameter at which the node left over the free end; nan if it did not.
     vector: Array | None = None  #: The contact force on the beam (s, 2), where the model states it.
     friction: "FrictionHistory | None" = None  #: What friction does; None without friction.
@@ -155,17 +153,11 @@ class Response:
     #: ``axis_line(beam, k)``: arc length (m,) and deformed positions (m, 2) of an axis at load parameter k. A stored response has
     #: `comparisons.response.axis.SampledAxes` here.
     axis_line: Callable[[str, int], tuple[Array, Array]] = _nothing
-    grid: Callable[[int], Grid] = (
-        _nothing  #: ``grid(k)``: mesh and fields at load parameter k; not of a stored response.
-    )
-    sections: Callable[[str, int], Sections] | None = (
-        None  #: ``sections(beam, k)``: not of a stored response.
-    )
+    grid: Callable[[int], Grid] = _nothing  #: ``grid(k)``: mesh and fields; not of a stored response.
+    sections: Callable[[str, int], Sections] | None = None  #: ``sections(beam, k)``; not stored.
     events: tuple[ContactEvent, ...] | None = None  #: Contact events in their order.
     continuum: bool = False  #: Whether the model is a two-dimensional body and not a rod.
-    outside: bool = (
-        False  #: Whether a program of others gave the answer, which balances to its own accuracy only.
-    )
+    outside: bool = False  #: Whether a program of others gave the answer, and it balances to its accuracy.
     #: Estimated error of the integration inside exact elements: the largest of positions over the longest beam, of angles, and of
     #: forces over ``EI/L^2``.
     integration_error: float = 0.0

@@ -172,14 +172,14 @@ def test_the_theory_of_curved_and_tapered_beams_has_their_radius_and_local_heigh
     tip = LoadSpec(beam="a", end="end", force=(0.0, -1.0))
     tight = replace(arc, beams=(replace(arc.beams[0], turn=-2.0),), contacts=(), pins=(), loads=(tip,))
     radius = tight.beams[0].length / 2.0
-    assert solve_to(tight, 1e-3).theory.slenderness == pytest.approx(0.01 / radius, rel=1e-12)
+    assert solve_to(tight, 1e-3).beam_theory.slenderness == pytest.approx(0.01 / radius, rel=1e-12)
     answer, beam = solve_to(taper, 1e-3), taper.beams[0]
     data = answer.response.grid(len(answer.response.load_parameter) - 1).point_data
     local = [
         abs(m) * beam.height_at(s) / (2 * beam.stiffness(s)[2])
         for s, m in zip(np.clip(data["arc"], 0, 1).tolist(), data["M"].tolist(), strict=True)
     ]
-    assert answer.theory.strain == pytest.approx(max(local), rel=1e-12)
+    assert answer.beam_theory.strain == pytest.approx(max(local), rel=1e-12)
 
 
 @pytest.mark.slow
@@ -187,7 +187,7 @@ def test_what_a_scene_requires():
     (beam,) = KS.beams
     stocky = replace(KS, beams=(replace(beam, height=0.2),), load_parameters=2)
     slender, solid = solve_to(KS, 1e-3), solve_to(stocky, 1e-2)
-    assert (slender.model, solid.model, solid.theory) == ("tsm", "solid", None)
+    assert (slender.model, solid.model, solid.beam_theory) == ("tsm", "solid", None)
     assert "exact rods suffice" in slender.decisions[0]
     assert "stocky, h/L = 0.2" in solid.decisions[0]
     load = LoadSpec(beam=beam.name, end="end", moment=1e-5)
@@ -207,7 +207,7 @@ def test_beam_theorys_own_error(height):
     scene = replace(KS, beams=(beam,), load_parameters=10)
     exact, solid = solve(scene, "rod"), solve(scene, "solid", Options(mesh=(100, 2)))
     apart = np.abs(solid.contacts[PAIR].force / exact.contacts[PAIR].force - 1)[1:].max()
-    theory = solve_to(scene, 1e-3).theory
+    theory = solve_to(scene, 1e-3).beam_theory
     assert theory.slenderness == pytest.approx(height)
     assert apart / 2 <= theory.error <= 2 * apart
 
