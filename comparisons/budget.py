@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.errors import forces, moments, size
 from comparisons.models import ROD, SOLID, TSM, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Count, uncounted
+from comparisons.quantities import forces, moments, size
 from comparisons.response import Array, Response
 from comparisons.scene import Scene
 

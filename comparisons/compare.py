@@ -10,7 +10,7 @@ import numpy as np
 import tsm
 from comparisons import models
 from comparisons.budget import Budget, error_budget
-from comparisons.errors import Errors, error_histories, errors, event_differences, largest
+from comparisons.errors import Errors, error_histories, errors, largest
 from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.models import Model, certified, find, solve
 from comparisons.models.options import ModelError, Options
@@ -18,10 +18,10 @@ from comparisons.models.progress import Count, Watch, uncounted, unwatched
 from comparisons.models.theory import bending
 from comparisons.models.verify import CHECK_FAILED
 from comparisons.output import json_text
-from comparisons.quantities import KEPT, PATH
+from comparisons.quantities import event_differences, names
 from comparisons.referee import Verdict
 from comparisons.response import Response
-from comparisons.response.to_json import as_dict
+from comparisons.response.file import as_dict
 from comparisons.scene import Scene, to_toml
 from comparisons.scene.keys import special_keys
 from comparisons.show.budget_plot import plot_budget, write_budget
@@ -228,11 +228,11 @@ def _cause(model: Model, options: Options, scene: Scene, reference: Response) ->
 
 def _errors(response: Response, reference: Response, scene: Scene) -> Errors:
     """Return the errors of a run; over the path as far as the run came."""
-    names = (*KEPT, *PATH)
-    found = errors(response, reference, scene, quantities=names)
+    compared = names(mesh=False)
+    found = errors(response, reference, scene, quantities=compared)
     if response.completed:
         return found
-    _, reached = error_histories(response, reference, scene, quantities=names)
+    _, reached = error_histories(response, reference, scene, quantities=compared)
     return {**found, "path": {name: largest(values) for name, values in reached.items()}}
 
 

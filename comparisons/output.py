@@ -4,7 +4,7 @@ import csv
 import io
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
@@ -20,10 +20,10 @@ Report = Callable[[str], None]
 """Receives one line about the progress."""
 
 
-def csv_text(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Return rows of equal keys as CSV; a number that is not finite is an empty cell."""
+def csv_text(rows: Sequence[Mapping[str, Any]], columns: Iterable[str] = ()) -> str:
+    """Return rows of equal keys, the columns, as CSV; a number that is not finite is an empty cell."""
     text = io.StringIO()
-    writer = csv.DictWriter(text, rows[0], lineterminator="\n")
+    writer = csv.DictWriter(text, list(columns) or list(rows[0]), lineterminator="\n")
     writer.writeheader()
     writer.writerows({key: plain(value) for key, value in row.items()} for row in rows)
     return text.getvalue()

@@ -1,10 +1,8 @@
 """Solution to a requested accuracy: the choice of model and mesh, and the estimate of the remaining error."""
 
-from comparisons.accuracy.answer import Answer
-from comparisons.accuracy.choose import solve_to
-from comparisons.quantities import QUANTITIES
+from comparisons.accuracy.answer import Answer, solve_to
 
-__all__ = ["QUANTITIES", "Answer", "solve_to"]
+__all__ = ["Answer", "solve_to"]
 
 
 def __dir__() -> list[str]:

@@ -22,9 +22,7 @@ from comparisons.output import plain
 from comparisons.referee import Verdict
 from comparisons.response import Response
 from comparisons.response.axis import storable
-from comparisons.response.from_json import restated
-from comparisons.response.record import unanswered
-from comparisons.response.to_json import as_dict
+from comparisons.response.file import as_dict, restated
 from comparisons.scene import to_toml
 
 REFUSED = "REFUSED"
@@ -142,4 +140,4 @@ def _processor_seconds() -> float:
 
 def unmeasured(status: str, message: str) -> Measurement:
     """Return the measurement of a case that gave neither answer nor cost, and why."""
-    return Measurement(response=storable(unanswered(status, message)))
+    return Measurement(response=storable(Response(status=status, message=message)))

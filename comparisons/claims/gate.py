@@ -7,12 +7,12 @@ from math import isnan
 
 from comparisons.claims.claim import Allowance, Claim, Finding, Judgement, Quantity, StoppedError, judge
 from comparisons.claims.junit import junit_text
-from comparisons.errors import difference, event_differences, worst_place
+from comparisons.errors import difference, worst_place
 from comparisons.models import ROD, certified, find, solve
 from comparisons.models.options import ModelError, Options
+from comparisons.quantities import QUANTITIES
 from comparisons.referee.certify import ALLOWED
 from comparisons.response import Response
-from comparisons.response.material import UNDEFINED, clamped
 from comparisons.scene import Scene
 
 
@@ -85,18 +85,13 @@ def gate(
     exact = other.reference or Options()
     if find(model).name == other.name and other.setting(scene, options) == other.setting(scene, exact):
         raise ModelError(f"{model}: is measured against itself; --against names another model")
-    if "friction" in bounds and not clamped(scene):
-        raise ModelError(f"friction: {UNDEFINED}")
-    if "stress" in bounds and not (find(model).continuum and other.continuum and len(scene.beams) == 1):
-        raise ModelError("stress: is measured between two solids of a single beam")
+    for name in bounds:
+        refused = QUANTITIES[name].refusal(scene, find(model).continuum and other.continuum)
+        if refused is not None:
+            raise ModelError(f"{name}: {refused}")
     allowance = max(ALLOWED, *bounds.values())
     reference = certified(solve(scene, against or ROD.name, exact), scene)
     response = certified(solve(scene, model, options), scene, allowance=allowance)
-    silent = [one.model for one in (reference, response) if one.events is None]
-    if "event" in bounds and silent and not event_differences(response, reference):
-        raise ModelError(
-            f"event: {silent[0]} states no events of this scene; compare two models that do, --against tsm"
-        )
 
     def measured(quantity: str) -> tuple[float]:
         for one in (response, reference):
@@ -104,7 +99,8 @@ def gate(
                 raise StoppedError(f"{one.model}: {one.status}: {one.message}")
         error = difference(response, reference, scene, quantity)
         if isnan(error):
-            raise ModelError(f"{quantity}: the scene has none")
+            absent = QUANTITIES[quantity].absent(response, reference)
+            raise ModelError(f"{quantity}: {absent or 'the scene has none'}")
         return (error,)
 
     claims = (

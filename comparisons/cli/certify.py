@@ -58,7 +58,7 @@ def run(given: "argparse.Namespace") -> int:
     from comparisons.models import certified, restored
     from comparisons.output import json_text
     from comparisons.referee import Verdict, certify
-    from comparisons.response.from_json import read_response
+    from comparisons.response.file import read_response
 
     stored = given.answer.endswith(".json")
     if stored and file == Path(given.answer).resolve():

@@ -16,11 +16,11 @@ from comparisons.cli.options import (
 )
 from comparisons.cli.outcome import DONE, STOPPED, WRONG, exit_status, report
 from comparisons.cli.progress import staging, watching
+from comparisons.cli.values import Quantities
 from comparisons.files import result_file, writable_folder, write_text
 from comparisons.models import TSM
 from comparisons.models.options import ModelError
 from comparisons.models.progress import Count, Watch
-from comparisons.quantities import COMPARED
 from comparisons.scene import Scene, built_in_scenes, load_scene
 
 if TYPE_CHECKING:
@@ -60,14 +60,15 @@ def add_to(commands: "Commands") -> None:
     add_others(parser)
     parser.add_argument("--model", choices=ModelNames(), help="a bound's model (tsm), or one more row")
     add_options(parser, "elements", "element", "mesh")
-    parser.add_argument(
+    bounds = parser.add_argument(
         "--max-error",
         action="append",
         default=[],
         type=_bound,
         metavar="QUANTITY=X",
-        help="a bound, any number of them: " + ", ".join(COMPARED),
+        help="a bound, any number of them: %(quantities)s",
     )
+    vars(bounds)["quantities"] = Quantities(path=True)
     parser.add_argument("--against", choices=ModelNames(), help="bounds: the model to measure against (rod)")
     parser.add_argument("--junit", metavar="FILE", help="bounds: write them as JUnit XML")
     parser.add_argument(
@@ -87,10 +88,9 @@ def _bound(text: str) -> tuple[str, float]:
         value = float(bound)
     except ValueError:
         value = -1.0
-    if quantity not in COMPARED or not value > 0:
-        raise argparse.ArgumentTypeError(
-            f"{text}: must be QUANTITY=X with X above 0 and one of {', '.join(COMPARED)}"
-        )
+    known = Quantities(path=True)
+    if quantity not in known or not value > 0:
+        raise argparse.ArgumentTypeError(f"{text}: must be QUANTITY=X with X above 0 and one of {known}")
     return quantity, value
 
 

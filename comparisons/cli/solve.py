@@ -13,7 +13,6 @@ from comparisons.cli.progress import watching
 from comparisons.files import OutputError, result_file, writable_folder, write_text
 from comparisons.models import TSM, find
 from comparisons.models.options import ModelError
-from comparisons.quantities import QUANTITIES
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
@@ -42,7 +41,10 @@ def add_to(commands: "Commands") -> None:
         help="choose model and resolution for this relative error, in place of elements and meshes",
     )
     solve.add_argument(
-        "--quantity", choices=QUANTITIES, help="the quantity whose error is meant: " + ", ".join(QUANTITIES)
+        "--quantity",
+        choices=values.Quantities(path=False),
+        metavar="QUANTITY",
+        help="the quantity whose error is meant: %(choices)s",
     )
     solve.add_argument("--explain", action="store_true", help="with --accuracy: say what was decided and why")
     add_options(solve, "elements", "element", "integration_tolerance", "mesh", "branch")
@@ -84,7 +86,7 @@ def run(given: "argparse.Namespace") -> int:
         response, rule = _solved(scene, given)
         more, lines = {}, []
     else:
-        scene, response, rule = answer.found.scene, answer.response, ""
+        scene, response, rule = answer.scene, answer.response, ""
         more, lines = {"accuracy": answer.as_dict()}, list(answer.lines())
     stages.end("set up", less=response.wall_seconds)
     response = certified(response, scene, given.certify)
@@ -100,9 +102,7 @@ def run(given: "argparse.Namespace") -> int:
     status = exit_status(scene, [("", response)])
     if answer is None or answer.reached or status != DONE:
         return status
-    report(
-        f"crossval: ACCURACY_NOT_REACHED: estimated error {answer.found.estimate:.2g}, asked {answer.accuracy:g}"
-    )
+    report(f"crossval: ACCURACY_NOT_REACHED: estimated error {answer.estimate:.2g}, asked {answer.asked:g}")
     return STOPPED
 
 
@@ -163,7 +163,7 @@ def _solved(scene: "Scene", given: "argparse.Namespace") -> "tuple[Response, str
 def _write(given: "argparse.Namespace", response: "Response", scene: "Scene", more: dict[str, Any]) -> None:
     """Write the files that were asked for."""
     if given.json is not None:
-        from comparisons.response.to_json import as_json
+        from comparisons.response.file import as_json
 
         if given.json == "-":
             sys.stdout.write(as_json(response, **more))

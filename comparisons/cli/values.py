@@ -1,13 +1,29 @@
 """Values of the arguments, checked by the rules of the scene where they are read."""
 
 import argparse
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TypeVar
 
 from comparisons.scene import rules
 from comparisons.scene.rules import RuleError
 
 Value = TypeVar("Value")
+
+
+class Quantities:
+    """The names of the quantities, which are imported where they are asked for; those of the path with `path`."""
+
+    def __init__(self, *, path: bool) -> None:
+        self.path = path
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names."""
+        from comparisons.quantities import names
+
+        return iter(names(path=self.path))
+
+    def __str__(self) -> str:
+        return ", ".join(self)
 
 
 def count(text: str) -> int:

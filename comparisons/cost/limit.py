@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from comparisons.errors import forces, size
+from comparisons.quantities import forces, size
 from comparisons.response import Array, Response
 from comparisons.response.axis import SampledAxes, sampled_axes
 

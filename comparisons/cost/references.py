@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from comparisons.cases import Case, Measurement
 from comparisons.cost.cases import family, limit_cases
 from comparisons.cost.limit import end_state, extrapolated
-from comparisons.errors import Errors, Scales, errors, scales
+from comparisons.errors import Errors, errors
 from comparisons.models import ROD, TSM
 from comparisons.models.options import Options
+from comparisons.quantities import Scales, scales
 from comparisons.response import Response
 from comparisons.scene import Scene
 from tsm.elements import EXACT

@@ -230,7 +230,6 @@ def local_response(
         scene=scene.name,
         status=stop or "COMPLETED",
         message=f"{STOPS[stop]}{when}" if stop else "all load parameters were reached",
-        completed=stop is None,
         load_parameter=times[:reached],
         contacts={local.contact.pair: contact},
         supports={f"{name}.{local.clamp}": support},

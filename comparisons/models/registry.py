@@ -96,7 +96,7 @@ def restored(response: Response, scene: Scene) -> Response:
     response = _as_registered(response, MODELS.get(response.model) or ADAPTERS.get(response.model))
     if response.completed and not response.reported_success:
         contradiction = f"the status is {response.status}, and reported_success is false"
-        return replace(response, status=CHECK_FAILED, message=contradiction, completed=False)
+        return replace(response, status=CHECK_FAILED, message=contradiction)
     if response.outside or response.continuum:
         contacts = {pair: penetrating(item) for pair, item in response.contacts.items()}
         response = replace(response, contacts=contacts)
@@ -149,4 +149,4 @@ def certified(
     response = replace(response, certificate=found)
     if not response.completed or found.verdict in {Verdict.CERTIFIED, Verdict.NOT_JUDGED}:
         return response
-    return replace(response, status=found.verdict.name, message=found.reason, completed=False)
+    return replace(response, status=found.verdict.name, message=found.reason)

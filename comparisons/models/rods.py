@@ -53,7 +53,6 @@ def solve_rods(scene: Scene, watch: Watch) -> Response:
         model=ROD.name,
         status=followed.status if sound else found.verdict.name,
         message=followed.message if sound else found.reason,
-        completed=followed.completed and sound,
         load_parameter=followed.load_parameter[: len(states)],
         contacts={
             pair: _contact(pair, history, states, friction.get(pair))

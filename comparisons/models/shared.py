@@ -102,7 +102,6 @@ def of_result(
         continuum=model.continuum,
         scene=scene.name,
         status=result.status.name,
-        completed=result.status.name == "COMPLETED",
         supports=held,
         springs=springs,
         tips={beam: rows([line(beam, k)[end] for k in steps], 2) for beam, end in tips.items()},

@@ -102,7 +102,7 @@ def _solved(scene: Scene, options: Options, watch: Watch) -> Response:
     import fem_reference
     from comparisons.models.sections import j_integrals, section_forces
     from comparisons.response import Deformation, FrictionHistory, Grid
-    from comparisons.response.deferred import Deferred
+    from comparisons.response.material import Deferred
 
     def report(step: Any) -> None:
         touching = (f"{touch.pair.name} at {float(touch.projection.zeta):.4g}" for touch in step.state.closed)

@@ -9,10 +9,12 @@ from numpy.typing import NDArray
 
 from comparisons.referee.balance import balance_failures
 from comparisons.referee.passing import passages
-from comparisons.response import Array, Deformation, Response
-from comparisons.scene import ContactSpec, Scene
+from comparisons.response import Array, ContactHistory, Deformation, Response
+from comparisons.scene import BeamSpec, ContactSpec, Scene
 from comparisons.scene.ends import BeamEnd, free_ends
 
+Check = Callable[[Response, Scene], Iterator[str]]
+Mask = NDArray[np.bool_]
 CHECK_FAILED = "CHECK_FAILED"
 UNSTABLE = "UNSTABLE"
 PULL = 1e-9
@@ -37,29 +39,15 @@ def verified(response: Response, scene: Scene) -> Response:
 
     A path with unstable equilibria is not completed, and has the status ``UNSTABLE``. A response that stopped early is checked only for elements that are bent too much and for numbers below the round-off.
     """
-    reason = next((failures if response.completed else unresolved)(response, scene), None)
+    names = CHECKS if response.completed else UNRESOLVED
+    reason = next((said for name in names for said in CHECKS[name](response, scene)), None)
     if reason is not None:
         stop = "" if response.completed else f"; then {response.status}: {response.message}"
-        return replace(response, status=CHECK_FAILED, message=reason + stop, completed=False)
+        return replace(response, status=CHECK_FAILED, message=reason + stop)
     if not response.completed or response.index is None or not np.any(response.index > 0):
         return response
     sentence = f"the equilibrium is unstable {_first(response.index > 0, response)} and may be so beyond"
-    return replace(response, status=UNSTABLE, message=sentence, completed=False)
-
-
-def failures(response: Response, scene: Scene) -> Iterator[str]:
-    """Yield one sentence for every one of `CHECKS` that a completed `response` breaks, of the first two alone where they fail."""
-    for name, check in CHECKS.items():
-        found = list(check(response, scene))
-        yield from found
-        if found and name in ("load parameters", "finite numbers"):
-            return
-
-
-def unresolved(response: Response, scene: Scene) -> Iterator[str]:
-    """Yield one sentence for each deformation too large for the elements, and for each motion below the resolution of the numbers."""
-    for name in ("bend of elements", "strain of elements", "motion of pins"):
-        yield from CHECKS[name](response, scene)
+    return replace(response, status=UNSTABLE, message=sentence)
 
 
 def _unreached(response: Response, scene: Scene) -> Iterator[str]:
@@ -68,34 +56,40 @@ def _unreached(response: Response, scene: Scene) -> Iterator[str]:
 
 
 def _infinite(response: Response, _: Scene) -> Iterator[str]:
-    yield from (
-        f"{name} is not finite" for name, values in _numbers(response) if not np.isfinite(values).all()
-    )
+    numbers = [(f"tip of {beam}", tip) for beam, tip in response.tips.items()]
+    for kind, held in (("support", response.supports), ("spring", response.springs)):
+        for node, item in held.items():
+            numbers += [(f"{kind} force of {node}", item.force), (f"{kind} moment of {node}", item.moment)]
+    for pair, contact in response.contacts.items():
+        closed = contact.force > 0.0
+        numbers += [
+            (f"force of {pair}", contact.force),
+            (f"arc position of {pair}", contact.arc_position[closed]),
+            (f"gap of {pair}", contact.gap[closed]),
+        ]
+    yield from (f"{name} is not finite" for name, values in numbers if not np.isfinite(values).all())
 
 
 def _unbalanced(response: Response, scene: Scene) -> Iterator[str]:
-    if not response.outside:
-        yield from balance_failures(response, scene)
+    return iter(()) if response.outside else balance_failures(response, scene)
+
+
+def _deformed(response: Response, failed: Callable[[Deformation], Mask], sentence: str) -> Iterator[str]:
+    """Yield a sentence if elements are deformed too much up to the last load parameter of the answer."""
+    at = response.deformation
+    claimed = None if at is None else at.load_parameter <= max(response.load_parameter, default=0.0)
+    if at is not None and claimed is not None and (claimed & failed(at)).any():
+        yield sentence.format(at.turn[claimed].max(), at.bearable) + _first(claimed & failed(at), at)
 
 
 def _bent(response: Response, _: Scene) -> Iterator[str]:
-    deformation = response.deformation
-    if deformation is not None:
-        claimed = deformation.load_parameter <= max(response.load_parameter, default=0.0)
-        bent = claimed & (deformation.turn > deformation.bearable)
-        if bent.any():
-            most = deformation.turn[claimed].max()
-            limit = f"{deformation.bearable:g} {_first(bent, deformation)}"
-            yield f"too few elements: one bends by {most:.2g} rad, more than {limit}"
+    sentence = "too few elements: one bends by {:.2g} rad, more than {:g} "
+    return _deformed(response, lambda at: at.turn > at.bearable, sentence)
 
 
 def _strained(response: Response, _: Scene) -> Iterator[str]:
-    deformation = response.deformation
-    if deformation is not None:
-        claimed = deformation.load_parameter <= max(response.load_parameter, default=0.0)
-        strained = claimed & (deformation.strain > STRAIN)
-        if strained.any():
-            yield f"forces exceed {STRAIN:g} EA or GA, beyond elements of small strain, {_first(strained, deformation)}"
+    sentence = f"forces exceed {STRAIN:g} EA or GA, beyond elements of small strain, "
+    return _deformed(response, lambda at: at.strain > STRAIN, sentence)
 
 
 def _motionless(_: Response, scene: Scene) -> Iterator[str]:
@@ -106,57 +100,41 @@ def _motionless(_: Response, scene: Scene) -> Iterator[str]:
             yield f"{pin.name} moves by {way:.2g}, less than {MOTION:g} of the length, which is not resolved"
 
 
-def _numbers(response: Response) -> Iterator[tuple[str, Array]]:
-    for pair, contact in response.contacts.items():
-        closed = contact.force > 0.0
-        yield f"force of {pair}", contact.force
-        yield f"arc position of {pair}", contact.arc_position[closed]
-        yield f"gap of {pair}", contact.gap[closed]
-    for kind, held in (("support", response.supports), ("spring", response.springs)):
-        for node, item in held.items():
-            yield f"{kind} force of {node}", item.force
-            yield f"{kind} moment of {node}", item.moment
-    for beam, tip in response.tips.items():
-        yield f"tip of {beam}", tip
-
-
-def _first(failed: NDArray[np.bool_], at: Response | Deformation) -> str:
+def _first(failed: Mask, at: Response | Deformation) -> str:
     return f"at load parameter {at.load_parameter[np.argmax(failed)]:.6g}"
 
 
-def _pulling(response: Response, scene: Scene) -> Iterator[str]:
-    for spec in scene.contacts:
-        beam = scene.beam(spec.beam)
-        pulls = response.contacts[spec.pair].force < -PULL * beam.EI / beam.length**2
-        if pulls.any():
-            yield f"the contact force of {spec.pair} pulls {_first(pulls, response)}"
+def _contacts(
+    sentence: str, failed: Callable[[ContactHistory, ContactSpec, BeamSpec, Response], Mask]
+) -> Check:
+    """Return the check that no contact fails; the sentence names its pair, and the load parameter follows."""
+
+    def check(response: Response, scene: Scene) -> Iterator[str]:
+        for spec in scene.contacts:
+            found = failed(response.contacts[spec.pair], spec, scene.beam(spec.beam), response)
+            if found.any():
+                yield f"{sentence.format(spec.pair)} {_first(found, response)}"
+
+    return check
 
 
-def _ajar(response: Response, scene: Scene) -> Iterator[str]:
-    for spec in scene.contacts:
-        contact = response.contacts[spec.pair]
-        pressing = contact.force if contact.friction is None else contact.friction.normal
-        allowed = max(CLOSED, spec.penetration or 0.0) if response.continuum else CLOSED
-        apart = np.abs(contact.gap + contact.compliance * pressing) > allowed * scene.beam(spec.beam).length
-        ajar = (contact.force > 0.0) & apart
-        if ajar.any():
-            yield f"{spec.pair} carries a force with an open gap {_first(ajar, response)}"
+def _pulling(contact: ContactHistory, _: ContactSpec, beam: BeamSpec, __: Response) -> Mask:
+    return contact.force < -PULL * beam.EI / beam.length**2
 
 
-def _deep(response: Response, scene: Scene) -> Iterator[str]:
-    for spec in scene.contacts:
-        contact = response.contacts[spec.pair]
-        deep = (contact.force > 0.0) & (contact.gap < -PENETRATION * scene.beam(spec.beam).length)
-        if deep.any():
-            yield f"the penetration of {spec.pair} exceeds {PENETRATION:.0%} of the length {_first(deep, response)}"
+def _ajar(contact: ContactHistory, spec: ContactSpec, beam: BeamSpec, response: Response) -> Mask:
+    pressing = contact.force if contact.friction is None else contact.friction.normal
+    allowed = max(CLOSED, spec.penetration or 0.0) if response.continuum else CLOSED
+    apart = np.abs(contact.gap + contact.compliance * pressing) > allowed * beam.length
+    return (contact.force > 0.0) & apart
 
 
-def _dropped(response: Response, scene: Scene) -> Iterator[str]:
-    for spec in (one for one in scene.contacts if one.keep):
-        contact = response.contacts[spec.pair]
-        dropped = np.isnan(contact.arc_position) & np.logical_or.accumulate(contact.force > 0.0)
-        if dropped.any():
-            yield f"{spec.pair} must persist and is open {_first(dropped, response)}"
+def _deep(contact: ContactHistory, _: ContactSpec, beam: BeamSpec, __: Response) -> Mask:
+    return (contact.force > 0.0) & (contact.gap < -PENETRATION * beam.length)
+
+
+def _dropped(contact: ContactHistory, spec: ContactSpec, _: BeamSpec, __: Response) -> Mask:
+    return spec.keep & np.isnan(contact.arc_position) & np.logical_or.accumulate(contact.force > 0.0)
 
 
 def _inside(response: Response, scene: Scene) -> Iterator[str]:
@@ -238,14 +216,13 @@ def penetration(response: Response, scene: Scene, spec: ContactSpec, kink: float
     return depth
 
 
-Check = Callable[[Response, Scene], Iterator[str]]
 CHECKS: dict[str, Check] = {
     "load parameters": _unreached,
     "finite numbers": _infinite,
-    "pushing contacts": _pulling,
-    "closed gaps": _ajar,
-    "small penetration": _deep,
-    "contacts that persist": _dropped,
+    "pushing contacts": _contacts("the contact force of {} pulls", _pulling),
+    "closed gaps": _contacts("{} carries a force with an open gap", _ajar),
+    "small penetration": _contacts(f"the penetration of {{}} exceeds {PENETRATION:.0%} of the length", _deep),
+    "contacts that persist": _contacts("{} must persist and is open", _dropped),
     "round pins outside": _inside,
     "clear ends": _overlapping,
     "sides of beams": passages,
@@ -261,3 +238,5 @@ must persist stay closed. Round pins are outside the beam along the whole axis, 
 the stated side unless they slipped off. Forces and moments of supports, pins and loads balance, for a model of this package. No element
 bends or strains beyond what it approximates, and no pin moves by less than numbers resolve.
 """
+UNRESOLVED = ("bend of elements", "strain of elements", "motion of pins")
+"""The checks of a response that stopped."""

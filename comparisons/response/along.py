@@ -1,8 +1,8 @@
 """Extremes of section forces, axial stress and displacement along the beams, with their places."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,28 +16,19 @@ APART = 1e-12
 UNEVEN = 1e-3
 """Smallest distance of two stations, over the largest near them, between which a polynomial is drawn."""
 ALONG = {
-    "axial_force": "force",
-    "shear_force": "force",
-    "bending_moment": "moment",
-    "tensile_stress": "stress",
-    "compressive_stress": "stress",
-    "displacement": "length",
+    "axial_force": ("force", "axial force"),
+    "shear_force": ("force", "shear force"),
+    "bending_moment": ("moment", "bending moment"),
+    "tensile_stress": ("stress", "nominal axial stress, tension"),
+    "compressive_stress": ("stress", "nominal axial stress, compression"),
+    "displacement": ("length", "displacement of the axis"),
 }
-"""The quantities along a beam and their kinds. Forces and moments are the largest in magnitude with their signs. The stresses are the
+"""The quantities along a beam: their kinds and words. Forces and moments are the largest in magnitude with their signs. The stresses are the
 nominal ones at the faces, ``N/A + M h/2I`` and ``N/A - M h/2I``, the largest and the smallest."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Extreme:
-    """The extreme of a quantity along a beam over the load parameters.
-
-    Attributes
-    ----------
-    value : ndarray, shape (s,)
-        The extreme value; nan where the model does not state the quantity.
-    arc_position : ndarray, shape (s,)
-        Where it is: distance along the undeformed axis from the beam's start.
-    """
+class Extreme(NamedTuple):
+    """The extreme of a quantity along a beam over the load parameters: value (s,), and its distance (s,) along the axis from the start."""
 
     value: Array
     arc_position: Array
@@ -58,10 +49,7 @@ def _along(response: Response, beam: BeamSpec) -> dict[str, Extreme]:
         found["displacement"] = peak(arc, np.hypot(*(line - undeformed(tuple(arc))).T))
         for name, extreme in found.items():
             rows.setdefault(name, []).append(extreme)
-    return {
-        name: Extreme(value=np.array(values)[:, 0], arc_position=np.array(values)[:, 1])
-        for name, values in rows.items()
-    }
+    return {name: Extreme(*np.array(values).T) for name, values in rows.items()}
 
 
 def _sections(beam: BeamSpec, arcs: tuple[float, ...]) -> Array:

@@ -15,18 +15,10 @@ STATIONS = np.linspace(0.0, 1.0, 101)
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SampledAxes:
-    """Deformed axes as arrays; callable like `Response.axis_line`.
+    """Deformed axes as arrays; callable like `Response.axis_line`."""
 
-    Attributes
-    ----------
-    arc_length : dict of ndarray, shape (m,)
-        Arc lengths along the undeformed axes, by beam.
-    position : dict of ndarray, shape (s, m, 2)
-        Deformed positions at the s load parameters, by beam.
-    """
-
-    arc_length: dict[str, Array]
-    position: dict[str, Array]
+    arc_length: dict[str, Array]  #: Arc lengths along the undeformed axes, shape (m,), by beam.
+    position: dict[str, Array]  #: Deformed positions at the s load parameters (s, m, 2), by beam.
 
     def __call__(self, beam: str, k: int) -> tuple[Array, Array]:
         """Return arc length (m,) and deformed positions (m, 2) of a beam's axis at load parameter k."""

@@ -10,15 +10,33 @@ tangential contact forces, positive away from the clamp: physical friction or, w
 """
 
 import math
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
 
 import numpy as np
 
 from comparisons.response.record import Array, Response
-from comparisons.scene import BeamSpec, Scene, SupportSpec
+from comparisons.scene import BeamSpec, ContactSpec, Scene, SupportSpec
 from comparisons.scene.keys import MATERIAL, unstated
 
 UNDEFINED = "no touched beam is held by one clamp alone and loaded by contacts alone"
 """Reason why a scene has no material force."""
+
+
+class Deferred(Mapping[str, Array]):
+    """A table that takes long and is computed once, when it is first asked for."""
+
+    def __init__(self, compute: Callable[[], Mapping[str, Array]]) -> None:
+        self._table = cache(compute)
+
+    def __getitem__(self, name: str) -> Array:
+        return self._table()[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._table())
+
+    def __len__(self) -> int:
+        return len(self._table())
 
 
 def clamped(scene: Scene) -> dict[str, SupportSpec]:
@@ -72,21 +90,14 @@ def material_forces(response: Response, scene: Scene, *, strains: bool = True) -
     return found
 
 
-def frictions(response: Response, scene: Scene) -> dict[str, Array]:
+def frictions(response: Response) -> dict[str, Array]:
     """Return the material force over the sum of the contact forces on its beam, shape (s,) by beam; nan without contact force."""
     found = {}
     for name, force in response.material_force.items():
-        pressing = _pressing(response, scene, name)
+        own = [np.abs(one.force) for pair, one in response.contacts.items() if pair.endswith(f"->{name}")]
+        pressing = np.sum(own, axis=0)
         found[name] = np.divide(force, pressing, out=np.full(len(force), np.nan), where=pressing > 0.0)
     return found
-
-
-def _pressing(response: Response, scene: Scene, beam: str) -> Array:
-    """Sum of the magnitudes of the contact forces on a beam, shape (s,)."""
-    own = [
-        np.abs(response.contacts[contact.pair].force) for contact in scene.contacts if contact.beam == beam
-    ]
-    return np.asarray(np.sum(own, axis=0))
 
 
 def friction_coefficient(force: Array, material_force: Array, beam: BeamSpec, *, lever: float = 0.0) -> Array:
@@ -121,18 +132,33 @@ def friction_coefficient(force: Array, material_force: Array, beam: BeamSpec, *,
     return np.asarray(T / np.sqrt(F**2 - T**2))
 
 
-def frictions_found(response: Response, scene: Scene) -> dict[str, Array]:
-    """Return the coefficients of friction that the reactions of the clamps show, shape (s,) by beam, positive away from the clamp.
+def rubbing(scene: Scene) -> dict[str, ContactSpec]:
+    """Return the contacts with friction whose coefficient the reaction of a clamp shows, by beam.
 
-    In slip a coefficient is that of the contact or its negative, in stick it is smaller. A beam with several contacts, whose tangential
-    forces only have a sum, is left out, and so are a contact without friction and a beam with natural curvature.
+    A beam with several contacts, whose tangential forces only have a sum, is left out, and so is a beam with natural curvature.
     """
     found = {}
-    for name, material_force in response.material_force.items():
+    for name in clamped(scene):
         own = [contact for contact in scene.contacts if contact.beam == name]
         if len(own) == 1 and own[0].friction and not scene.beam(name).turn:
-            force, lever = response.contacts[own[0].pair].force, scene.offset(own[0]) - scene.radius(own[0])
-            found[name] = friction_coefficient(force, material_force, scene.beam(name), lever=lever)
+            found[name] = own[0]
+    return found
+
+
+def frictions_found(response: Response, scene: Scene) -> dict[str, Array]:
+    """Return the coefficients of friction that the reactions of the clamps show, shape (s,) by beam of `rubbing`.
+
+    They are positive away from the clamp. In slip a coefficient is that of the contact or its negative, in stick it is smaller.
+    """
+    found = {}
+    for name, contact in rubbing(scene).items():
+        if name in response.material_force:
+            force, lever = (
+                response.contacts[contact.pair].force,
+                scene.offset(contact) - scene.radius(contact),
+            )
+            given = response.material_force[name]
+            found[name] = friction_coefficient(force, given, scene.beam(name), lever=lever)
     return found
 
 

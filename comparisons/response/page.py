@@ -6,32 +6,34 @@ Numbers have six significant digits, fewer where the last ones are round-off; a 
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from comparisons.output import aligned
-from comparisons.response.along import ALONG, FIRST, Extreme, extremes_along
-from comparisons.response.events import SLIP_OFF, event_words, last_force, opening, peak_force
-from comparisons.response.record import ContactHistory, Response
+from comparisons.response.along import ALONG, FIRST, extremes_along
+from comparisons.response.record import ContactEvent, Response
 from comparisons.response.round_off import RoundOff, round_off
 from comparisons.response.table import unit_names
-from comparisons.scene import SpringSpec, SupportSpec
 
-PLAIN = dict.fromkeys(("force", "length", "moment", "energy", "stress"), "")
-WORDS = {
-    "axial_force": "axial force",
-    "shear_force": "shear force",
-    "bending_moment": "bending moment",
-    "tensile_stress": "nominal axial stress, tension",
-    "compressive_stress": "nominal axial stress, compression",
-    "displacement": "displacement of the axis",
-}
-assert WORDS.keys() == ALONG.keys(), "every quantity along a beam has its words"
 PLACE = 4
 """Significant digits of the place of an extreme, which is not sharp where the extreme is flat."""
-NOT_JUDGED = "not judged; crossval certify judges it"
+RELEASE, SLIP_OFF = "release", "slip-off"
+"""Events that open a contact."""
+EVENTS = {
+    "touch": "{node} touches {beam} at arc position {arc}",
+    RELEASE: "{node} leaves {beam} at arc position {arc}",
+    SLIP_OFF: "{node} slips off {beam} at arc position {arc}; contact force before {force}",
+    "slip": "{node} begins to slip on {beam} at arc position {arc}; contact force {force}",
+    "stick": "{node} comes to stick on {beam} at arc position {arc}; contact force {force}",
+    "limit-point": "limit point of the path",
+    "bifurcation": "bifurcation of the path",
+    "pass-through": "",
+}
+"""Sentences by kind of event; that a contact passes a node of the mesh is no event of the structure."""
 
-Row = tuple[str, ...]
+Row = Sequence[str | float]
+"""Texts, and numbers whose kind their column states."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,8 +41,16 @@ class Block:
     """A table of a page: title, names of the columns and rows. The head of the page has neither title nor names."""
 
     title: str = ""
-    columns: Row = ()
-    rows: Sequence[Row]
+    columns: Sequence[str] = ()
+    rows: Sequence[Sequence[str]]
+
+
+class ContactForce(NamedTuple):
+    """A contact force, with its load parameter and arc position."""
+
+    force: float
+    load_parameter: float
+    arc_position: float
 
 
 def text(response: Response, more: Sequence[tuple[str, str]] = (), rule: str = "") -> str:
@@ -66,15 +76,13 @@ def html(response: Response) -> str:
 def blocks(response: Response, more: Sequence[tuple[str, str]] = (), rule: str = "") -> Iterator[Block]:
     """Yield the tables of the page; see `text`."""
     yield Block(rows=[*_head(response, rule), *more])
-    if not len(response.load_parameter):
-        return
-    page = _Page(response)
-    for block in (page.reactions(), page.contacts(), page.tips(), page.extremes(), page.events()):
-        if block.rows:
-            yield block
+    if len(response.load_parameter):
+        page = _Page(response)
+        found = (page.reactions(), page.contacts(), page.tips(), page.extremes(), page.events())
+        yield from (block for block in found if block.rows)
 
 
-def _head(response: Response, rule: str) -> Iterator[Row]:
+def _head(response: Response, rule: str) -> Iterator[tuple[str, str]]:
     scene = response.definition
     if scene is not None:
         counts = ((len(scene.beams), "beam"), (len(scene.pins), "pin"), (len(scene.contacts), "contact pair"))
@@ -90,7 +98,8 @@ def _head(response: Response, rule: str) -> Iterator[Row]:
     last = f", the last {response.load_parameter[-1]:.6g}{stage}" if reached else ""
     yield "status", f"{response.status}: {response.message} ({reached}{asked} load parameters{last})"
     yield "stability", stability(response)
-    yield "certificate", _certificate(response)
+    judged = response.certificate
+    yield "certificate", "not judged; crossval certify judges it" if judged is None else judged.line()
 
 
 def stability(response: Response) -> str:
@@ -111,11 +120,6 @@ def stability(response: Response) -> str:
     return "; ".join(parts)
 
 
-def _certificate(response: Response) -> str:
-    found = response.certificate
-    return NOT_JUDGED if found is None else found.line()
-
-
 class _Page:
     """The tables of an answer that reached a load parameter."""
 
@@ -123,123 +127,132 @@ class _Page:
         scene = response.definition
         self.response, self.scene = response, scene
         self.round_off = RoundOff() if scene is None else round_off(response, scene)
-        self.units = PLAIN if scene is None else unit_names(scene.units)
+        self.units = {} if scene is None else unit_names(scene.units)
         self.now = f"at load parameter {response.load_parameter[-1]:.6g}"
-        self.staged = bool(response.stage[-1] > 1)
-
-    def number(self, value: float, kind: str) -> str:
-        return self.round_off.text(float(value), kind)
-
-    def named(self, name: str, kind: str) -> str:
-        """Return the name of a column with its unit."""
-        return f"{name} [{self.units[kind]}]" if self.units[kind] else name
 
     def with_unit(self, value: float, kind: str) -> str:
-        return f"{self.number(value, kind)} {self.units[kind]}".rstrip()
+        return f"{self.round_off.text(float(value), kind)} {self.units.get(kind, '')}".rstrip()
 
-    def numbers(self, kind: str, *values: float) -> Row:
-        return tuple(self.number(value, kind) for value in values)
-
-    def columns(self, kind: str, *names: str) -> Row:
-        return tuple(self.named(name, kind) for name in names)
+    def block(self, title: str, columns: dict[str, str], rows: Sequence[Row]) -> Block:
+        """Return a table whose columns have the kinds of their numbers by name, empty for texts."""
+        named = [
+            f"{name} [{self.units[kind]}]" if kind in self.units else name for name, kind in columns.items()
+        ]
+        cells = [
+            [
+                cell if isinstance(cell, str) else self.round_off.text(float(cell), kind)
+                for cell, kind in zip(row, columns.values(), strict=True)
+            ]
+            for row in rows
+        ]
+        return Block(title=title, columns=named, rows=cells)
 
     def reactions(self) -> Block:
-        items: list[SupportSpec | SpringSpec] = []
-        if self.scene is not None:
-            items += [*self.scene.all_supports, *self.scene.springs]
-        held = {(item.node, type(item)): ", ".join(item.held) for item in items}
-        rows, whole = [], np.zeros(2)
-        sides = (
-            ("", SupportSpec, self.response.supports),
-            (", spring", SpringSpec, self.response.springs),
-        )
-        for what, kind, reactions in sides:
+        scene, response = self.scene, self.response
+        rows: list[Row] = []
+        for what, reactions, specs in (
+            ("", response.supports, () if scene is None else scene.all_supports),
+            (", spring", response.springs, () if scene is None else scene.springs),
+        ):
+            held = {spec.node: ", ".join(spec.held) for spec in specs}
             for node, one in reactions.items():
-                numbers = (*self.numbers("force", *one.force[-1]), *self.numbers("moment", one.moment[-1]))
-                rows.append((f"{node}{what}", held.get((node, kind), ""), *numbers))
-                whole += one.force[-1]
+                rows.append((f"{node}{what}", held.get(node, ""), *one.force[-1], one.moment[-1]))
         if len(rows) > 1:
-            rows.append(("sum", "", *self.numbers("force", *whole), ""))
-        columns = ("support", "holds", *self.columns("force", "x", "y"), self.named("moment", "moment"))
-        return Block(title=f"Reactions on the beams {self.now}", columns=columns, rows=rows)
+            rows.append(("sum", "", *(sum(float(row[k]) for row in rows) for k in (2, 3)), ""))
+        columns = {"support": "", "holds": "", "x": "force", "y": "force", "moment": "moment"}
+        return self.block(f"Reactions on the beams {self.now}", columns, rows)
 
     def contacts(self) -> Block:
-        contacts = self.response.contacts
-        rubbed = any(contact.friction is not None for contact in contacts.values())
-        columns = ("contact", "state", *self.columns("force", "force", "x", "y"))
-        columns += self.columns("length", "arc position")
-        if rubbed:
-            columns += (*self.columns("force", "tangential", "normal"), *self.columns("energy", "dissipated"))
-        rows = [self._contact(pair, contact, rubbed=rubbed) for pair, contact in contacts.items()]
-        return Block(title=f"Contact forces on the beams {self.now}", columns=columns, rows=rows)
+        columns = {
+            "contact": "",
+            "state": "",
+            "force": "force",
+            "x": "force",
+            "y": "force",
+            "arc position": "length",
+        }
+        if any(contact.friction is not None for contact in self.response.contacts.values()):
+            columns |= {"tangential": "force", "normal": "force", "dissipated": "energy"}
+        rows = []
+        for pair, contact in self.response.contacts.items():
+            vector = (np.nan, np.nan) if contact.vector is None else contact.vector[-1]
+            row: Row = (pair, self._state(pair), contact.force[-1], *vector, contact.arc_position[-1])
+            rubs = contact.friction
+            own = (
+                ("", "", "") if rubs is None else (rubs.tangential[-1], rubs.normal[-1], rubs.dissipated[-1])
+            )
+            rows.append((*row, *own)[: len(columns)])
+        return self.block(f"Contact forces on the beams {self.now}", columns, rows)
 
-    def _contact(self, pair: str, contact: ContactHistory, *, rubbed: bool) -> Row:
-        x, y = (np.nan, np.nan) if contact.vector is None else contact.vector[-1]
-        row = (pair, self._state(pair, contact), *self.numbers("force", contact.force[-1], x, y))
-        row += self.numbers("length", contact.arc_position[-1])
-        friction = contact.friction
-        if friction is None:
-            return row + ("", "", "") * rubbed
-        row += self.numbers("force", friction.tangential[-1], friction.normal[-1])
-        return row + self.numbers("energy", friction.dissipated[-1])
-
-    def _state(self, pair: str, contact: ContactHistory) -> str:
+    def _state(self, pair: str) -> str:
+        contact = self.response.contacts[pair]
         if contact.force[-1] != 0.0 or np.isfinite(contact.arc_position[-1]):
             return "closed" if contact.friction is None else contact.friction.states(contact.force)[-1]
-        opened = opening(self.response, pair)
-        if opened is not None:
-            return f"{'slipped off' if opened.kind == SLIP_OFF else 'opened'} at {opened.load_parameter:.6g}"
+        for event in reversed(self.response.events or ()):
+            if event.pair == pair and event.kind in (RELEASE, SLIP_OFF):
+                return (
+                    f"{'slipped off' if event.kind == SLIP_OFF else 'opened'} at {event.load_parameter:.6g}"
+                )
         if np.isfinite(contact.slip_off):
             return f"slipped off at {contact.slip_off:.6g}"
-        last = last_force(self.response, pair)
-        return "never touched" if last is None else f"open after {last.load_parameter:.6g}"
+        forces = self._forces(pair)
+        return f"open after {forces[-1].load_parameter:.6g}" if forces else "never touched"
+
+    def _forces(self, pair: str) -> list[ContactForce]:
+        """Return the forces of a contact at the load parameters and before the events, without those that do not push."""
+        contact, events = self.response.contacts[pair], self.response.events or ()
+        found = [
+            ContactForce(event.force, event.load_parameter, event.arc_position)
+            for event in events
+            if event.pair == pair
+        ]
+        found += map(ContactForce, contact.force, self.response.load_parameter, contact.arc_position)
+        return sorted((one for one in found if one.force > 0.0), key=lambda one: one.load_parameter)
 
     def tips(self) -> Block:
-        rows, names = [], ["x", "y"]
-        for beam, tip in self.response.tips.items():
-            name, numbers = beam, tip[-1]
-            if self.scene is not None:
+        rows, columns = list[Row](), {"tip": "", "x": "length", "y": "length"}
+        if self.scene is None:
+            rows += [(beam, *tip[-1]) for beam, tip in self.response.tips.items()]
+        else:
+            columns |= {"displacement x": "length", "displacement y": "length"}
+            for beam, tip in self.response.tips.items():
                 name = f"{beam}.{self.scene.tip(beam)}"
-                numbers = np.append(tip[-1], tip[-1] - self.scene.place(name))
-            rows.append((name, *self.numbers("length", *numbers)))
-        if self.scene is not None:
-            names += ["displacement x", "displacement y"]
-        columns = ("tip", *self.columns("length", *names))
-        return Block(title=f"Tips {self.now}", columns=columns, rows=rows)
+                rows.append((name, *tip[-1], *(tip[-1] - self.scene.place(name))))
+        return self.block(f"Tips {self.now}", columns, rows)
 
     def extremes(self) -> Block:
         rows = [row for pair in self.response.contacts for row in self._contact_forces(pair)]
-        if self.scene is not None:
-            rows += self._along(extremes_along(self.response, self.scene))
-        columns = ("quantity", "value", "load parameter", "place")
-        return Block(title="Extremes over the load parameters", columns=columns, rows=rows)
+        columns = dict.fromkeys(("quantity", "value", "load parameter", "place"), "")
+        return self.block("Extremes over the load parameters", columns, [*rows, *self._along()])
 
     def _contact_forces(self, pair: str) -> Iterator[Row]:
-        """Yield the largest contact force, and the last one of a contact that is open again."""
-        peak, last = peak_force(self.response, pair), last_force(self.response, pair)
-        found = {"largest": peak}
+        """Yield the first largest contact force, and the last one of a contact that is open again."""
+        forces = self._forces(pair)
+        if not forces:
+            return
+        least = (1.0 - FIRST) * max(one.force for one in forces)
+        found = {"largest": next(one for one in forces if one.force >= least)}
         if self.response.contacts[pair].force[-1] == 0.0:
-            found = {"largest and last": peak} if peak == last else {**found, "last": last}
+            same = found["largest"] == forces[-1]
+            found = {"largest and last": forces[-1]} if same else {**found, "last": forces[-1]}
         for which, here in found.items():
-            if here is not None:
-                arc = f"arc position {self.with_unit(here.arc_position, 'length')}"
-                what = f"contact force {pair}, {which}"
-                yield what, self.with_unit(here.force, "force"), f"{here.load_parameter:.6g}", arc
+            arc = f"arc position {self.with_unit(here.arc_position, 'length')}"
+            force = self.with_unit(here.force, "force")
+            yield f"contact force {pair}, {which}", force, f"{here.load_parameter:.6g}", arc
 
-    def _along(self, along: dict[str, dict[str, Extreme]]) -> Iterator[Row]:
-        for name, kind in ALONG.items():
+    def _along(self) -> Iterator[Row]:
+        along = {} if self.scene is None else extremes_along(self.response, self.scene)
+        for name, (kind, words) in ALONG.items():
             own = {beam: extremes[name] for beam, extremes in along.items() if name in extremes}
             if not own:
                 continue
             values = np.array([extreme.value for extreme in own.values()])
             sizes = np.abs(values)
             k, b = np.argwhere((sizes >= (1.0 - FIRST) * sizes.max()).T)[0]
-            beam = list(own)[b]
-            place = self._place(beam, float(own[beam].arc_position[k]))
-            at = f"{self.response.load_parameter[k]:.6g}"
-            value = self.with_unit(values[b, k], kind)
-            resolved = abs(values[b, k]) > getattr(self.round_off, kind)
-            yield (WORDS[name], value, at, place) if resolved else (WORDS[name], value, "", "")
+            beam, value = list(own)[b], values[b, k]
+            at, place = f"{self.response.load_parameter[k]:.6g}", self._place(beam, own[beam].arc_position[k])
+            resolved = abs(value) > getattr(self.round_off, kind)
+            yield words, self.with_unit(value, kind), at if resolved else "", place if resolved else ""
 
     def _place(self, beam: str, arc: float) -> str:
         assert self.scene is not None, "extremes along a beam are those of a scene"
@@ -249,14 +262,25 @@ class _Page:
         return f"{beam}, arc position {arc:.{PLACE}g} {self.units['length']}"
 
     def events(self) -> Block:
-        rows = []
-        for event in self.response.events or ():
-            words = event_words(event, self.with_unit)
-            if words:
-                stage = (f"{event.stage}",) * self.staged
-                rows.append((f"{event.load_parameter:.6g}", *stage, words))
-        columns = ("load parameter", *("stage",) * self.staged, "")
-        return Block(title="Events", columns=columns, rows=rows)
+        staged = bool(self.response.stage[-1] > 1)
+        said = [(event, self._said(event)) for event in self.response.events or ()]
+        rows = [
+            (f"{one.load_parameter:.6g}", *(str(one.stage),) * staged, words) for one, words in said if words
+        ]
+        return self.block("Events", dict.fromkeys(("load parameter", *("stage",) * staged, ""), ""), rows)
+
+    def _said(self, event: ContactEvent) -> str:
+        """Return an event in words; empty for one that changes nothing but the element in contact."""
+        node, _, beam = event.pair.partition("->")
+        arc, force = self.with_unit(event.arc_position, "length"), self.with_unit(event.force, "force")
+        words = EVENTS.get(event.kind, f"{event.kind} {event.pair}").format(
+            node=node, beam=beam, arc=arc, force=force
+        )
+        return (
+            f"{words}; {self.with_unit(event.released, 'energy')} released"
+            if words and event.released
+            else words
+        )
 
 
 def _lines(block: Block, scene: str) -> str:

@@ -31,37 +31,21 @@ def least_force(scene: Scene) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class RoundOff:
-    """What is not resolved of each kind of quantity; a smaller number is printed as 0.
+    """What is not resolved of each kind of quantity; a smaller number is printed as 0."""
 
-    Attributes
-    ----------
-    force, moment, energy : float
-        The round-off F of a force is `force_round_off` or, where it is larger, `RESIDUAL`. That of moments and energies is F times the
-        length of the longest beam.
-    length : float
-        `LAST_PLACES` of the size of the scene, and the deflection ``F L^3/EI`` by the round-off F of a force.
-    stress : float
-        The larger of two stresses: F over the smallest area, and the round-off of a moment over the smallest section modulus.
-    number : float
-        Zero: a number without a scale is printed as it is.
-    """
-
-    force: float = 0.0
-    moment: float = 0.0
-    energy: float = 0.0
-    length: float = 0.0
-    stress: float = 0.0
-    number: float = 0.0
+    force: float = 0.0  #: `force_round_off` or, where it is larger, `RESIDUAL`.
+    moment: float = 0.0  #: That of a force times the length of the longest beam.
+    energy: float = 0.0  #: As of a moment.
+    length: float = (
+        0.0  #: `LAST_PLACES` of the size of the scene, or the deflection ``F L^3/EI`` by that of a force.
+    )
+    stress: float = (
+        0.0  #: That of a force over the smallest area, and of a moment over the smallest section modulus.
+    )
+    number: float = 0.0  #: Zero: a number without a scale is printed as it is.
 
     def text(self, value: float, kind: str) -> str:
-        """Return a number with `DIGITS` significant digits, fewer where the last ones are round-off; 0 below the round-off.
-
-        Parameters
-        ----------
-        value : float
-            The number; nan is a dash.
-        kind : str
-            The name of an attribute.
+        """Return a number of a kind with `DIGITS` significant digits, fewer where the last ones are round-off; nan is a dash.
 
         Examples
         --------
@@ -80,30 +64,20 @@ class RoundOff:
 
 def round_off(response: Response, scene: Scene) -> RoundOff:
     """Return the round-off of an answer to a scene."""
-    largest = max(
-        (
-            float(np.abs(values).max(initial=0.0))
-            for values in (
-                *(contact.force for contact in response.contacts.values()),
-                *(support.force for support in response.supports.values()),
-            )
-        ),
-        default=0.0,
-    )
+    forces = [one.force for one in response.contacts.values()]
+    forces += [one.force for one in response.supports.values()]
+    largest = max((float(np.abs(force).max(initial=0.0)) for force in forces), default=0.0)
     residual = RESIDUAL * max(beam.EI / beam.length**2 for beam in scene.beams)
     force = max(force_round_off(scene, max(largest, least_force(scene))), residual)
-    length = max(beam.length for beam in scene.beams)
-    places = np.array([*(point for beam in scene.beams for point in (beam.start, beam.end)), (length, 0.0)])
-    moment = force * length
+    longest = max(beam.length for beam in scene.beams)
+    places = [*(point for beam in scene.beams for point in (beam.start, beam.end)), (longest, 0.0)]
+    deflections = (force * beam.length**3 / beam.EI for beam in scene.beams)
     return RoundOff(
         force=force,
-        moment=moment,
-        energy=moment,
-        length=max(
-            LAST_PLACES * float(np.abs(places).max()),
-            *(force * beam.length**3 / beam.EI for beam in scene.beams),
-        ),
-        stress=max(_stress(beam, force, moment) for beam in scene.beams),
+        moment=force * longest,
+        energy=force * longest,
+        length=max(LAST_PLACES * float(np.abs(places).max()), *deflections),
+        stress=max(_stress(beam, force, force * longest) for beam in scene.beams),
     )
 
 

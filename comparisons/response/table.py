@@ -23,19 +23,14 @@
     Work of pins, supports and loads.
 """
 
-import csv
-import io
 from collections.abc import Iterator
 from typing import Any
 
 from numpy.typing import NDArray
 
-from comparisons.output import plain
+from comparisons.output import csv_text
 from comparisons.response.along import ALONG, extremes_along
-from comparisons.response.record import ContactHistory, Response
-
-_Column = tuple[str, str, NDArray[Any]]
-"""Name, kind (an attribute of `comparisons.response.round_off.RoundOff`) and values (s,)."""
+from comparisons.response.record import Response
 
 
 def table(response: Response, units: str | None = None) -> dict[str, NDArray[Any]]:
@@ -59,65 +54,53 @@ def csv_history(response: Response, units: str) -> str:
     """Return `table` as CSV, with a row for each load parameter and units in the names."""
     columns = table(response, units)
     rows = zip(*(values.tolist() for values in columns.values()), strict=True)
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows([plain(value) for value in row] for row in rows)
-    return text.getvalue()
+    return csv_text([dict(zip(columns, row, strict=True)) for row in rows], columns)
 
 
 def unit_names(units: str) -> dict[str, str]:
     """Return the unit of each kind of quantity, from the units of force and length."""
     force, length = (unit.strip() for unit in units.split(","))
     moment = f"{force} {length}"
-    return {
-        "force": force,
-        "length": length,
-        "moment": moment,
-        "energy": moment,
-        "stress": f"{force}/{length}^2",
-    }
+    stress = f"{force}/{length}^2"
+    return {"force": force, "length": length, "moment": moment, "energy": moment, "stress": stress}
 
 
-def _columns(response: Response) -> Iterator[_Column]:
+def _columns(response: Response) -> Iterator[tuple[str, str, NDArray[Any]]]:
+    """Yield the columns: name, kind (an attribute of `comparisons.response.round_off.RoundOff`) and values (s,)."""
+    for name, kind, values in _histories(response):
+        if values is not None and values.ndim == 1:
+            yield name, kind, values
+        elif values is not None:
+            yield from ((f"{name}_{letter}", kind, values[:, axis]) for axis, letter in enumerate("xy"))
+
+
+def _histories(response: Response) -> Iterator[tuple[str, str, NDArray[Any] | None]]:
+    """Yield the histories: name, kind, and values (s,) or (s, 2), None where the model does not state them."""
     yield "load_parameter", "number", response.load_parameter
     yield "stage", "number", response.stage
     for pair, contact in response.contacts.items():
-        yield from _contact(pair, contact)
-    for node, support in response.supports.items():
-        yield f"{node}.force_x", "force", support.force[:, 0]
-        yield f"{node}.force_y", "force", support.force[:, 1]
-        yield f"{node}.moment", "moment", support.moment
-    for node, spring in response.springs.items():
-        yield f"{node}.spring_force_x", "force", spring.force[:, 0]
-        yield f"{node}.spring_force_y", "force", spring.force[:, 1]
-        yield f"{node}.spring_moment", "moment", spring.moment
+        yield f"{pair}.force", "force", contact.force
+        yield f"{pair}.force", "force", contact.vector
+        yield f"{pair}.arc_position", "length", contact.arc_position
+        yield f"{pair}.gap", "length", contact.gap
+        if contact.friction is not None:
+            yield f"{pair}.tangential", "force", contact.friction.tangential
+            yield f"{pair}.normal", "force", contact.friction.normal
+            yield f"{pair}.slip", "number", contact.friction.slip
+            yield f"{pair}.dissipated", "energy", contact.friction.dissipated
+    for prefix, held in (("", response.supports), ("spring_", response.springs)):
+        for node, one in held.items():
+            yield f"{node}.{prefix}force", "force", one.force
+            yield f"{node}.{prefix}moment", "moment", one.moment
     for beam, tip in response.tips.items():
-        yield f"{beam}.tip_x", "length", tip[:, 0]
-        yield f"{beam}.tip_y", "length", tip[:, 1]
+        yield f"{beam}.tip", "length", tip
     along = {} if response.definition is None else extremes_along(response, response.definition)
     for beam, extremes in along.items():
         for name, extreme in extremes.items():
-            yield f"{beam}.{name}", ALONG[name], extreme.value
+            yield f"{beam}.{name}", ALONG[name][0], extreme.value
             yield f"{beam}.{name}_at", "length", extreme.arc_position
     for beam, force in response.material_force.items():
         yield f"{beam}.material_force", "force", force
-    if response.work is not None:
-        yield "work", "energy", response.work
-    if response.index is not None:
-        yield "index", "number", response.index
+    yield "work", "energy", response.work
+    yield "index", "number", response.index
     yield "newton_iterations", "number", response.newton_iterations
-
-
-def _contact(pair: str, contact: ContactHistory) -> Iterator[_Column]:
-    yield f"{pair}.force", "force", contact.force
-    if contact.vector is not None:
-        yield f"{pair}.force_x", "force", contact.vector[:, 0]
-        yield f"{pair}.force_y", "force", contact.vector[:, 1]
-    yield f"{pair}.arc_position", "length", contact.arc_position
-    yield f"{pair}.gap", "length", contact.gap
-    if contact.friction is not None:
-        yield f"{pair}.tangential", "force", contact.friction.tangential
-        yield f"{pair}.normal", "force", contact.friction.normal
-        yield f"{pair}.slip", "number", contact.friction.slip
-        yield f"{pair}.dissipated", "energy", contact.friction.dissipated

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from comparisons.errors import forces, size
+from comparisons.quantities import forces, size
 from comparisons.response import Array, Response
 from comparisons.response.round_off import round_off
 from comparisons.response.table import unit_names

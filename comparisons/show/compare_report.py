@@ -19,7 +19,7 @@ from comparisons.show.pages import (
     tracks,
     write_page,
 )
-from comparisons.show.table import HEADER, Row, cells
+from comparisons.show.table import Row, cells, header
 
 EXACT = ROD.run_label(Options())
 """Label of the run of the exact rod, to which all others are compared."""
@@ -50,7 +50,7 @@ def write_comparison_page(
     }
     shown, states = tracks(responses, EXACT, scene), states_section(responses)
     sections = [
-        Section(title="Errors", html=table(ERRORS, HEADER, map(cells, rows))),
+        Section(title="Errors", html=table(ERRORS, header(), map(cells, rows))),
         motion_section("Shapes and histories", scene, responses, shown, focus=EXACT, vtu=vtu),
     ]
     if states is not None:

@@ -8,6 +8,7 @@ import numpy as np
 
 from comparisons.budget import TIMES, Budget
 from comparisons.models import find
+from comparisons.quantities import table_columns
 from comparisons.referee import Verdict
 from comparisons.scene import Scene
 from comparisons.show.table import Row
@@ -91,8 +92,7 @@ def _stated(rows: Sequence[Row], scene: Scene) -> str:
 
 def _worst(row: Row, scene: Scene) -> tuple[float, str]:
     """Return the largest finite error over the path, and its quantity; nan without one."""
-    acting = "contact force" if scene.contacts else "support force"
-    names = {"force": acting, "arc": "arc position", "moment": "support moment", "tip": "tip"}
+    names = {name: one.called(scene) for name, one in table_columns().items() if name != "friction"}
     path = {} if row.errors is None else row.errors["path"]
     found = [(path[name], words) for name, words in names.items() if isfinite(path.get(name, inf))]
     return max(found, default=(nan, ""))

@@ -6,12 +6,8 @@ import numpy as np
 
 from comparisons.errors import Errors
 from comparisons.output import aligned, csv_text
-from comparisons.quantities import KEPT, PATH, SCOPES
+from comparisons.quantities import SCOPES, names, table_columns
 from comparisons.response import Response
-
-SHOWN = {"force": "force", "arc": "arc position", "moment": "moment", "tip": "tip", "friction": "friction"}
-"""The quantities of the middle columns and their names."""
-HEADER = ("model", "unknowns", *SHOWN.values(), "stable", "iterations", "seconds")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,7 +46,8 @@ class Row:
 
 def table_text(rows: list[Row], reference: str) -> str:
     """Return the table as aligned text; errors are the largest over all load parameters."""
-    first, *rest = aligned([HEADER, *map(cells, rows)], [False] + [True] * (len(HEADER) - 1))
+    head = header()
+    first, *rest = aligned([head, *map(cells, rows)], [False] + [True] * (len(head) - 1))
     title = (
         f"Largest error over the load parameters reached, against the {reference}; forces and moments relative to their\n"
         "largest, positions to the length, friction to the contact forces; Newton iterations and seconds for the whole path"
@@ -58,10 +55,16 @@ def table_text(rows: list[Row], reference: str) -> str:
     return "\n".join([title, "", first, "-" * len(first), *rest])
 
 
+def header() -> tuple[str, ...]:
+    """Return the names of the columns, the quantities that have one in the middle."""
+    middle = (row.words for row in table_columns().values())
+    return "model", "unknowns", *middle, "stable", "iterations", "seconds"
+
+
 def cells(row: Row) -> tuple[str, ...]:
-    """Return a run as text under `HEADER`."""
+    """Return a run as text under `header`."""
     # a dash where the run or the scene does not have the quantity
-    errors = [np.nan if row.errors is None else row.errors["path"][name] for name in SHOWN]
+    errors = [np.nan if row.errors is None else row.errors["path"][name] for name in table_columns()]
     shown = ["-" if np.isnan(value) else f"{value:.1e}" for value in errors]
     response = row.response
     label = row.label if response.completed else f"{row.label} ({response.status})"
@@ -77,7 +80,7 @@ def table_csv(rows: list[Row]) -> str:
         found = {
             f"error_{scope}_{name}": errors and errors[scope].get(name)
             for scope in SCOPES
-            for name in (*KEPT, *PATH)
+            for name in names(mesh=False)
         }
         first = {"label": row.label, "model": response.model, "status": response.status}
         spent = {"newton_iterations": response.iterations, "cutbacks": response.cutbacks}

@@ -13,7 +13,9 @@ import tsm
 from comparisons.models import MODELS
 from comparisons.models.cantilever import STOPS
 from comparisons.models.outside.child import ProgramStatus
+from comparisons.quantities import QUANTITIES
 from comparisons.referee import Verdict
+from comparisons.response.file import SCHEMA
 from comparisons.scene import Scene, load_scene, read_scene
 from comparisons.scene.read import LISTS
 from comparisons.scene.record import Record, lists_of, rule_of
@@ -34,8 +36,8 @@ STATUSES: dict[str, dict[str, str]] = {
 }
 """Statuses with their sentences, by where they come from."""
 SCHEMAS: dict[str, dict[str, Any]] = {
-    name: json.loads((REFERENCE / f"{name}.schema.json").read_text(encoding="utf-8"))
-    for name in ("response", "resolved-scene")
+    "response": SCHEMA,
+    "resolved-scene": json.loads((REFERENCE / "resolved-scene.schema.json").read_text(encoding="utf-8")),
 }
 
 
@@ -191,6 +193,12 @@ def _sort(item: dict[str, Any]) -> str:
     return " or ".join(names.get(kind, kind) for kind in kinds)
 
 
+def quantities() -> str:
+    """Return a table with a row for every quantity that is compared."""
+    rows = ((f"`{name}`", row.unit, line(row.meaning)) for name, row in QUANTITIES.items())
+    return table(("quantity", "unit", "what is compared"), rows)
+
+
 PAGES: dict[str, Callable[[], str]] = {
     "scene-file.md": scene_file,
     "messages.md": messages,
@@ -198,6 +206,7 @@ PAGES: dict[str, Callable[[], str]] = {
     "statuses.md": statuses,
     "response.md": lambda: keys("response"),
     "resolved-scene.md": lambda: keys("resolved-scene"),
+    "quantities.md": quantities,
 }
 """What makes the text of each page."""
 

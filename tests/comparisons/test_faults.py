@@ -41,7 +41,7 @@ from comparisons.show.export import write_series
 from comparisons.files import write_text
 from comparisons.models import solve
 from comparisons.scene import load_scene
-from comparisons.response.to_json import as_json
+from comparisons.response.file import as_json
 scene = replace(load_scene("ks-cantilever"), load_parameters=12)
 response = solve(scene, "tsm")
 text = as_json(response)

@@ -131,7 +131,7 @@ def above(path: tuple[tuple[float, float], ...]) -> dict[str, object]:
 
 
 def test_a_stopped_response_keeps_its_own_reason(good):
-    stopped = replace(good, completed=False, status="CUTBACK_FLOOR", load_parameter=good.load_parameter[:2])
+    stopped = replace(good, status="CUTBACK_FLOOR", load_parameter=good.load_parameter[:2])
     assert verified(stopped, SCENE) is stopped
 
 

@@ -105,7 +105,7 @@ def test_json_output_obeys_its_schema(scene, options, tmp_path, monkeypatch):
         assert set(contact["friction"]["slip"]) == {-1, 0, 1}
         assert contact["friction"]["dissipated"][-1] > 0.0
         assert ("work" in found) is ("solid" not in options)
-    kinds = SCHEMAS["response"]["properties"]["events"]["items"]["properties"]["kind"]["enum"]
+    kinds = SCHEMAS["response"]["$defs"]["event"]["properties"]["kind"]["enum"]
     assert set(kinds) == {kind.value for kind in tsm.EventKind}
 
 

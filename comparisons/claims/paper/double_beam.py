@@ -193,42 +193,6 @@ def _histories(columns: Columns, events: list[Row]) -> list[Panel]:
     for quantity, label in (("force", "contact force [N]"), ("arc", "arc position [m]")):
         lines: list[Line] = []
         for pair, name in NAMES.items():
-<<<<<<< HEAD
-            exact = "exact rods" if pair == UPPER else "_"
-            axes.plot(depth, columns[f"{pair} exact_{quantity}"], color="0.7", linewidth=5.0, label=exact)
-            axes.plot(depth, columns[f"{pair} {quantity}"], **STYLES[pair], linewidth=1.6, label=name)
-    _mark_events(events, forces, places)
-    beam = scene.beams[0]
-    for node in np.linspace(0.0, beam.length, beam.divisions + 1)[-4:]:
-        places.axhline(node, color="0.8", linewidth=0.6, zorder=0)
-    forces.set(ylabel="contact force [N]", ylim=(0.0, ROOM * forces.dataLim.y1))
-    places.set(xlabel="depth of the pin [m]", ylabel="arc position [m]", xlim=(0.0, depth[-1]))
-    forces.legend(loc="lower right", fontsize="small")
-    forces.set_title("Double beam, 10 + 10 mixed elements", pad=20)
-    save(fig, *paths)
-
-
-def _mark_events(events: list[Row], forces: Any, places: Any) -> None:
-    """Draw a numbered line per event, those at one depth together, and the list of the events."""
-    groups: dict[float, list[str]] = {}
-    for event in events:
-        near = next((depth for depth in groups if abs(depth - event["depth"]) < 2e-3), event["depth"])
-        if event["depth"] > 0.0:
-            groups.setdefault(near, []).append(f"{event['kind']}, {NAMES[event['pair']]}")
-    lines = []
-    for number, (depth, texts) in enumerate(groups.items(), 1):
-        for axes in (forces, places):
-            axes.axvline(depth, color="0.4", linewidth=0.8, linestyle=":")
-        forces.annotate(
-            f"{number}", (depth, 1.0), (0, 4), xycoords=("data", "axes fraction"), textcoords="offset points",
-            ha="center",
-        )  # fmt: skip
-        lines += [f"{number}   {depth:.4f} m   {texts[0]}", *(f"{'':20}{text}" for text in texts[1:])]
-    forces.annotate(
-        "\n".join(lines), (0.012, 0.975), xycoords="axes fraction", va="top", fontsize="small",
-        bbox={"facecolor": "white", "edgecolor": "0.8"},
-    )  # fmt: skip
-=======
             exact = {"color": "0.7", "linewidth": 5.0, "label": RODS}
             lines.append((columns["depth"], columns[f"{pair} exact_{quantity}"], exact))
             lines.append((columns["depth"], columns[f"{pair} {quantity}"], {**STYLES[pair], "label": name}))
@@ -242,4 +206,3 @@ def _mark_events(events: list[Row], forces: Any, places: Any) -> None:
             Panel(title="Double beam, 10 + 10 mixed elements", lines=lines, settings=settings, notes=notes)
         )
     return panels
->>>>>>> r8

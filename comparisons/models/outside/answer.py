@@ -1,27 +1,22 @@
 """The output of another program, read as a response and held against the scene."""
 
-import json
 import re
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from comparisons.files import one_line
 from comparisons.models.options import ModelError
 from comparisons.models.outside.child import ProgramError, ProgramStatus
 from comparisons.models.verify import CHECK_FAILED
 from comparisons.referee.certificate import Verdict
-from comparisons.response import ContactHistory, Response, SupportHistory
-from comparisons.response.axis import SampledAxes, axis_grid
-from comparisons.response.from_json import KEYS, NotFiniteError, contradictions, once, restated
-from comparisons.response.record import unanswered
+from comparisons.response import Array, ContactHistory, Response, SupportHistory
+from comparisons.response.axis import SampledAxes, axis_grid, sampled_axes
+from comparisons.response.file import SCHEMA, NotFiniteError, contradictions, parsed, restated
 from comparisons.scene import Scene
 from comparisons.scene.rules import FieldError
 from comparisons.scene.tables import check_keys
-
-Array = NDArray[np.float64]
 
 COMPLETED, REFUSED = "COMPLETED", "REFUSED"
 SHOWN = 60
@@ -54,7 +49,7 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
     Parameters
     ----------
     output : bytes
-        Standard output of the program, JSON by ``docs/reference/response.schema.json``.
+        Standard output of the program, JSON by ``comparisons/response/response.schema.json``.
     scene : Scene
         The scene that was solved.
     model : str
@@ -74,13 +69,17 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
     if status == REFUSED:
         raise ModelError(_reason(data))
     reported = status == COMPLETED
+    known = {"scene": scene.name, "message": "as the program reports", "wall_seconds": seconds}
     try:
-        for mistake in check_keys(data, KEYS, required=("status",)):
+        for mistake in check_keys(data, SCHEMA["properties"], required=("status",)):
             raise mistake
         _check_status(status)
         if not reported and "load_parameter" not in data:
-            return silent(scene, model, str(status), data.get("message", "as the program reports"))
-        response = restated({**_defaults(data, scene, seconds), "model": model})
+            return silent(scene, model, str(status), data.get("message", known["message"]))
+        response = restated({**known, **data, "model": model})
+        lines = sampled_axes(response).position
+        if "tips" not in data:
+            response = replace(response, tips=_tips(scene, lines))
         wrong = next(contradictions(response, scene), "")
     except NotFiniteError as error:
         raise ProgramError(ProgramStatus.NOT_FINITE, str(error), reported_success=reported) from None
@@ -88,15 +87,23 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
         wrong = str(error)
     if wrong:
         raise ProgramError(ProgramStatus.INVALID_RESPONSE, wrong, reported_success=reported)
-    axes = response.axis_line
-    assert isinstance(axes, SampledAxes), "a response that was read has sampled axes"
     return replace(
         response,
         outside=True,
         load_parameter=np.array(scene.times[: len(response.load_parameter)]),
         contacts={pair: penetrating(item) for pair, item in response.contacts.items()},
-        grid=lambda k: axis_grid(scene, axes, k),
+        grid=lambda k: axis_grid(scene, response.axis_line, k),
     )
+
+
+def _tips(scene: Scene, lines: dict[str, Array]) -> dict[str, Array]:
+    """Return the positions of the tips, the ends of the axes that are stated."""
+    ends = {beam.name: -1 if scene.tip(beam.name) == "end" else 0 for beam in scene.beams}
+    return {
+        name: line[:, ends[name]] if line.size else np.empty((0, 2))
+        for name, line in lines.items()
+        if name in ends
+    }
 
 
 def silent(
@@ -104,8 +111,9 @@ def silent(
 ) -> Response:
     """Return a response without any load parameter, which states why there is none."""
     none, pairs = np.empty(0), np.empty((0, 2))
-    return replace(
-        unanswered(status, one_line(message)),
+    return Response(
+        status=status,
+        message=one_line(message),
         model=model,
         scene=scene.name,
         outside=True,
@@ -122,7 +130,7 @@ def silent(
 
 def _parsed(output: bytes) -> dict[str, Any]:
     try:
-        data = json.loads(output.decode("utf-8"), object_pairs_hook=once)
+        data = parsed(output.decode("utf-8"))
     except FieldError as error:
         raise ProgramError(ProgramStatus.INVALID_RESPONSE, str(error)) from None
     except (ValueError, RecursionError) as error:
@@ -139,26 +147,6 @@ def _check_status(status: object) -> None:
     if not isinstance(status, str) or not WORD.fullmatch(status) or status in VERDICTS:
         rule = f"must be {COMPLETED}, in capitals, {REFUSED}, or another word in capitals"
         raise FieldError("status", status, f"{rule} that is no verdict of this program")
-
-
-def _defaults(data: dict[str, Any], scene: Scene, seconds: float) -> dict[str, Any]:
-    """Return the tables of the program with the items that follow from them or from the scene."""
-    more: dict[str, Any] = {"scene": scene.name, "message": "as the program reports", "contacts": {}}
-    axes = data.get("axes")
-    if isinstance(axes, dict) and "tips" not in data:
-        more["tips"] = {
-            beam.name: _ends(axes.get(beam.name), -1 if scene.tip(beam.name) == "end" else 0)
-            for beam in scene.beams
-        }
-    return {**more, "wall_seconds": seconds, **data}
-
-
-def _ends(axis: Any, end: int) -> Any:
-    """Return the first or last point of an axis at each load parameter; None if it has no such points."""
-    try:
-        return [line[end] for line in axis["position"]]
-    except (TypeError, KeyError, IndexError):
-        return None
 
 
 def penetrating(contact: ContactHistory) -> ContactHistory:

@@ -1,16 +1,15 @@
 """Shapes under a slider and histories beside them: the data of a section that moves, and its markup."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from string import Template
 from typing import Any
 
 import numpy as np
 
-from comparisons.errors import error_columns, forces, moments, size
+from comparisons.errors import error_columns
+from comparisons.quantities import QUANTITIES, size
 from comparisons.response import Array, Response
-from comparisons.response.material import frictions, frictions_found
 from comparisons.response.table import unit_names
 from comparisons.scene import Scene
 from comparisons.show import palette
@@ -53,27 +52,18 @@ class Track:
 
 
 def tracks(responses: Mapping[str, Response], reference: str, scene: Scene) -> list[Track]:
-    """Return forces, arc positions, moments and frictions, with errors against the label `reference`.
+    """Return the quantities that are drawn, with errors against the label `reference`.
 
     The errors are those of `comparisons.errors`. A scene without contact has the forces of its supports. What
     vanishes in all responses is left out.
     """
     units = unit_names(scene.units)
     shown = {label: response for label, response in responses.items() if len(response.load_parameter)}
-    rubbed = any(frictions_found(response, scene) for response in shown.values())
-    spurious = not any(contact.friction for contact in scene.contacts)
-    friction = "friction found" if rubbed else "spurious friction" if spurious else "friction"
-    rubbing = partial(frictions_found if rubbed else frictions, scene=scene)
-    acting = "contact force" if scene.contacts else "support force"
-    quantities: tuple[tuple[str, str, str, str, Callable[[Response], Mapping[str, Array]]], ...] = (
-        ("force", acting, units["force"], "the largest force", forces),
-        ("arc", "arc position", units["length"], "the length", _arcs),
-        ("moment", "support moment", units["moment"], "the largest moment", moments),
-        ("friction", friction, "1", "the contact forces", rubbing),
-    )
     found = []
-    for quantity, title, unit, scale, read in quantities:
-        values = {label: read(response) for label, response in shown.items()}
+    for quantity, row in QUANTITIES.items():
+        if row.drawn is None:
+            continue
+        values = {label: row.drawn(response, scene) for label, response in shown.items()}
         errors = {
             label: error_columns(response, responses[reference], scene, quantity)
             for label, response in shown.items()
@@ -83,11 +73,11 @@ def tracks(responses: Mapping[str, Response], reference: str, scene: Scene) -> l
         acts = [name for name in names if any(np.nan_to_num(v.get(name, 0.0)).any() for v in values.values())]
         found += [
             Track(
-                title=f"{title} {name}" if len(acts) > 1 else title,
-                unit=unit,
+                title=f"{row.called(scene)} {name}" if len(acts) > 1 else row.called(scene),
+                unit=units.get(row.unit, "1"),
                 values={label: _numbers(one.get(name), shown[label]) for label, one in values.items()},
                 errors={label: one[name] for label, one in errors.items() if name in one},
-                error_title=f"error against the {reference}, over {scale}",
+                error_title=f"error against the {reference}, over {row.relative_to}",
             )
             for name in acts
         ]
@@ -99,10 +89,6 @@ def _numbers(values: Array | None, response: Response) -> Array:
     if values is None:
         return np.full(len(response.load_parameter), np.nan)
     return size(values) if values.ndim > 1 else values
-
-
-def _arcs(response: Response) -> dict[str, Array]:
-    return {pair: contact.arc_position for pair, contact in response.contacts.items()}
 
 
 def motion_section(

@@ -18,10 +18,10 @@ from comparisons.cost.limit import end_state, extrapolated
 from comparisons.cost.orders import orders
 from comparisons.cost.points import TARGETS, Point, Trade, cheapest, front
 from comparisons.cost.references import NoReferenceError, Reference, best_reference, reference_cases
-from comparisons.errors import errors, scales
+from comparisons.errors import errors
 from comparisons.models import MODELS
 from comparisons.models.options import Options
-from comparisons.quantities import KEPT, SCOPES
+from comparisons.quantities import KEPT, SCOPES, scales
 from comparisons.response import ContactHistory, SupportHistory
 from comparisons.response.axis import STATIONS, SampledAxes
 from comparisons.scene import built_in_scenes, load_scene
@@ -137,7 +137,7 @@ def point(case, seconds, error, own, status="COMPLETED"):
     """A case with known seconds, unknowns and errors."""
     own_errors, tables = ({scope: dict.fromkeys(KEPT, value) for scope in SCOPES} for value in (own, error))
     made = unmeasured(status, "")
-    response = replace(made.response, completed=status == "COMPLETED", unknowns=round(100 * seconds))
+    response = replace(made.response, status=status, unknowns=round(100 * seconds))
     measured = replace(made, response=response, seconds=seconds)
     return Point(case=case, measured=measured, errors=tables, own_errors=own_errors)
 

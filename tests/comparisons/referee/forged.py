@@ -58,7 +58,6 @@ def stated(scene: Scene, path: list[Equilibrium], model: str = "tsm") -> Respons
         scene=scene.name,
         status="COMPLETED",
         message="all load parameters were reached",
-        completed=True,
         load_parameter=np.array([exact.load_parameter for exact in path]),
         contacts=contacts,
         supports=supports,

@@ -60,7 +60,7 @@ def off(measurement, part):
 def stopped(measurement, status="CUTBACK_FLOOR", reached=5):
     """Return what is left of a measurement that stopped."""
     response = measurement.response
-    few = replace(response, status=status, completed=False, load_parameter=response.load_parameter[:reached])
+    few = replace(response, status=status, load_parameter=response.load_parameter[:reached])
     return replace(measurement, response=few)
 
 

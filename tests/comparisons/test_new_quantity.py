@@ -1,0 +1,62 @@
+"""A new quantity is one row: the table, the files and the page of a comparison, the bounds and the documentation have it."""
+
+import csv
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+# the registry, and the runs of a comparison, of which two are enough here
+from comparisons import compare
+from comparisons.cli import main
+from comparisons.quantities import QUANTITIES, Quantity
+from comparisons.scene import load_scene, to_toml
+from docs.extensions import response as documented
+
+
+def rises(response):
+    return {beam: tip[:, 1] for beam, tip in response.tips.items()}
+
+
+ROW = Quantity(
+    meaning="rise of the tips over the length", words="rise", column=6, read=rises, drawn=lambda response, _: rises(response)
+)  # fmt: skip
+
+
+@pytest.fixture
+def scene(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(QUANTITIES, "rise", ROW)
+    monkeypatch.setattr(compare, "RUNS", (compare.MIXED, compare.ROD))
+    Path("short.toml").write_text(to_toml(replace(load_scene("ks-cantilever"), load_parameters=2)))
+    return "short.toml"
+
+
+def test_every_place_has_a_new_quantity(scene, capsys):
+    assert main(["compare", scene, "--out", "out", "--quiet"]) == 0
+    table, page = capsys.readouterr().out, Path("out/report.html").read_text()
+    assert re.search(r" friction +rise +stable ", table)
+    (run, _), lines = (
+        json.loads(Path("out/summary.json").read_text())["runs"],
+        Path("out/table.csv").read_text().splitlines(),
+    )
+    row, _ = csv.DictReader(lines)
+    error = run["errors"]["path"]["rise"]
+    assert 0.0 < error < 1e-5
+    assert float(row["error_path_rise"]) == error
+    assert f"{error:.1e}" in table
+    assert f">{error:.1e}<" in page
+    assert "rise [m]" in page
+    assert "over the length" in page
+    for bound, status in ((2.0 * error, 0), (0.5 * error, 1)):
+        assert (
+            main(["compare", scene, "--elements", "20", "--element", "mixed", "--max-error", f"rise={bound}"])
+            == status
+        )
+        assert f"  rise {error:13.3g}  " in capsys.readouterr().out
+    assert "| `rise` | length | rise of the tips over the length |" in documented.quantities_page()
+    with pytest.raises(SystemExit):
+        main(["compare", "--help"])
+    assert "rise" in capsys.readouterr().out.rpartition("--max-error")[2].partition("--against")[0]
