@@ -115,7 +115,7 @@ def graded(scene: Scene, accuracy: float, quantity: str, kind: ClosedForm) -> It
         apart = float(np.fmax(difference(coarse, fine, scene, quantity), 0.0))
         stuck = _shear_limit(fine, scene, kind.shear_floor)
         estimate = SAFETY * (2**order / (2**order - 1)) * apart + stuck
-        counts = [beam.elements for beam in mesh.beams]
+        counts = [beam.divisions for beam in mesh.beams]
         total = sum(counts)
         said = [f"{element}, {total} elements: estimate {estimate:.1e} of {quantity}"]
         hopeless = estimate > accuracy and total < MOST and stuck > 0.9 * accuracy
