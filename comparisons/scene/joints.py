@@ -4,7 +4,7 @@ import math
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from itertools import combinations
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from comparisons.scene.beam import BeamSpec
@@ -84,30 +84,22 @@ def _meeting(beams: Sequence[BeamSpec]) -> dict[Point, list[BeamSpec]]:
 
 def _nearly_meeting(scene: "Scene") -> Mistakes:
     """Yield ends that nearly meet an end of an earlier beam. Along a direction that is no beam's, only neighbours can be near."""
-    numbers = {id(beam): i for i, beam in enumerate(scene.beams) if beam.has("name", "start", "end")}
-    meeting = _meeting([beam for beam in scene.beams if id(beam) in numbers])
-    reach = {place: NEAR * max(beam.length for beam in beams) for place, beams in meeting.items()}
-    along = sorted((math.cos(1.0) * x + math.sin(1.0) * y, (x, y)) for x, y in meeting)
-    for k, (first, place) in enumerate(along):
-        for onward in range(k + 1, len(along)):
-            last, other = along[onward]
-            if last - first > 2.0 * reach[place]:
+    ends = sorted(
+        (math.cos(1.0) * place[0] + math.sin(1.0) * place[1], i, end)
+        for i, beam in enumerate(scene.beams)
+        if beam.has("name", "start", "end")
+        for end, place in (("start", beam.start), ("end", beam.end))
+    )
+    for k, (along, i, end) in enumerate(ends):
+        for ahead, j, other in islice(ends, k + 1, None):
+            if ahead - along > NEAR * scene.beams[i].length:
                 break
-            if math.dist(place, other) < min(reach[place], reach[other]):
-                both = {id(beam): beam for beam in (*meeting[place], *meeting[other])}
-                ordered = sorted(both.values(), key=lambda beam: numbers[id(beam)])
-                for a, b in combinations(ordered, 2):
-                    yield from _pair(a, b, numbers[id(b)])
-
-
-def _pair(a: BeamSpec, b: BeamSpec, number: int) -> Mistakes:
-    """Yield the ends of `b`, the beam of that number, that nearly meet an end of `a`."""
-    for end in ("start", "end"):
-        for place, node in ((a.start, f"{a.name}.start"), (a.end, f"{a.name}.end")):
-            near = getattr(b, end)
-            if near != place and math.dist(near, place) < NEAR * min(a.length, b.length):
+            (first, joint), (last, near) = sorted(((i, end), (j, other)))
+            a, b = scene.beams[first], scene.beams[last]
+            node, place, met = f"{a.name}.{joint}", getattr(b, near), getattr(a, joint)
+            if 0.0 < math.dist(met, place) < NEAR * min(a.length, b.length):
                 rule = f'must be "{node}" exactly, or stay clear of it'
-                yield FieldError(f"beam[{number}].{end}", near, rule)
+                yield FieldError(f"beam[{last}].{near}", place, rule)
 
 
 def _end_to_end(scene: "Scene") -> Mistakes:

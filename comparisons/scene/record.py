@@ -6,18 +6,26 @@ attributes. Where a value is itself wrong, reading it raises `Unjudged`, and the
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import Field, FrozenInstanceError, dataclass, field, fields
 from inspect import cleandoc
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, dataclass_transform
 
-from comparisons.scene.rules import MISSING, FieldError, Mistakes, RecordError, RuleError, ValueRule
+from comparisons.scene.rules import (
+    MISSING,
+    UNREADABLE,
+    FieldError,
+    Mistakes,
+    RecordError,
+    Records,
+    RuleError,
+    ValueRule,
+)
+from comparisons.scene.tables import check_keys, misnamed_keys
 
 R = TypeVar("R", bound="Record")
 RAISES = "\nRaises\n------\nFieldError\n    With all mistakes, each in one line: field, value and rule."
-UNREADABLE: Any = object()
-"""The value of a key that is stated, and wrong in a way that is reported elsewhere."""
 
 
 class Unjudged(KeyError):  # noqa: N818 - no error of the user: the value is reported where it stands
@@ -36,7 +44,7 @@ def optional(rule: ValueRule[Any], meaning: str, default: Any = None) -> Any:
 
 @dataclass_transform(kw_only_default=True, frozen_default=True, field_specifiers=(key,))
 class Record:
-    """Immutable, hashable values that obey the rules of their keys and the record's own rules.
+    """Immutable, hashable values that obey the rules of their keys, and those between them, `obeys`.
 
     Raises
     ------
@@ -45,6 +53,7 @@ class Record:
     """
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+    obeys: ClassVar[tuple[Callable[[Any], Mistakes], ...]] = ()
     _defaults: ClassVar[dict[str, Any]]
 
     def __init_subclass__(cls) -> None:
@@ -57,36 +66,38 @@ class Record:
         )
         cls.__doc__ = "\n".join([cleandoc(cls.__doc__ or ""), "\nParameters\n----------", *rows, RAISES])
 
-    def __init__(self, **given: Any) -> None:
-        if unknown := given.keys() - self._defaults.keys():
-            raise TypeError(f"{type(self).__name__} has no key {min(unknown)}")
-        mistakes = []
+    def __init__(self, /, **given: Any) -> None:
+        mistakes = list(check_keys(given, self._defaults))
+        given |= dict.fromkeys(misnamed_keys(given, self._defaults), UNREADABLE)
         for item in fields(self):
             value = given.get(item.name, item.default)
-            if value is None and item.default is None:
-                vars(self)[item.name] = None
-            elif value is MISSING:
+            if value is MISSING:
                 mistakes.append(FieldError(item.name, value, "must be given"))
             elif value is not UNREADABLE:
-                try:
-                    vars(self)[item.name] = rule_of(item)(value)
-                except RuleError as error:
-                    mistakes.append(FieldError(item.name, value, str(error)))
+                mistakes += self._store(item, value)
         self._settle()
-        for rule in self._own_rules():
+        for own in self.obeys:
             with suppress(Unjudged):
-                mistakes.extend(rule)
+                mistakes.extend(own(self))
             for mistake in mistakes:
                 vars(self).pop(mistake.key, None)
         if mistakes:
             raise RecordError(mistakes, self)
 
+    def _store(self, item: Field[Any], value: object) -> Sequence[FieldError]:
+        """Store the value of a key, or what is right of it, and return its mistakes."""
+        try:
+            vars(self)[item.name] = None if value is item.default is None else rule_of(item)(value)
+        except RecordError as error:
+            if error.found is not UNREADABLE:
+                vars(self)[item.name] = error.found
+            return error.mistakes
+        except RuleError as error:
+            return [FieldError(getattr(rule_of(item), "name", item.name), value, str(error))]
+        return []
+
     def _settle(self) -> None:
         """Put values that depend on others into their final form."""
-
-    def _own_rules(self) -> Iterable[Mistakes]:
-        """Return the rules between the values of the record; each yields its mistakes."""
-        return ()
 
     def has(self, *names: str) -> bool:
         """Whether none of the named values is wrong."""
@@ -122,11 +133,6 @@ class Record:
         return f"{type(self).__name__}({values})"
 
 
-def keys_of(kind: type[Record]) -> set[str]:
-    """Return the keys of a record."""
-    return {item.name for item in fields(kind)}
-
-
 def rule_of(item: Field[Any]) -> ValueRule[Any]:
     """Return the rule of a field."""
     rule: ValueRule[Any] = item.metadata["rule"]
@@ -135,7 +141,8 @@ def rule_of(item: Field[Any]) -> ValueRule[Any]:
 
 def lists_of(kind: type[Record]) -> dict[str, type[Record]]:
     """Return the kinds of records that the fields of a record list, by field."""
-    return {item.name: record for item in fields(kind) if (record := rule_of(item).kind) is not None}
+    rules = ((item.name, rule_of(item)) for item in fields(kind))
+    return {name: rule.kind for name, rule in rules if isinstance(rule, Records)}
 
 
 def copied(record: R, **attributes: object) -> R:
@@ -146,17 +153,31 @@ def copied(record: R, **attributes: object) -> R:
     return copy
 
 
-def exactly_one_of(record: Record, *groups: tuple[str, ...]) -> Mistakes:
-    """Yield a mistake unless exactly one of the `groups` of fields is given, with all its fields; None means not given."""
-    given = {name for group in groups for name in group if vars(record).get(name, MISSING) is not None}
+def refused(key: str, sentence: str, when: Callable[[Any], object]) -> Callable[[Record], Mistakes]:
+    """Return the rule between the values of a record: where `when` is true of it, the value of `key` is a mistake."""
+
+    def judged(record: Record) -> Mistakes:
+        if when(record):
+            value = getattr(record, key)
+            yield FieldError(key, MISSING if value in (None, ()) else value, sentence)
+
+    return judged
+
+
+def one_of(*groups: tuple[str, ...]) -> Callable[[Record], Mistakes]:
+    """Return the rule: exactly one of the `groups` of keys is given, with all its keys; None means not given."""
     wanted = " or ".join(" and ".join(group) for group in groups)
-    present = [group for group in groups if given.intersection(group)]
-    if not present:
-        yield FieldError(groups[0][0], MISSING, f"give {wanted}")
-    elif len(present) > 1:
-        extra = next(item for item in present[1] if item in given)
-        yield FieldError(extra, getattr(record, extra), f"give either {wanted}, not both")
-    else:
-        for item in present[0]:
-            if item not in given:
-                yield FieldError(item, MISSING, f"must be given, {' and '.join(present[0])} belong together")
+
+    def judged(record: Record) -> Mistakes:
+        missing = [[item for item in group if vars(record).get(item, MISSING) is None] for group in groups]
+        present = [k for k, group in enumerate(groups) if len(missing[k]) < len(group)]
+        if not present:
+            yield FieldError(groups[0][0], MISSING, f"give {wanted}")
+        elif len(present) > 1:
+            extra = next(item for item in groups[present[1]] if item not in missing[present[1]])
+            yield FieldError(extra, getattr(record, extra), f"give either {wanted}, not both")
+        else:
+            rule = f"must be given, {' and '.join(groups[present[0]])} belong together"
+            yield from (FieldError(item, MISSING, rule) for item in missing[present[0]])
+
+    return judged

@@ -21,10 +21,12 @@ LARGEST = 1e50
 """Largest magnitude of a number: squares, products and quotients of such numbers stay in floating-point range."""
 RANGE = (1e-100, 1e100)
 """Range of positive quantities: moduli, dimensions of sections, stiffnesses."""
-LIST = {"type": "array", "minItems": 1}
-"""Schema of a list of tables."""
+MOST = 1000
+"""Number of mistakes from which the reader of a file looks for no more."""
 MISSING: Any = dataclasses.MISSING
 """The value of a key that is not there."""
+UNREADABLE: Any = object()
+"""The value of a key that is stated, and wrong in a way that is reported elsewhere."""
 
 
 class RuleError(ValueError):
@@ -59,10 +61,10 @@ class FieldError(ValueError):
 
 
 class RecordError(FieldError):
-    """Several mistakes, each in one line, the first one's key, value and rule; `record` has the values that are right."""
+    """Several mistakes, each in one line, the first one's key, value and rule; `found` has the values that are right."""
 
-    def __init__(self, mistakes: Collection[FieldError], record: Any = None) -> None:
-        self._mistakes, self.record = tuple(mistakes), record
+    def __init__(self, mistakes: Collection[FieldError], found: Any = None) -> None:
+        self._mistakes, self.found = tuple(mistakes), found
         first = self._mistakes[0]
         super().__init__(first.key, first.value, first.rule)
         self.args = ("\n".join(map(str, self._mistakes)),)
@@ -90,16 +92,10 @@ def shown(value: object) -> str:
 
 
 class ValueRule(Generic[T_co]):
-    """A rule as a value: it reads a value, says what it accepts, and has its JSON Schema; of a list of records, their `kind`."""
+    """A rule as a value: it reads a value, says what it accepts, and has its JSON Schema."""
 
-    def __init__(
-        self,
-        read: Callable[[object], T_co],
-        accepts: str,
-        schema: Mapping[str, Any],
-        kind: type | None = None,
-    ) -> None:
-        self._read, self.accepts, self.schema, self.kind = read, accepts, schema, kind
+    def __init__(self, read: Callable[[object], T_co], accepts: str, schema: Mapping[str, Any]) -> None:
+        self._read, self.accepts, self.schema = read, accepts, schema
 
     def __call__(self, value: object) -> T_co:
         """Return the stored form of `value`, or raise `RuleError`."""
@@ -124,24 +120,16 @@ COMPARED: dict[str, Callable[[float, float], bool]] = {
 
 def limited(accepts: str, refusal: str = "", *, scaled: bool = False, **limits: float) -> ValueRule[float]:
     """Return the rule: a finite number within `limits`, else `refusal`; `scaled`, its range is `RANGE` or zero."""
-    largest = math.inf if scaled else LARGEST
+    least, most = RANGE if scaled else (0.0, LARGEST)
 
     def read(value: object) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise RuleError("must be a number")
-        try:
-            result = float(value)
-        except OverflowError:
-            result = math.inf
-        if not math.isfinite(result):
-            raise RuleError("must be a finite number")
-        if abs(result) > largest:
-            raise RuleError(f"must be at most {largest:g} in size")
-        if not all(COMPARED[name](result, limit) for name, limit in limits.items()):
+        if not all(COMPARED[name](value, limit) for name, limit in limits.items()):
             raise RuleError(refusal)
-        if scaled and result and not RANGE[0] <= result <= RANGE[1]:
-            raise RuleError(f"must lie between {RANGE[0]:g} and {RANGE[1]:g}")
-        return abs(result) if scaled else result
+        if value and not least <= abs(value) <= most:
+            raise RuleError(f"must be a finite number, from {least:g} to {most:g} in size")
+        return abs(float(value)) if scaled else float(value)
 
     return ValueRule(read, accepts, {"type": "number", **limits})
 
@@ -175,10 +163,8 @@ def whole(largest: int = 100_000) -> ValueRule[int]:
     """Return the rule: a whole number from 1 to `largest`."""
 
     def read(value: object) -> int:
-        if isinstance(value, bool) or not isinstance(value, int):
-            raise RuleError("must be a whole number")
-        if not 1 <= value <= largest:
-            raise RuleError(f"must lie between 1 and {largest}")
+        if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= largest:
+            raise RuleError(f"must be a whole number from 1 to {largest}")
         return value
 
     schema = {"type": "integer", "minimum": 1, "maximum": largest}
@@ -186,6 +172,27 @@ def whole(largest: int = 100_000) -> ValueRule[int]:
 
 
 whole_number = whole()
+
+
+def sequence(value: object) -> tuple[object, ...]:
+    """Return a list as a tuple."""
+    if not isinstance(value, list | tuple):
+        raise RuleError("must be a list")
+    return tuple(value)
+
+
+def several(
+    accepts: str, refusal: str, item: ValueRule[Any], right: Callable[[Any], bool], **schema: Any
+) -> ValueRule[tuple[Any, ...]]:
+    """Return the rule: a list of items which are `right` together, else `refusal`."""
+
+    def read(value: object) -> tuple[Any, ...]:
+        found = tuple(map(item, sequence(value)))
+        if not right(found):
+            raise RuleError(refusal)
+        return found
+
+    return ValueRule(read, accepts, {"type": "array", "items": item.schema, **schema})
 
 
 def pair(item: ValueRule[Any]) -> dict[str, Any]:
@@ -207,10 +214,8 @@ def dimension(value: object) -> float | tuple[float, float]:
 @rule(**pair(number))
 def point(value: object) -> Point:
     """Accept a point or vector [x, y] of the plane."""
-    if isinstance(value, list | tuple) and len(value) == 3:
-        raise RuleError("must be two numbers [x, y], a third dimension is not modelled")
     if not isinstance(value, list | tuple) or len(value) != 2:
-        raise RuleError("must be two numbers [x, y]")
+        raise RuleError("must be two numbers [x, y], a third dimension is not modelled")
     return number(value[0]), number(value[1])
 
 
@@ -230,32 +235,23 @@ def stiffnesses(value: object) -> Point:
     return not_negative(x), not_negative(y)
 
 
-def sequence(value: object) -> tuple[object, ...]:
-    """Return a list as a tuple."""
-    if not isinstance(value, list | tuple):
-        raise RuleError("must be a list")
-    return tuple(value)
+parts = several(
+    "numbers that rise between 0 and 1",
+    "must rise between 0 and 1, both excluded",
+    number,
+    lambda found: all(a < b for a, b in pairwise((0.0, *found, 1.0))),
+    items=fraction.schema,
+)
+mesh = several(
+    "the numbers of elements along and across a solid strip",
+    "must be [elements along, elements across]",
+    whole_number,
+    lambda found: len(found) == 2,
+    **pair(whole_number),
+)
 
 
-@rule(type="array", items=fraction.schema)
-def parts(value: object) -> tuple[float, ...]:
-    """Accept numbers that rise between 0 and 1."""
-    items = tuple(map(number, sequence(value)))
-    if not all(a < b for a, b in pairwise((0.0, *items, 1.0))):
-        raise RuleError("must rise between 0 and 1, both excluded")
-    return items
-
-
-@rule(**pair(whole_number))
-def mesh(value: object) -> tuple[int, int]:
-    """Accept the numbers of elements along and across a solid strip."""
-    items = sequence(value)
-    if len(items) != 2:
-        raise RuleError("must be [elements along, elements across]")
-    return whole_number(items[0]), whole_number(items[1])
-
-
-def mesh_text(value: object) -> tuple[int, int]:
+def mesh_text(value: object) -> tuple[int, ...]:
     """Accept the numbers of elements along and across as ``50x2``."""
     along, separator, across = value.partition("x") if isinstance(value, str) else ("", "", "")
     if not separator or not (along + across).isdecimal():
@@ -263,32 +259,21 @@ def mesh_text(value: object) -> tuple[int, int]:
     return mesh((int(along), int(across)))
 
 
-@rule(type="array", items=point.schema, minItems=1)
-def further_points(value: object) -> tuple[Point, ...]:
-    """Accept at least one point, no two consecutive ones equal."""
-    points = tuple(map(point, sequence(value)))
-    if not points:
-        raise RuleError("must have at least one point")
-    if any(a == b for a, b in pairwise(points)):
-        raise RuleError("must move: two consecutive points are equal")
-    return points
-
-
-@rule(type="array", items=point.schema, minItems=2)
-def polyline(value: object) -> tuple[Point, ...]:
-    """Accept at least two points, no two consecutive ones equal."""
-    points = further_points(value)
-    if len(points) < 2:
-        raise RuleError("must have at least two points")
-    return points
+def polyline(at_least: int) -> ValueRule[tuple[Point, ...]]:
+    """Return the rule: points, no two consecutive ones equal."""
+    return several(
+        f"at least {at_least} points, no two consecutive ones equal",
+        f"must list {at_least} or more points, no two consecutive ones equal",
+        point,
+        lambda found: len(found) >= at_least and all(a != b for a, b in pairwise(found)),
+        minItems=at_least,
+    )
 
 
 @rule(type="string", minLength=1)
 def text(value: object) -> str:
     """Accept a printable text that is not empty."""
-    if not isinstance(value, str):
-        raise RuleError("must be a text")
-    if not value.strip() or not value.isprintable():
+    if not isinstance(value, str) or not value.strip() or not value.isprintable():
         raise RuleError("must be a printable text, not empty")
     return value
 
@@ -334,35 +319,41 @@ def choice(*options: str) -> ValueRule[str]:
     return ValueRule(read, "one of " + _options(options, '``"'), {"enum": list(options)})
 
 
-def subset(*options: str) -> ValueRule[tuple[str, ...]]:
+def subset(*options: str, at_least: int = 0) -> ValueRule[tuple[str, ...]]:
     """Return the rule: some of `options`, each once."""
-
-    def read(value: object) -> tuple[str, ...]:
-        items = sequence(value)
-        if not items or any(item not in options for item in items) or len(set(items)) != len(items):
-            raise RuleError(f"must be a list of some of {_options(options)}, each once")
-        return tuple(map(str, items))
-
-    schema = {"type": "array", "items": {"enum": list(options)}, "uniqueItems": True, "minItems": 1}
-    return ValueRule(read, "a list of some of " + _options(options, '``"'), schema)
-
-
-@rule(type="array", items={"enum": ["start", "end"]}, uniqueItems=True)
-def ends(value: object) -> tuple[str, ...]:
-    """Accept no, one or both ends of a beam."""
-    if sequence(value) in ((), ("start",), ("end",), ("start", "end"), ("end", "start")):
-        return tuple(map(str, sequence(value)))
-    raise RuleError('must be [], ["start"], ["end"] or ["start", "end"]')
+    return several(
+        "a list of some of " + _options(options, '``"'),
+        f"must be a list of some of {_options(options)}, each once",
+        choice(*options),
+        lambda found: at_least <= len(found) == len(set(found)),
+        uniqueItems=True,
+        minItems=at_least,
+    )
 
 
-def records(kind: type, at_least: int = 0) -> ValueRule[tuple[Any, ...]]:
-    """Return the rule: a list of records of one kind."""
-    wanted = "at least one" if at_least else "records of the kind"
+class Records(ValueRule[tuple[Any, ...]]):
+    """The rule: a list of tables ``[[name]]``, each of which states a record of one kind, or of such records."""
 
-    def read(value: object) -> tuple[object, ...]:
-        items = sequence(value)
-        if len(items) < at_least or not all(isinstance(item, kind) for item in items):
-            raise RuleError(f"must be {wanted} {kind.__name__}")
-        return items
+    def __init__(self, name: str, kind: type, at_least: int = 0) -> None:
+        self.name, self.kind = name, kind
+        super().__init__(self._records, f"a list of {kind.__name__}", {"type": "array", "minItems": at_least})
 
-    return ValueRule(read, f"a list of {kind.__name__}", LIST, kind)
+    def _records(self, value: object) -> tuple[Any, ...]:
+        kinds = (self.kind, dict)
+        if not isinstance(value, list | tuple) or not all(isinstance(item, kinds) for item in value):
+            raise RuleError(f"must be a list of tables, [[{self.name}]]")
+        if len(value) < self.schema["minItems"]:
+            raise RuleError(f"must have at least one table, [[{self.name}]]")
+        found: list[Any] = []
+        mistakes: list[FieldError] = []
+        for i, item in enumerate(value):
+            try:
+                found.append(self.kind(**item) if isinstance(item, dict) else item)
+            except RecordError as error:
+                mistakes += (mistake.within(f"{self.name}[{i}].") for mistake in error.mistakes)
+                found.append(error.found)
+            if len(mistakes) > MOST:
+                raise RecordError(mistakes, UNREADABLE)
+        if mistakes:
+            raise RecordError(mistakes, tuple(found))
+        return tuple(found)

@@ -7,14 +7,12 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
 from comparisons.files import read_regular
-from comparisons.scene.rules import MISSING, FieldError, Rule, RuleError, shown
+from comparisons.scene.rules import MISSING, MOST, FieldError, Rule, RuleError, shown
 
 LARGEST_FILE = 16_000_000
 """Largest size of an input file [byte]."""
 DEEPEST = 50
 """Largest number of parts of a dotted key; the time to parse a key rises with the square of this number."""
-MOST = 1000
-"""Number of mistakes from which the reader of a file looks for no more."""
 _TABLE = re.compile(r"([^.\[\]]+)(?:\[(\d+)\])?")
 _HEADER = re.compile(
     r"""\"{3}(?:\\.|[^\\])*?\"{3}|'{3}.*?'{3}|"(?:\\.|[^"\\\n])*"|'[^'\n]*'|\#[^\n]*"""

@@ -5,7 +5,7 @@ from typing import Any
 
 from comparisons.scene.read import LISTS
 from comparisons.scene.record import Record, lists_of, rule_of
-from comparisons.scene.rules import LIST, MISSING
+from comparisons.scene.rules import MISSING, Records
 from comparisons.scene.scene import Scene
 from comparisons.scene.values import toml_value
 
@@ -59,7 +59,10 @@ def json_schema() -> Table:
     >>> json_schema()["properties"]["beam"]["items"]["properties"]["youngs_modulus"]["exclusiveMinimum"]
     0
     """
-    lists = {kind: {**LIST, "items": _schema(record, fields(record))} for kind, record in LISTS.items()}
+    lists = {
+        kind: {"type": "array", "minItems": int(kind == "beam"), "items": _schema(record, fields(record))}
+        for kind, record in LISTS.items()
+    }
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Scene of tsm-crossval",
@@ -75,7 +78,7 @@ def _schema(kind: type[Record], known: tuple[Field[Any], ...]) -> Table:
     for item in known:
         rule, meaning = rule_of(item), item.metadata["meaning"].replace("``", "`")
         properties[item.name] = {"description": meaning, **rule.schema}
-        if rule.kind is not None:
+        if isinstance(rule, Records):
             properties[item.name]["items"] = _schema(rule.kind, fields(rule.kind))
         elif item.default not in (MISSING, None):
             properties[item.name]["default"] = item.default

@@ -17,9 +17,9 @@ SOURCES = [path.read_text(encoding="utf-8") for path in sorted(Path(reader.__fil
 LISTED = messages()
 ERRORS = {"RuleError", "FieldError", "InputError", "SceneError", "kind"}
 """Names by which the reader calls its errors; `kind` is the class of error that a caller hands down."""
-HANDED = {"limited", "read_text"}
+HANDED = {"limited", "read_text", "several", "refused"}
 """Functions that are given a sentence as their second argument."""
-NAMES = {"rule", "refusal", "absent", "reason"}
+NAMES = {"rule", "refusal", "absent", "reason", "APART", "ROLLS", "sentence"}
 """Variables that hold a sentence."""
 
 
@@ -37,7 +37,7 @@ def sentences(source: str) -> set[str]:
             said += node.args[-1:] if node.func.id in ERRORS else []
             said += node.args[1:2] if node.func.id in HANDED else []
         elif isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
-            said += [node.value] if node.targets[0].id in {"rule", "absent"} else []
+            said += [node.value] if node.targets[0].id in {"rule", "absent", "APART", "ROLLS"} else []
     return {words for value in said for words in _template(value)}
 
 
