@@ -47,7 +47,7 @@ class NotFiniteError(FieldError):
 
 
 def read_response(path: str, scene: str | None = None) -> tuple[Response, Scene]:
-    """Return the response that the JSON file `path` states, as ``crossval solve --json`` writes it, and its scene.
+    """Return the response that the JSON file `path` states, as ``crossval solve --out`` writes it, and its scene.
 
     The response has no grid. The scene is the one that the response names, unless another one is given.
 
@@ -210,7 +210,7 @@ def _critical(data: Any) -> CriticalPoint:
 def _table(data: dict[str, Any], key: str, prefix: str = "") -> dict[str, Any]:
     found = data.get(key, MISSING)
     if not isinstance(found, dict):
-        rule = "must be a table, as `crossval solve --json` writes it"
+        rule = "must be a table, as `crossval solve --out` writes it"
         raise FieldError(prefix + key or "file", found, rule)
     return found
 

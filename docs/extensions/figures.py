@@ -17,7 +17,7 @@ COLOURS = 200
 """Colours of a picture in the repository, which keep it small."""
 COMMANDS = {
     "check mine.toml --out check.png": {"check.png": "mine-check.png"},
-    "solve mine.toml --plot solve.png": {"solve.png": "mine-solve.png"},
+    "solve mine.toml --out solve.png": {"solve.png": "mine-solve.png"},
     "compare mine.toml --out mine --quiet": {
         "mine/shapes.png": "mine-shapes.png",
         "mine/side-by-side.png": "mine-side-by-side.png",
