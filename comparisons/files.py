@@ -3,7 +3,6 @@
 The hidden list `WRITTEN` of a folder has the digests of the files that this program wrote there.
 """
 
-import hashlib
 import os
 import signal
 import stat
@@ -12,18 +11,8 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-try:
-    from fcntl import LOCK_EX, flock
-except ImportError:  # Windows
-    LOCKS_FOLDERS = False
-else:
-    LOCKS_FOLDERS = True
-
-
 WRITTEN = ".crossval"
 """Name of the list of a folder: a line for each file, with its digest (SHA-256) and its name."""
-
-
 LONGEST = 500
 """Most characters of a line whose words are those of a program of others."""
 
@@ -72,6 +61,8 @@ def read_regular(path: str, most: int) -> bytes:
 
 def _entry(path: Path, name: str) -> str:
     """Return the line of a list for the file `path`, whose name is or becomes `name`."""
+    import hashlib  # 2 ms that only a command which writes needs
+
     with path.open("rb") as file:
         return f"{hashlib.file_digest(file, 'sha256').hexdigest()}  {printable(name)}"
 
@@ -87,7 +78,7 @@ def _listed(folder: Path) -> set[str]:
 def own(folder: Path, names: Iterable[str]) -> set[str]:
     """Return those of `names` that are files in `folder` as this program wrote them."""
     listed = _listed(folder)
-    paths = {name: folder / name for name in names}
+    paths = {name: folder / name for name in names} if listed else {}
     return {
         name
         for name, path in paths.items()
@@ -103,10 +94,9 @@ def check_free(folder: Path, *names: str) -> None:
     OutputError
         Names the first file that this program did not write there, or that was changed since.
     """
-    there = [name for name in names if os.path.lexists(folder / name)]
-    foreign = set(there) - own(folder, there)
-    for name in there:
-        if name in foreign:
+    owned = own(folder, names)
+    for name in names:
+        if name not in owned and os.path.lexists(folder / name):
             raise OutputError(
                 f"{folder / name}: is there already, and is not as crossval wrote it: move it, or choose another name"
             )
@@ -161,14 +151,12 @@ def write_text(path: Path, text: str) -> None:
 def alone_in(folder: Path) -> Iterator[None]:
     """Hold the lock of `folder`: other runs that write a set of files there wait, so that two sets never mix.
 
-    The lock is on the folder itself, so it adds no file, and it ends with its process. Systems without `fcntl` can lock files only.
-    On such a system the lock is a file in the folder, which is removed when the lock ends.
+    The lock is on the folder itself, so it adds no file, and it ends with its process. Windows has no such lock: there nothing waits.
     """
-    if not LOCKS_FOLDERS:
-        from filelock import FileLock
-
-        with FileLock(folder / ".crossval.lock"):
-            yield
+    try:
+        from fcntl import LOCK_EX, flock
+    except ImportError:
+        yield
         return
     place = os.open(folder, os.O_RDONLY)
     try:
@@ -238,13 +226,13 @@ def writable_folder(folder: Path, *names: str) -> Path:
     return folder
 
 
-def writable_file(path: Path) -> Path:
+def result_file(path: Path) -> Path:
     """Return `path` with links followed, after a trial of writing in its folder. The folder must exist.
 
     Raises
     ------
     OutputError
-        If the folder does not exist or is not writable, or if `path` is a folder or a device, which a rename would replace.
+        If the folder does not exist or is not writable, or `path` is a folder, a device, or a file that this program did not write.
     """
     if path.exists() and not path.is_file():
         raise OutputError(f"{path}: cannot be written: is not a regular file")
@@ -254,12 +242,5 @@ def writable_file(path: Path) -> Path:
         raise OutputError(f"{path}: cannot be written: {error}") from None
     if not target.parent.is_dir():
         raise OutputError(f"{path}: cannot be written: there is no folder {path.parent}")
-    writable_folder(target.parent)
-    return target
-
-
-def result_file(path: Path) -> Path:
-    """Return `writable_file`, unless a file is there that this program did not write."""
-    target = writable_file(path)
-    check_free(target.parent, target.name)
+    writable_folder(target.parent, target.name)
     return target

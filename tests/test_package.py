@@ -167,7 +167,7 @@ SOLVE = ["solve", "ks-cantilever", "--model", "tsm", "--elements", "4"]
     ("code", "there", "absent"),
     [
         ("import tsm", "numpy", {"scipy", "importlib.metadata"}),
-        (COMMAND.format(["-h"]), "comparisons.cli", {"numpy", "importlib.metadata", "psutil", "filelock"}),
+        (COMMAND.format(["-h"]), "comparisons.cli", {"numpy", "importlib.metadata", "psutil"}),
         (COMMAND.format(SOLVE), "tsm", {"scipy.linalg", "scipy.optimize", "scipy.sparse", "fem_reference"}),
     ],
     ids=["tsm", "help", "solve"],

@@ -3,15 +3,17 @@
 import json
 import sys
 from argparse import Namespace
-from importlib import resources
 from pathlib import Path
 
 from comparisons.cli.options import STANDARD, Command, outputs, write
 from comparisons.cli.outcome import DONE
-from comparisons.files import OutputError, writable_file
+from comparisons.files import OutputError
 from comparisons.scene import InputError, built_in_scenes, load_scene
 from comparisons.scene.ends import near_ends
+from comparisons.scene.read import FOLDER
 from comparisons.scene.rules import RuleError, name
+
+TEMPLATE = FOLDER.with_name("template.toml")
 
 
 def run_scenes(given: Namespace) -> int:
@@ -32,11 +34,11 @@ def run_new(given: Namespace) -> int:
         name(given.name)
     except RuleError as error:
         raise InputError("NAME", f"{given.name}: {error}") from None
-    path = writable_file(Path(f"{given.name}.toml"))
+    path = Path(f"{given.name}.toml")
     if path.exists():
         raise OutputError(f"{path.name}: is there already")
     if given.like is None:
-        old, text = "NAME", resources.files("comparisons.scene").joinpath("template.toml").read_text("utf-8")
+        old, text = "NAME", TEMPLATE.read_text(encoding="utf-8")
     elif load_scene(given.like).name not in built_in_scenes():
         raise InputError(given.like, "must be a built-in scene, crossval scenes lists them")
     else:

@@ -2,9 +2,8 @@
 
 import math
 from bisect import bisect_left
-from fractions import Fraction
 from functools import cached_property
-from itertools import accumulate, pairwise
+from itertools import pairwise
 from typing import ClassVar
 
 from comparisons.scene import rules
@@ -29,9 +28,7 @@ class Path:
     def _reached(self) -> tuple[float, ...]:
         """Distance along the path at every point, each rounded once."""
         lengths = [math.dist(a, b) for a, b in pairwise(self.points)]
-        if not math.isfinite(sum(lengths)):
-            return tuple(accumulate(lengths, initial=0.0))
-        return tuple(float(reached) for reached in accumulate(map(Fraction, lengths), initial=Fraction(0)))
+        return tuple(math.fsum(lengths[:k]) for k in range(len(self.points)))
 
     @property
     def corners(self) -> tuple[float, ...]:

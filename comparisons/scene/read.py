@@ -1,8 +1,7 @@
 """Reader of scene files: it turns TOML into a `Scene`, or raises an error with all mistakes."""
 
-from collections.abc import Collection
+import os
 from dataclasses import fields
-from importlib import resources
 from pathlib import Path
 
 from comparisons.scene.record import lists_of
@@ -18,6 +17,8 @@ from comparisons.scene.tables import (
     read_text,
 )
 
+FOLDER = Path(__file__).parent / "scenes"
+"""The built-in scenes."""
 LISTS = {field.removesuffix("s"): kind for field, kind in lists_of(Scene).items()}
 """The tables of a file, each a list, as ``beam``."""
 HEAD = {item.name for item in fields(Scene)} - lists_of(Scene).keys()
@@ -26,10 +27,7 @@ HEAD = {item.name for item in fields(Scene)} - lists_of(Scene).keys()
 
 def built_in_scenes() -> dict[str, str]:
     """Return the TOML text of the scenes that come with the package, by name."""
-    folder = resources.files("comparisons.scene") / "scenes"
-    files = {
-        item.name.removesuffix(".toml"): item for item in folder.iterdir() if item.name.endswith(".toml")
-    }
+    files = {path.stem: path for path in FOLDER.glob("*.toml")}
     return {name: files[name].read_text(encoding="utf-8") for name in sorted(files)}
 
 
@@ -46,22 +44,19 @@ def load_scene(scene: str) -> Scene:
     >>> load_scene("ks-cantilever").beams[0].height
     0.02
     """
-    built_in = built_in_scenes()
+    built_in = {path.stem: path for path in FOLDER.glob("*.toml")}
     if scene in built_in:
-        return read_scene(built_in[scene], scene)
+        return read_scene(built_in[scene].read_text(encoding="utf-8"), scene)
     if not scene:
         raise SceneError('""', "must name a scene")
-    near = "" if Path(scene).exists() else _near(scene, built_in)
+    near = ""
+    if not os.path.lexists(scene):
+        from comparisons.scene.words import meant
+
+        name = meant(scene, built_in)
+        near = f" (did you mean {name}?)" if name else ""
     absent = f"no such file or built-in scene{near}; crossval scenes lists them"
     return read_scene(read_text(scene, absent, SceneError), scene)
-
-
-def _near(scene: str, built_in: Collection[str]) -> str:
-    """Return the question whether another scene is meant; empty if no name is near."""
-    from comparisons.scene.words import meant
-
-    name = meant(scene, built_in)
-    return f" (did you mean {name}?)" if name else ""
 
 
 def read_scene(text: str, source: str) -> Scene:
