@@ -38,7 +38,7 @@ class SupportSpec(AtEnd):
     )
     free: str | None = optional(rules.choice("x", "y"), "The direction in which a roller is free.")
     fixed: tuple[str, ...] | None = optional(
-        rules.subset(*COMPONENTS), "The components held, instead of `kind`."
+        rules.subset(*COMPONENTS, at_least=1), "The components held, instead of `kind`."
     )
     displacement: Point | None = optional(
         rules.point,

@@ -83,5 +83,5 @@ def read_scene(text: str, source: str) -> Scene:
     except RecordError as error:
         mistakes += (item.within("scene.") if item.key in HEAD else item for item in error.mistakes)
     if mistakes:
-        raise SceneError(source, RecordError(in_order(mistakes, text, tables)))
+        raise SceneError(source, RecordError(in_order(mistakes, tables)))
     return scene

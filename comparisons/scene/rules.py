@@ -1,13 +1,12 @@
 """Rules for single values of a scene, and the mistakes that they state.
 
-A rule is a value: called, it returns the stored form of a value or raises its sentence; `accepts` says it in words and `schema` in JSON
-Schema.
+A rule is a value: called, it returns the stored form of a value, or raises its sentence, "must be" before what it accepts.
 """
 
 import dataclasses
 import math
 import operator
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Sequence
 from itertools import pairwise
 from typing import Any, Generic, TypeVar
 
@@ -92,21 +91,18 @@ def shown(value: object) -> str:
 
 
 class ValueRule(Generic[T_co]):
-    """A rule as a value: it reads a value, says what it accepts, and has its JSON Schema."""
+    """A rule as a value: what it accepts in words, whether a value is right, the form in which it is stored, and the JSON Schema."""
 
-    def __init__(self, read: Callable[[object], T_co], accepts: str, schema: Mapping[str, Any]) -> None:
-        self._read, self.accepts, self.schema = read, accepts, schema
+    def __init__(
+        self, accepts: str, right: Callable[[Any], object], stored: Callable[[Any], T_co], **schema: Any
+    ) -> None:
+        self.accepts, self.right, self.stored, self.schema = accepts, right, stored, schema
 
     def __call__(self, value: object) -> T_co:
         """Return the stored form of `value`, or raise `RuleError`."""
-        return self._read(value)
-
-
-def rule(**schema: Any) -> Callable[[Callable[[object], T_co]], ValueRule[T_co]]:
-    """Make a rule of a function, whose docstring is ``Accept ...``."""
-    return lambda read: ValueRule(
-        read, (read.__doc__ or "").removeprefix("Accept ").removesuffix("."), schema
-    )
+        if not self.right(value):
+            raise RuleError(f"must be {self.accepts}")
+        return self.stored(value)
 
 
 COMPARED: dict[str, Callable[[float, float], bool]] = {
@@ -118,214 +114,166 @@ COMPARED: dict[str, Callable[[float, float], bool]] = {
 """Limits of a number by their names in JSON Schema."""
 
 
-def limited(accepts: str, refusal: str = "", *, scaled: bool = False, **limits: float) -> ValueRule[float]:
-    """Return the rule: a finite number within `limits`, else `refusal`; `scaled`, its range is `RANGE` or zero."""
+def limited(accepts: str, *, scaled: bool = False, **limits: float) -> ValueRule[float]:
+    """Return the rule: a finite number within `limits`; `scaled`, it is zero or within `RANGE`."""
     least, most = RANGE if scaled else (0.0, LARGEST)
 
-    def read(value: object) -> float:
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise RuleError("must be a number")
-        if not all(COMPARED[name](value, limit) for name, limit in limits.items()):
-            raise RuleError(refusal)
-        if value and not least <= abs(value) <= most:
-            raise RuleError(f"must be a finite number, from {least:g} to {most:g} in size")
-        return abs(float(value)) if scaled else float(value)
+    def right(value: Any) -> bool:
+        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        if not is_number or not all(COMPARED[name](value, limit) for name, limit in limits.items()):
+            return False
+        return not value or least <= abs(value) <= most
 
-    return ValueRule(read, accepts, {"type": "number", **limits})
+    return ValueRule(
+        accepts, right, lambda value: abs(float(value)) if scaled else float(value), type="number", **limits
+    )
 
 
-number = limited("a finite number of at most 1e50 in size; a truth value is not a number")
-positive = limited(
-    "a number above zero, from 1e-100 to 1e100", "must be positive", scaled=True, exclusiveMinimum=0
-)
-not_negative = limited("zero, or a positive number", "must not be negative", scaled=True, minimum=0)
-turn = limited(
-    "the angle by which an arc turns, less than a whole turn",
-    "must be less than 2 pi in size, an angle in rad",
-    exclusiveMinimum=-2.0 * math.pi,
-    exclusiveMaximum=2.0 * math.pi,
-)
-friction = limited(
-    "a coefficient of friction, between 0 and 100", "must lie between 0 and 100", minimum=0, maximum=100.0
-)
-fraction = limited(
-    "a number between zero and one", "must lie between 0 and 1", exclusiveMinimum=0, exclusiveMaximum=1
-)
+number = limited("a finite number of at most 1e50 in size")
+positive = limited("a positive number, from 1e-100 to 1e100", scaled=True, exclusiveMinimum=0)
+not_negative = limited("zero, or a positive number from 1e-100 to 1e100", scaled=True, minimum=0)
+TURN = 2.0 * math.pi
+turn = limited("an angle in rad of less than 2 pi in size", exclusiveMinimum=-TURN, exclusiveMaximum=TURN)
+friction = limited("a coefficient between 0 and 100", minimum=0, maximum=100.0)
+fraction = limited("a number between 0 and 1", exclusiveMinimum=0, exclusiveMaximum=1)
 poissons_ratio = limited(
-    "Poisson's ratio of an isotropic solid, between -1 and 1/2",
-    "must lie between -1 and 0.5, both excluded",
-    exclusiveMinimum=-1,
-    exclusiveMaximum=0.5,
+    "a number between -1 and 0.5, both excluded", exclusiveMinimum=-1, exclusiveMaximum=0.5
 )
 
 
 def whole(largest: int = 100_000) -> ValueRule[int]:
     """Return the rule: a whole number from 1 to `largest`."""
 
-    def read(value: object) -> int:
-        if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= largest:
-            raise RuleError(f"must be a whole number from 1 to {largest}")
-        return value
+    def right(value: Any) -> bool:
+        return isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= largest
 
-    schema = {"type": "integer", "minimum": 1, "maximum": largest}
-    return ValueRule(read, f"a whole number from 1 to {largest:,}", schema)
+    return ValueRule(
+        f"a whole number from 1 to {largest}", right, int, type="integer", minimum=1, maximum=largest
+    )
 
 
 whole_number = whole()
 
 
-def sequence(value: object) -> tuple[object, ...]:
-    """Return a list as a tuple."""
-    if not isinstance(value, list | tuple):
-        raise RuleError("must be a list")
-    return tuple(value)
-
-
 def several(
-    accepts: str, refusal: str, item: ValueRule[Any], right: Callable[[Any], bool], **schema: Any
-) -> ValueRule[tuple[Any, ...]]:
-    """Return the rule: a list of items which are `right` together, else `refusal`."""
-
-    def read(value: object) -> tuple[Any, ...]:
-        found = tuple(map(item, sequence(value)))
-        if not right(found):
-            raise RuleError(refusal)
-        return found
-
-    return ValueRule(read, accepts, {"type": "array", "items": item.schema, **schema})
+    accepts: str, item: ValueRule[Any], right: Callable[[Sequence[Any]], object], **schema: Any
+) -> ValueRule[Any]:
+    """Return the rule: a list of items that are `right` together."""
+    return ValueRule(
+        accepts,
+        lambda value: isinstance(value, list | tuple) and all(map(item.right, value)) and right(value),
+        lambda value: tuple(map(item.stored, value)),
+        **{"type": "array", "items": item.schema, **schema},
+    )
 
 
-def pair(item: ValueRule[Any]) -> dict[str, Any]:
-    """Return the schema of two items."""
-    return {"type": "array", "items": item.schema, "minItems": 2, "maxItems": 2}
+def two(
+    accepts: str,
+    item: ValueRule[Any],
+    right: Callable[[Any, Any], object] = lambda a, b: True,  # noqa: ARG005
+    **schema: Any,
+) -> ValueRule[Any]:
+    """Return the rule: a list of two items that are `right` together."""
+    return several(
+        accepts, item, lambda pair: len(pair) == 2 and right(*pair), minItems=2, maxItems=2, **schema
+    )
 
 
-@rule(anyOf=[positive.schema, pair(positive)])
-def dimension(value: object) -> float | tuple[float, float]:
-    """Accept a positive number, or two that state a dimension at the start and at the end of a beam."""
-    if not isinstance(value, list | tuple):
-        return positive(value)
-    if len(value) != 2:
-        raise RuleError("must be a number, or two numbers [at the start, at the end]")
-    start, end = positive(value[0]), positive(value[1])
-    return start if start == end else (start, end)
-
-
-@rule(**pair(number))
-def point(value: object) -> Point:
-    """Accept a point or vector [x, y] of the plane."""
-    if not isinstance(value, list | tuple) or len(value) != 2:
-        raise RuleError("must be two numbers [x, y], a third dimension is not modelled")
-    return number(value[0]), number(value[1])
-
-
-@rule(**{**pair(number), "items": {"type": "number", "minimum": 0, "maximum": 1}})
-def span(value: object) -> Point:
-    """Accept two fractions of a beam that rise."""
-    a, b = point(value)
-    if not 0.0 <= a < b <= 1.0:
-        raise RuleError("must be two fractions of the length that rise from 0 to 1")
-    return a, b
-
-
-@rule(**pair(not_negative))
-def stiffnesses(value: object) -> Point:
-    """Accept two numbers [x, y], neither negative."""
-    x, y = point(value)
-    return not_negative(x), not_negative(y)
-
-
-parts = several(
-    "numbers that rise between 0 and 1",
-    "must rise between 0 and 1, both excluded",
-    number,
-    lambda found: all(a < b for a, b in pairwise((0.0, *found, 1.0))),
-    items=fraction.schema,
-)
-mesh = several(
-    "the numbers of elements along and across a solid strip",
-    "must be [elements along, elements across]",
-    whole_number,
-    lambda found: len(found) == 2,
-    **pair(whole_number),
-)
-
-
-def mesh_text(value: object) -> tuple[int, ...]:
-    """Accept the numbers of elements along and across as ``50x2``."""
-    along, separator, across = value.partition("x") if isinstance(value, str) else ("", "", "")
-    if not separator or not (along + across).isdecimal():
-        raise RuleError("must be NXxNY, as 50x2")
-    return mesh((int(along), int(across)))
-
-
-def polyline(at_least: int) -> ValueRule[tuple[Point, ...]]:
+def polyline(at_least: int) -> ValueRule[Any]:
     """Return the rule: points, no two consecutive ones equal."""
     return several(
-        f"at least {at_least} points, no two consecutive ones equal",
-        f"must list {at_least} or more points, no two consecutive ones equal",
+        f"a list of {at_least} or more points [x, y], no two consecutive ones equal",
         point,
-        lambda found: len(found) >= at_least and all(a != b for a, b in pairwise(found)),
+        lambda points: len(points) >= at_least and all(a != b for a, b in pairwise(map(tuple, points))),
         minItems=at_least,
     )
 
 
-@rule(type="string", minLength=1)
-def text(value: object) -> str:
-    """Accept a printable text that is not empty."""
-    if not isinstance(value, str) or not value.strip() or not value.isprintable():
-        raise RuleError("must be a printable text, not empty")
-    return value
+sequence = ValueRule("a list", lambda value: isinstance(value, list | tuple), tuple[object, ...])
+point = two("two numbers [x, y], a third dimension is not modelled", number)
+stiffnesses = two("two numbers [x, y], neither negative", not_negative)
+span = two(
+    "two fractions of the length that rise from 0 to 1",
+    number,
+    lambda a, b: 0.0 <= a < b <= 1.0,
+    items={"type": "number", "minimum": 0, "maximum": 1},
+)
+mesh = two("[elements along, elements across]", whole_number)
+parts = several(
+    "a list of numbers that rise between 0 and 1, both excluded",
+    number,
+    lambda parts: all(a < b for a, b in pairwise((0.0, *parts, 1.0))),
+    items=fraction.schema,
+)
+_ends = two("", positive)
 
 
-@rule(type="string", pattern=r"^[\w-]+$")
-def name(value: object) -> str:
-    """Accept a name that can stand in a reference (``upper.end``, ``pin->cantilever``) and in a file name."""
-    result = text(value)
-    if not all(c.isalnum() or c in "-_" for c in result):
-        raise RuleError("must consist of letters, digits, '-' and '_'")
-    return result
+def _dimension(value: Any) -> float | tuple[float, float]:
+    """Return a number, or two where they differ."""
+    if not _ends.right(value):
+        return positive.stored(value)
+    start, end = _ends.stored(value)
+    return start if start == end else (start, end)
 
 
-@rule(type="string", pattern="^[^,]*[^, ][^,]*,[^,]*[^, ][^,]*$")
-def units(value: object) -> str:
-    """Accept the unit of force and the unit of length, as ``N, m``."""
-    result = text(value)
-    if len(result.split(",")) != 2 or not all(part.strip() for part in result.split(",")):
-        raise RuleError('must be the units of force and of length, as "N, m"')
-    return result
+dimension = ValueRule(
+    "a positive number, or two [at the start, at the end]",
+    lambda value: positive.right(value) or _ends.right(value),
+    _dimension,
+    anyOf=[positive.schema, _ends.schema],
+)
 
 
-@rule(type="boolean")
-def truth(value: object) -> bool:
-    """Accept true or false."""
-    if not isinstance(value, bool):
-        raise RuleError("must be true or false")
-    return value
+def mesh_text(value: object) -> tuple[int, int]:
+    """Accept the numbers of elements along and across as ``50x2``."""
+    along, separator, across = value.partition("x") if isinstance(value, str) else ("", "", "")
+    if not separator or not (along + across).isdecimal():
+        raise RuleError("must be NXxNY, as 50x2")
+    found: tuple[int, int] = mesh((int(along), int(across)))
+    return found
 
 
-def _options(options: tuple[str, ...], quote: str = '"') -> str:
-    return ", ".join(f"{quote}{option}{quote[::-1]}" for option in options)
+text = ValueRule(
+    "a printable text, not empty",
+    lambda value: isinstance(value, str) and value.strip() and value.isprintable(),
+    str,
+    type="string",
+    minLength=1,
+)
+name = ValueRule(
+    "a name of letters, digits, '-' and '_'",
+    lambda value: text.right(value) and all(c.isalnum() or c in "-_" for c in value),
+    str,
+    type="string",
+    pattern=r"^[\w-]+$",
+)
+units = ValueRule(
+    'the units of force and of length, as "N, m"',
+    lambda value: text.right(value) and [bool(part.strip()) for part in value.split(",")] == [True, True],
+    str,
+    type="string",
+    pattern="^[^,]*[^, ][^,]*,[^,]*[^, ][^,]*$",
+)
+truth = ValueRule("true or false", lambda value: isinstance(value, bool), bool, type="boolean")
 
 
 def choice(*options: str) -> ValueRule[str]:
     """Return the rule: one of `options`."""
+    listed = ", ".join(map(shown, options))
+    return ValueRule(
+        f"one of {listed}",
+        lambda value: isinstance(value, str) and value in options,
+        str,
+        enum=list(options),
+    )
 
-    def read(value: object) -> str:
-        if not isinstance(value, str) or value not in options:
-            raise RuleError(f"must be one of {_options(options)}")
-        return value
 
-    return ValueRule(read, "one of " + _options(options, '``"'), {"enum": list(options)})
-
-
-def subset(*options: str, at_least: int = 0) -> ValueRule[tuple[str, ...]]:
+def subset(*options: str, at_least: int = 0) -> ValueRule[Any]:
     """Return the rule: some of `options`, each once."""
     return several(
-        "a list of some of " + _options(options, '``"'),
-        f"must be a list of some of {_options(options)}, each once",
+        f"a list of some of {', '.join(map(shown, options))}, each once",
         choice(*options),
-        lambda found: at_least <= len(found) == len(set(found)),
+        lambda items: at_least <= len(items) == len(set(items)),
         uniqueItems=True,
         minItems=at_least,
     )
@@ -336,14 +284,20 @@ class Records(ValueRule[tuple[Any, ...]]):
 
     def __init__(self, name: str, kind: type, at_least: int = 0) -> None:
         self.name, self.kind = name, kind
-        super().__init__(self._records, f"a list of {kind.__name__}", {"type": "array", "minItems": at_least})
+        super().__init__(
+            f"a list of tables, [[{name}]]",
+            lambda value: (
+                isinstance(value, list | tuple)
+                and len(value) >= at_least
+                and all(isinstance(item, (kind, dict)) for item in value)
+            ),
+            self._read,
+            type="array",
+            minItems=at_least,
+        )
 
-    def _records(self, value: object) -> tuple[Any, ...]:
-        kinds = (self.kind, dict)
-        if not isinstance(value, list | tuple) or not all(isinstance(item, kinds) for item in value):
-            raise RuleError(f"must be a list of tables, [[{self.name}]]")
-        if len(value) < self.schema["minItems"]:
-            raise RuleError(f"must have at least one table, [[{self.name}]]")
+    def _read(self, value: Sequence[Any]) -> tuple[Any, ...]:
+        """Return the records; raise all mistakes of the tables."""
         found: list[Any] = []
         mistakes: list[FieldError] = []
         for i, item in enumerate(value):

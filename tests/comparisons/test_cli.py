@@ -65,7 +65,7 @@ BAD = {
     "solve my.toml --model solid --mesh 50": "--mesh",
     "solve my.toml --accuracy 1e-3 --mesh 5x2": "--mesh: is what --accuracy chooses",
     "solve my.toml --accuracy 1e-3 --model rod": "model = rod: has no resolution to choose",
-    "solve my.toml --accuracy 0": "must lie between 0 and 1",
+    "solve my.toml --accuracy 0": "must be a number between 0 and 1",
     "solve my.toml --accuracy length=1e-3": "must be QUANTITY=X, one of force, arc",
     "solve nosuch.toml --model tsm": "nosuch.toml",
     "solve my.toml --model tsm --out none/a.json": "none/a.json: cannot be written",

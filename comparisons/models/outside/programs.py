@@ -147,7 +147,7 @@ def read_program(path: Path) -> Program:
     given, mistakes = head_values(tables, "program", RULES, required=("name", "command"))
     mistakes += check_keys(tables, ("program",), required=("program",))
     if mistakes:
-        raise ProgramFileError(source, RecordError(in_order(mistakes, text, tables)))
+        raise ProgramFileError(source, RecordError(in_order(mistakes, tables)))
     limits = {name: given.pop(name) for name in ("seconds", "memory", "environment") if name in given}
     if "memory" in limits:
         limits["memory"] *= 1e6

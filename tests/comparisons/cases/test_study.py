@@ -140,7 +140,7 @@ def test_the_scene_is_varied_through_its_records(tmp_path, monkeypatch):
 
 
 BAD = {
-    "run[0].beam.height = -1: must be positive": "beam.height = [0.1, -1]",
+    "run[0].beam.height = -1: must be a positive number": "beam.height = [0.1, -1]",
     "run[0].beam.heigth = 1: unknown key, did you mean height?": "beam.heigth = 1",
     "run[0].beam.area = 1.0: give either width and height or area and second_moment, not both": "beam.area = 1",
     "run[0].beam.cantilevr = {height = 1}: unknown key, did you mean cantilever?": "beam.cantilevr.height = 1",
@@ -152,7 +152,7 @@ BAD = {
     "run[0].elements.count = 1: must be at least 2": "elements = { from = 5, to = 6, count = 1 }",
     "run[0].beam.height.from = 0: must be positive in a range": 'beam.height = { from = 0, to = 1, count = 3, spacing = "log" }',
     'run[0].element = "mixd": must be one of': 'element = "mixd"',
-    "run[0].integration_tolerance = 2: must lie between 0 and 1": "integration_tolerance = 2",
+    "run[0].integration_tolerance = 2: must be a number between 0 and 1": "integration_tolerance = 2",
     'run[0].mesh = "25x2": is no option of model = "tsm"': 'mesh = "25x2"',
     "run[1].mesh = 25: must be NXxNY": '[[run]]\nmodel = "solid"\nmesh = [25]',
     'run[1].model = "fem": must be one of': '[[run]]\nmodel = "fem"',

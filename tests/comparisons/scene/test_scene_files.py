@@ -74,7 +74,7 @@ def test_a_new_scene_is_like_a_built_in_one():
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        (["new", "a/b"], "NAME: a/b: must consist of letters, digits"),
+        (["new", "a/b"], "NAME: a/b: must be a name of letters, digits"),
         (["new", "there"], "there.toml: is there already"),
         (["check", "there.toml"], "there.toml: "),
         (["check", "ks-cantilever", "--out", "picture.pdf"], "picture.pdf: must end in .json, .png, .svg"),

@@ -121,14 +121,14 @@ def test_a_new_key_is_one_declaration(monkeypatch):
     assert read_scene(to_toml(scene), "copy") == scene
     assert "\nwear = 0.5" in to_toml(scene)
     for line, said in {
-        "wear = 2": "contact[0].wear = 2: must lie between 0 and 1",
+        "wear = 2": "contact[0].wear = 2: must be a number between 0 and 1",
         "waer = 0.5": "contact[0].waer = 0.5: unknown key, did you mean wear?",
     }.items():
         with pytest.raises(SceneError, match=f"^s: {re.escape(said)}$"):
             read_scene(f"{text}{line}\n", "s")
     schema = json_schema()["properties"]["contact"]["items"]["properties"]["wear"]
     assert (schema["exclusiveMaximum"], schema["default"]) == (1, 0.25)
-    assert "| `wear` | a number between zero and one | `0.25` | Share of the surface worn off. |" in page()
+    assert "| `wear` | a number between 0 and 1 | `0.25` | Share of the surface worn off. |" in page()
 
 
 def ends(name: str, start: str, end: str, clamped: str = "[]") -> str:

@@ -140,7 +140,7 @@ GOOD = "[program]\nname = 'a'\ncommand = ['c']\n"
         ("", "program = (missing): must be given"),
         (GOOD.replace("'a'", "'rod'"), "must not be the name of a model"),
         (GOOD.replace("['c']", "'c'"), 'program.command = "c": must be a list'),
-        (GOOD + "seconds = 0", "program.seconds = 0: must be positive"),
+        (GOOD + "seconds = 0", "program.seconds = 0: must be a positive number"),
         (GOOD + "colour = 'red'", "must be a colour, as #AA3377"),
         ("[program", "must be valid TOML"),
     ],
