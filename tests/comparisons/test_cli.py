@@ -98,14 +98,6 @@ def test_a_model_that_cannot_state_the_scene_says_why(scene, capsys):
     assert run("solve my.toml --model tsm") == 0
 
 
-def test_a_mesh_file_without_its_library_is_refused_in_one_line(scene, monkeypatch, capsys):
-    monkeypatch.setitem(sys.modules, "meshio", None)
-    Path("strip.msh").touch()
-    Path("my.toml").write_text(KS.replace("height = 0.02", 'height = 0.02\nsolid_mesh_file = "strip.msh"'))
-    assert run("solve my.toml --model solid") == 2
-    assert capsys.readouterr().err == "crossval: meshio: cannot be imported, install tsm-crossval again\n"
-
-
 def test_solve_to_an_accuracy(scene, capsys):
     assert run("solve my.toml --accuracy 1e-3") == 0
     out, err = capsys.readouterr()

@@ -193,16 +193,6 @@ def test_closed_streams(closed, end, tmp_path):
     assert (tmp_path / "a.json").exists() is (end[0] == 0)
 
 
-@pytest.mark.parametrize("options", [["--out", "/proc/a.json"], ["--out", "/proc/vtk"]])
-def test_no_permission_to_write(options):
-    """Not even the superuser writes there."""
-    status, err = crossval(*SOLVE, *options)
-    assert (status, err.count("\n")) == (2, 1)
-    assert err.startswith(
-        f"crossval: {Path(options[1]) if 'vtk' in options[1] else '/proc'}: cannot be written: "
-    )
-
-
 NO_CLUSTER = ["run", "s.toml", "--out", "out", "--cluster", "tcp://127.0.0.1:1"]
 
 

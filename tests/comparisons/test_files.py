@@ -5,7 +5,6 @@ import os
 import re
 from dataclasses import replace
 from pathlib import Path
-from threading import Thread
 
 import pytest
 
@@ -60,22 +59,6 @@ def test_places_that_cannot_be_written_are_named_and_a_link_is_followed(tmp_path
     files.write_text(files.result_file(link), "new")
     assert link.is_symlink()
     assert target.read_text() == "new"
-
-
-def test_sets_of_files_are_written_one_after_the_other(tmp_path):
-    order: list[str] = []
-
-    def write() -> None:
-        with files.alone_in(tmp_path):
-            order.append("second")
-
-    other = Thread(target=write)
-    with files.alone_in(tmp_path):
-        other.start()
-        other.join(0.2)
-        order.append("first")
-    other.join(10)
-    assert order == ["first", "second"]
 
 
 HERE = "of a user"

@@ -205,9 +205,3 @@ def test_a_pin_inside_an_arc_is_on_the_wrong_side_by_its_distance(turn):
     inside = f"start = [{x - 0.03 * ty!r}, {y + 0.03 * tx!r}]"
     with pytest.raises(SceneError, match=r'must lie on the right of beam "a" \(axis\), gap -0\.03$'):
         read_scene(given.replace("start = [0.7, -0.1]", inside), "s")
-
-
-def test_a_syntax_error_keeps_its_line():
-    line = next(i for i, content in enumerate(KS.splitlines(), 1) if content.startswith("height"))
-    with pytest.raises(SceneError, match=rf"^my\.toml: .*line {line}\b.*$"):
-        read_scene(KS.replace("height = 0.02", "height = = 0.02"), "my.toml")
