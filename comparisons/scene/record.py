@@ -6,7 +6,7 @@ attributes. Where a value is itself wrong, reading it raises `Unjudged`, and the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import Field, FrozenInstanceError, dataclass, field, fields
 from inspect import cleandoc
@@ -14,15 +14,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, dataclass_transform
 
 from comparisons.scene.rules import (
     MISSING,
-    UNREADABLE,
     FieldError,
     Mistakes,
     RecordError,
     Records,
-    RuleError,
     ValueRule,
 )
-from comparisons.scene.tables import check_keys, misnamed_keys
+from comparisons.scene.tables import misnamed_keys, table_values
 
 R = TypeVar("R", bound="Record")
 RAISES = "\nRaises\n------\nFieldError\n    With all mistakes, each in one line: field, value and rule."
@@ -54,12 +52,14 @@ class Record:
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
     obeys: ClassVar[tuple[Callable[[Any], Mistakes], ...]] = ()
-    _defaults: ClassVar[dict[str, Any]]
+    _rules: ClassVar[dict[str, ValueRule[Any]]]
+    _free: ClassVar[dict[str, Any]]
 
     def __init_subclass__(cls) -> None:
         dataclass(init=False, repr=False, eq=False, match_args=False)(cls)
-        cls._defaults = {item.name: item.default for item in fields(cls)}
-        for name in cls._defaults.keys() & vars(cls).keys():
+        cls._rules = {item.name: rule_of(item) for item in fields(cls)}
+        cls._free = {item.name: item.default for item in fields(cls) if item.default is not MISSING}
+        for name in cls._rules.keys() & vars(cls).keys():
             delattr(cls, name)  # so that a value which is wrong is not there
         rows = (
             f"{item.name} : {rule_of(item).accepts}\n    {item.metadata['meaning']}" for item in fields(cls)
@@ -67,14 +67,13 @@ class Record:
         cls.__doc__ = "\n".join([cleandoc(cls.__doc__ or ""), "\nParameters\n----------", *rows, RAISES])
 
     def __init__(self, /, **given: Any) -> None:
-        mistakes = list(check_keys(given, self._defaults))
-        given |= dict.fromkeys(misnamed_keys(given, self._defaults), UNREADABLE)
-        for item in fields(self):
-            value = given.get(item.name, item.default)
-            if value is MISSING:
-                mistakes.append(FieldError(item.name, value, "must be given"))
-            elif value is not UNREADABLE:
-                mistakes += self._store(item, value)
+        free, rules = self._free, self._rules
+        given = {
+            name: value for name, value in given.items() if value is not None or free.get(name, 0) is not None
+        }
+        values, mistakes = table_values(given, rules, [name for name in rules if name not in free])
+        stated = given.keys() | misnamed_keys(given, rules)
+        vars(self).update({name: value for name, value in free.items() if name not in stated}, **values)
         self._settle()
         for own in self.obeys:
             with suppress(Unjudged):
@@ -83,18 +82,6 @@ class Record:
                 vars(self).pop(mistake.key, None)
         if mistakes:
             raise RecordError(mistakes, self)
-
-    def _store(self, item: Field[Any], value: object) -> Sequence[FieldError]:
-        """Store the value of a key, or what is right of it, and return its mistakes."""
-        try:
-            vars(self)[item.name] = None if value is item.default is None else rule_of(item)(value)
-        except RecordError as error:
-            if error.found is not UNREADABLE:
-                vars(self)[item.name] = error.found
-            return error.mistakes
-        except RuleError as error:
-            return [FieldError(getattr(rule_of(item), "name", item.name), value, str(error))]
-        return []
 
     def _settle(self) -> None:
         """Put values that depend on others into their final form."""
@@ -107,7 +94,7 @@ class Record:
 
         def __getattr__(self, name: str) -> Any:
             """Refuse a value that is wrong."""
-            if name in self._defaults:
+            if name in self._rules:
                 raise Unjudged(name)
             raise AttributeError(f"{type(self).__name__} has no attribute {name}")
 
@@ -118,7 +105,7 @@ class Record:
         raise FrozenInstanceError(f"cannot delete field {name!r}")
 
     def _values(self) -> tuple[Any, ...]:
-        return tuple(vars(self)[name] for name in self._defaults)
+        return tuple(vars(self)[name] for name in self._rules)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Record) or type(self) is not type(other):
@@ -129,7 +116,7 @@ class Record:
         return hash(self._values())
 
     def __repr__(self) -> str:
-        values = ", ".join(f"{name}={vars(self).get(name)!r}" for name in self._defaults)
+        values = ", ".join(f"{name}={vars(self).get(name)!r}" for name in self._rules)
         return f"{type(self).__name__}({values})"
 
 
@@ -148,7 +135,7 @@ def lists_of(kind: type[Record]) -> dict[str, type[Record]]:
 def copied(record: R, **attributes: object) -> R:
     """Return a copy of a record, wrong values included, with further attributes that are no keys."""
     copy = object.__new__(type(record))
-    vars(copy).update({name: value for name, value in vars(record).items() if name in record._defaults})  # noqa: SLF001
+    vars(copy).update({name: value for name, value in vars(record).items() if name in record._rules})  # noqa: SLF001
     vars(copy).update(attributes)
     return copy
 

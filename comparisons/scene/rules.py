@@ -48,11 +48,8 @@ class FieldError(ValueError):
     def __init__(self, key: str, value: object, rule: str) -> None:
         super().__init__(f"{key} = {shown(value)}: {rule}")
         self.key, self.value, self.rule = key, value, rule
-
-    @property
-    def mistakes(self) -> "tuple[FieldError, ...]":
+        self.mistakes: tuple[FieldError, ...] = (self,)
         """Every single mistake."""
-        return (self,)
 
     def within(self, prefix: str) -> "FieldError":
         """Return the same error with `prefix` before every key."""
@@ -63,19 +60,14 @@ class RecordError(FieldError):
     """Several mistakes, each in one line, the first one's key, value and rule; `found` has the values that are right."""
 
     def __init__(self, mistakes: Collection[FieldError], found: Any = None) -> None:
-        self._mistakes, self.found = tuple(mistakes), found
-        first = self._mistakes[0]
+        first = next(iter(mistakes))
         super().__init__(first.key, first.value, first.rule)
-        self.args = ("\n".join(map(str, self._mistakes)),)
-
-    @property
-    def mistakes(self) -> tuple[FieldError, ...]:
-        """Every single mistake."""
-        return self._mistakes
+        self.args = ("\n".join(map(str, mistakes)),)
+        self.mistakes, self.found = tuple(mistakes), found
 
     def within(self, prefix: str) -> FieldError:
         """Return the same error with `prefix` before every key."""
-        return RecordError([mistake.within(prefix) for mistake in self._mistakes])
+        return RecordError([mistake.within(prefix) for mistake in self.mistakes])
 
 
 Mistakes = Iterator[FieldError]

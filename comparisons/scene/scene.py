@@ -11,7 +11,7 @@ from comparisons.scene.conditions import HingeSpec, LoadSpec, SpringSpec, Suppor
 from comparisons.scene.contact import ContactSpec, PinSpec
 from comparisons.scene.record import Record, Unjudged, copied, key, optional
 from comparisons.scene.rules import Point
-from comparisons.scene.stages import LoadHistory, PrescribedMotion, StageSpec, amount, load_histories
+from comparisons.scene.stages import LoadHistory, PinMove, PrescribedMotion, StageSpec, amount, load_histories
 
 
 class Named(dict[str, Any]):
@@ -55,19 +55,16 @@ class Scene(Record):
 
     def _settle(self) -> None:
         if self.has("pins"):
-            vars(self)["pins"] = tuple(map(self._with_moves, self.pins))
+            vars(self)["pins"] = tuple(copied(pin, moves=self._moves(pin)) for pin in self.pins)
 
     obeys = (scene_rules,)
 
-    def _with_moves(self, pin: PinSpec) -> PinSpec:
-        """Return a copy of `pin` that knows its motions in the stages."""
+    def _moves(self, pin: PinSpec) -> tuple[PinMove | None, ...] | None:
+        """Return the motions of a pin in the stages; None where one is wrong."""
         try:
-            if not (self.stages or pin.moves):
-                return pin
-            moves = tuple({move.name: move for move in stage.pin}.get(pin.name) for stage in self.stages)
+            return tuple({move.name: move for move in stage.pin}.get(pin.name) for stage in self.stages)
         except Unjudged:
-            return copied(pin, moves=None)
-        return copied(pin, moves=moves)
+            return None
 
     @cached_property
     def _beams(self) -> dict[str, BeamSpec]:

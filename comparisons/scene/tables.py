@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
 from comparisons.files import read_regular
-from comparisons.scene.rules import MISSING, MOST, FieldError, Rule, RuleError, shown
+from comparisons.scene.rules import MISSING, MOST, UNREADABLE, FieldError, RecordError, Rule, RuleError, shown
 
 LARGEST_FILE = 16_000_000
 """Largest size of an input file [byte]."""
@@ -122,11 +122,14 @@ def table_values(
     """Return the right values of a table in their stored form, and its mistakes."""
     mistakes = list(check_keys(table, rules, required))
     values = {}
-    for key in (key for key in table if key in rules):
+    for key in (key for key in table if key in rules and table[key] is not UNREADABLE):
         try:
             values[key] = rules[key](table[key])
+        except RecordError as error:
+            mistakes += error.mistakes
+            values |= {} if error.found is UNREADABLE else {key: error.found}
         except RuleError as error:
-            mistakes.append(FieldError(key, table[key], str(error)))
+            mistakes.append(FieldError(getattr(rules[key], "name", key), table[key], str(error)))
     return values, mistakes
 
 
