@@ -4,15 +4,7 @@ from typing import NamedTuple
 
 
 class Extra(NamedTuple):
-    """An extra of the package.
-
-    Attributes
-    ----------
-    name : str
-        Its name, as in ``pip install 'tsm-crossval[NAME]'``.
-    use : str
-        What needs the library.
-    """
+    """An extra of the package: its name, as in ``pip install 'tsm-crossval[NAME]'``, and what needs the library."""
 
     name: str
     use: str

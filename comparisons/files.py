@@ -4,7 +4,6 @@ The hidden list `WRITTEN` of a folder has the digests of the files that this pro
 """
 
 import errno
-import hashlib
 import os
 import signal
 import stat
@@ -14,18 +13,8 @@ from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
 
-try:
-    from fcntl import LOCK_EX, flock
-except ImportError:  # Windows
-    LOCKS_FOLDERS = False
-else:
-    LOCKS_FOLDERS = True
-
-
 WRITTEN = ".crossval"
 """Name of the list of a folder: a line for each file, with its digest (SHA-256) and its name."""
-
-
 LONGEST = 500
 """Most characters of a line whose words are those of a program of others."""
 
@@ -74,6 +63,8 @@ def read_regular(path: str, most: int) -> bytes:
 
 def _entry(path: Path, name: str) -> str:
     """Return the line of a list for the file `path`, whose name is or becomes `name`."""
+    import hashlib  # 2 ms that only a command which writes needs
+
     with path.open("rb") as file:
         return f"{hashlib.file_digest(file, 'sha256').hexdigest()}  {printable(name)}"
 
@@ -89,7 +80,7 @@ def _listed(folder: Path) -> set[str]:
 def own(folder: Path, names: Iterable[str]) -> set[str]:
     """Return those of `names` that are files in `folder` as this program wrote them."""
     listed = _listed(folder)
-    paths = {name: folder / name for name in names}
+    paths = {name: folder / name for name in names} if listed else {}
     return {
         name
         for name, path in paths.items()
@@ -105,10 +96,9 @@ def check_free(folder: Path, *names: str) -> None:
     OutputError
         Names the first file that this program did not write there, or that was changed since.
     """
-    there = [name for name in names if os.path.lexists(folder / name)]
-    foreign = set(there) - own(folder, there)
-    for name in there:
-        if name in foreign:
+    owned = own(folder, names)
+    for name in names:
+        if name not in owned and os.path.lexists(folder / name):
             raise OutputError(
                 f"{folder / name}: is there already, and is not as crossval wrote it: move it, or choose another name"
             )
@@ -131,53 +121,30 @@ def move(aside: Path, folder: Path, names: Iterable[str]) -> None:
 
 
 @contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """Yield a temporary name in the folder of `path`; rename it to `path` once the block has written it.
-
-    The temporary name keeps the suffix, and it is removed if the block fails.
-
-    Raises
-    ------
-    OutputError
-        If a file is there that this program did not write, the disk is full or the system refuses to write the file.
-    """
-    check_free(path.parent, path.name)
-    temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
-    try:
-        yield temporary
-        _list(path.parent, [_entry(temporary, path.name)])
-        temporary.replace(path)
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {error.strerror or error}") from error
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write `text` to `path` atomically."""
-    with replacing(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
-
-
-@contextmanager
 def alone_in(folder: Path) -> Iterator[None]:
     """Hold the lock of `folder`: other runs that write a set of files there wait, so that two sets never mix.
 
     The lock is on the folder itself, so it adds no file, and it ends with its process. Windows can lock files only.
     There the lock is a file in the folder, which is removed when the lock ends.
     """
-    file = folder / ".crossval.lock"
-    place = os.open(folder, os.O_RDONLY) if LOCKS_FOLDERS else os.open(file, os.O_RDWR | os.O_CREAT)
+    file = None
+    try:
+        from fcntl import LOCK_EX, flock
+
+        place = os.open(folder, os.O_RDONLY)
+    except ImportError:
+        file = folder / ".crossval.lock"
+        place = os.open(file, os.O_RDWR | os.O_CREAT)
     try:
         with suppress(OSError):  # a file system without locks
-            if LOCKS_FOLDERS:
+            if file is None:
                 flock(place, LOCK_EX)
             else:
                 _lock_file(place)
         yield
     finally:
         os.close(place)
-        if not LOCKS_FOLDERS:
+        if file is not None:
             with suppress(OSError):  # another run waits for it
                 file.unlink()
 
@@ -209,15 +176,13 @@ def interrupts_held() -> Iterator[None]:
 
 
 @contextmanager
-def staging(folder: Path) -> Iterator[Path]:
-    """Yield a new hidden folder in `folder`, for files that are moved out when they are finished.
-
-    The hidden folder is removed at the end, with all files still in it.
+def staging(folder: Path, named: Path | None = None) -> Iterator[Path]:
+    """Yield a new hidden folder in `folder`, for files that are moved out when they are finished; it is removed at the end.
 
     Raises
     ------
     OutputError
-        If the disk is full or the system refuses to write.
+        If the disk is full or the system refuses to write; the message names `named`, else the folder.
     """
     try:
         # an interrupt within its making or its removal would leave it; at any other point its finalizer removes it
@@ -232,7 +197,28 @@ def staging(folder: Path) -> Iterator[Path]:
         # the message names the final path of a file, not its temporary one
         raise OutputError(str(error).replace(f"{aside.name}{os.sep}", f"{folder}{os.sep}")) from error
     except OSError as error:
-        raise OutputError(f"{folder}: cannot be written: {error.strerror or error}") from error
+        raise OutputError(f"{named or folder}: cannot be written: {error.strerror or error}") from error
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Yield a temporary place for a file of this name; move it to `path` once the block has written it.
+
+    Raises
+    ------
+    OutputError
+        If a file is there that this program did not write, the disk is full or the system refuses to write the file.
+    """
+    check_free(path.parent, path.name)
+    with staging(path.parent, path) as aside:
+        yield aside / path.name
+        move(aside, path.parent, [path.name])
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write `text` to `path` atomically."""
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
 
 
 def writable_folder(folder: Path, *names: str) -> Path:
@@ -254,13 +240,13 @@ def writable_folder(folder: Path, *names: str) -> Path:
     return folder
 
 
-def writable_file(path: Path) -> Path:
+def result_file(path: Path) -> Path:
     """Return `path` with links followed, after a trial of writing in its folder. The folder must exist.
 
     Raises
     ------
     OutputError
-        If the folder does not exist or is not writable, or if `path` is a folder or a device, which a rename would replace.
+        If the folder does not exist or is not writable, or `path` is a folder, a device, or a file that this program did not write.
     """
     if path.exists() and not path.is_file():
         raise OutputError(f"{path}: cannot be written: is not a regular file")
@@ -270,12 +256,5 @@ def writable_file(path: Path) -> Path:
         raise OutputError(f"{path}: cannot be written: {error}") from None
     if not target.parent.is_dir():
         raise OutputError(f"{path}: cannot be written: there is no folder {path.parent}")
-    writable_folder(target.parent)
-    return target
-
-
-def result_file(path: Path) -> Path:
-    """Return `writable_file`, unless a file is there that this program did not write."""
-    target = writable_file(path)
-    check_free(target.parent, target.name)
+    writable_folder(target.parent, target.name)
     return target

@@ -64,7 +64,7 @@ def read_study(path: Path) -> Study:
         name = head["scene"] if head["scene"] in built_in_scenes() else str(path.parent / head["scene"])
         cases = _cases(load_scene(name), tables.get("run", []), path.parent, mistakes)
     if mistakes:
-        raise StudyError(source, RecordError(in_order(mistakes, text, tables)))
+        raise StudyError(source, RecordError(in_order(mistakes, tables)))
     return Study(name=head["name"], repeats=head.get("repeats", 3), cases=tuple(dict.fromkeys(cases)))
 
 

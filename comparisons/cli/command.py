@@ -18,8 +18,10 @@ from comparisons.models.options import ModelError
 from comparisons.models.outside.child import CalculixError
 from comparisons.scene import InputError
 
-COMMANDS = (scene_files, solve, compare, certify, run, view)
-"""The modules of the commands, in the order of the help: each adds its own to the parser."""
+COMMANDS = tuple(
+    command for module in (scene_files, solve, compare, certify, run, view) for command in module.COMMANDS
+)
+"""The commands in the order of the help."""
 GONE = {
     "doctor": "crossval --version",
     "completion": "crossval --help",
@@ -32,20 +34,30 @@ GONE = {
     "study": "crossval run FILE.toml",
     "manual": "crossval run manual",
     "extremes": "crossval run extremes",
+    "--json": "--out FILE.json",
+    "--csv": "--out FILE.csv",
+    "--plot": "--out FILE.png",
+    "--vtk": "--out FOLDER",
+    "--times": "wall_seconds in --out FILE.json",
+    "--explain": "--accuracy, which says what it decides",
+    "--quantity": "--accuracy QUANTITY=X",
+    "--few": "crossval solve, which judges as many",
+    "--only": "crossval run manual PROBLEM ...",
+    "--cards": "crossval run cards",
 }
-"""Commands of earlier versions, and what does their work."""
-MARKS = {True: "ok", False: "MISSING", None: "-"}
-"""How ``--version`` marks what is there, what is missing, and what only an extra needs."""
+"""Commands and options of earlier versions, and what does their work."""
 OWN = ("comparisons", "tsm", "fem_reference")
 """Packages whose absence is a bug and no missing library."""
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command and return its exit status: 0 done, 1 a wrong answer, 2 bad input, 3 a solution that stopped."""
-    first = next(iter(sys.argv[1:] if arguments is None else arguments), "")
+    first, *more = (sys.argv[1:] if arguments is None else arguments) or [""]
+    words = (first, *(word.partition("=")[0] for word in more if word.startswith("-")))
     with _open_streams() as there:
-        if first in GONE:
-            return _told(f"{first}: is no longer a command, see {GONE[first]}", BAD_INPUT)
+        for word in (word for word in words if word in GONE):
+            kind = "an option" if word.startswith("-") else "a command"
+            return _told(f"{word}: is no longer {kind}, see {GONE[word]}", BAD_INPUT)
         return _run(arguments) if there else BAD_INPUT
 
 
@@ -128,9 +140,9 @@ class _Version(argparse.Action):
 
         print(f"crossval {release()}")
         findings = list(examined())
-        for finding in findings:
-            print(f"{MARKS[finding.well]:8s}{finding.what:14s} {finding.state}")
-        parser.exit(DONE if all(finding.well is not False for finding in findings) else WRONG)
+        for mark, what, state in findings:
+            print(f"{mark:8s}{what:14s} {state}")
+        parser.exit(WRONG if any(mark == "MISSING" for mark, *_ in findings) else DONE)
 
 
 def _drop_output() -> None:
@@ -153,6 +165,6 @@ def command_parser() -> argparse.ArgumentParser:
         help="print the version, and which libraries and programs are here",
     )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for module in COMMANDS:
-        module.add_to(commands)
+    for command in COMMANDS:
+        command.add_to(commands)
     return parser

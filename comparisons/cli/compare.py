@@ -3,28 +3,15 @@
 import argparse
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from comparisons.cli.options import (
-    ModelNames,
-    add_options,
-    add_others,
-    add_workers,
-    argument,
-    chosen,
-    workers,
-)
+from comparisons.cli.options import Command, argument, chosen, workers
 from comparisons.cli.outcome import DONE, STOPPED, WRONG, exit_status, report
 from comparisons.cli.progress import staging, watching
-from comparisons.cli.values import Quantities
 from comparisons.files import result_file, writable_folder, write_text
 from comparisons.models import TSM
 from comparisons.models.options import ModelError
 from comparisons.models.progress import Count, Watch
 from comparisons.scene import Scene, built_in_scenes, load_scene
-
-if TYPE_CHECKING:
-    from comparisons.cli.outcome import Commands
 
 EVERY = "all"
 """The word for all built-in scenes."""
@@ -39,59 +26,6 @@ FOREIGN = {
 EPILOG = """exit status: 0 compared, or every bound holds, 1 an error lies beyond its bound, 2 bad input, 3 the exact rods stopped, an
 answer was refused by its checks or the referee, or a solution that has a bound stopped, 130 interrupted. A model that stops with a named
 status is a row of the table. Of several scenes what is done is kept, and the same command goes on from there."""
-
-
-def add_to(commands: "Commands") -> None:
-    """Add the command to the parser."""
-    parser = commands.add_parser(
-        "compare",
-        help="compare models on a scene, hold errors to bounds, or measure every program on several scenes",
-        description="One scene is solved with every model. With --max-error one model is solved, and its errors, relative and the largest "
-        "over all load parameters, are held to bounds. Several scenes are solved with every program at up to five of its own resolutions: "
-        "errors, spurious friction, processor seconds, and how often a program said success and was wrong.",
-        epilog=EPILOG,
-    )
-    parser.add_argument(
-        "scenes",
-        nargs="+",
-        metavar="SCENE",
-        help=f"built-in scenes or TOML files; {EVERY}: every built-in one",
-    )
-    add_others(parser)
-    parser.add_argument("--model", choices=ModelNames(), help="a bound's model (tsm), or one more row")
-    add_options(parser, "elements", "element", "mesh")
-    bounds = parser.add_argument(
-        "--max-error",
-        action="append",
-        default=[],
-        type=_bound,
-        metavar="QUANTITY=X",
-        help="a bound, any number of them: %(quantities)s",
-    )
-    vars(bounds)["quantities"] = Quantities(path=True)
-    parser.add_argument("--against", choices=ModelNames(), help="bounds: the model to measure against (rod)")
-    parser.add_argument("--junit", metavar="FILE", help="bounds: write them as JUnit XML")
-    parser.add_argument(
-        "--out", type=Path, metavar="DIR", help="folder of the results (out/SCENE, out/league)"
-    )
-    parser.add_argument(
-        "--quick", action="store_true", help="several scenes: at most two resolutions of every program"
-    )
-    add_workers(parser)
-    parser.add_argument("--quiet", action="store_true", help="tell of no progress")
-    parser.set_defaults(run=run)
-
-
-def _bound(text: str) -> tuple[str, float]:
-    quantity, _, bound = text.partition("=")
-    try:
-        value = float(bound)
-    except ValueError:
-        value = -1.0
-    known = Quantities(path=True)
-    if quantity not in known or not value > 0:
-        raise argparse.ArgumentTypeError(f"{text}: must be QUANTITY=X with X above 0 and one of {known}")
-    return quantity, value
 
 
 def run(given: argparse.Namespace) -> int:
@@ -183,3 +117,22 @@ def _league(scenes: list[Scene], given: argparse.Namespace) -> int:
         print(f"{name}: {program}: left out, {reason}")
     print("\nfiles:", *(f"  {path}" for path in write_league(league, folder)), sep="\n")
     return DONE
+
+
+COMMANDS = (
+    Command(
+        "compare",
+        "compare models on a scene, hold errors to bounds, or measure every program on several scenes",
+        run,
+        "scenes --with --model --elements --element --mesh --max-error --against --junit --out --quick --workers --cluster --quiet",
+        {
+            "--model": "a bound's model (tsm), or one more row",
+            "--out": "folder of the results (out/SCENE, out/league)",
+            "--quick": "several scenes: at most two resolutions of every program",
+        },
+        "One scene is solved with every model. With --max-error one model is solved, and its errors, relative and the largest "
+        "over all load parameters, are held to bounds. Several scenes are solved with every program at up to five of its own resolutions: "
+        "errors, spurious friction, processor seconds, and how often a program said success and was wrong.",
+        EPILOG,
+    ),
+)

@@ -6,12 +6,8 @@ from typing import TYPE_CHECKING
 from comparisons.files import printable
 
 if TYPE_CHECKING:
-    import argparse
-
     from comparisons.response import Response
     from comparisons.scene import Scene
-
-    Commands = argparse._SubParsersAction[argparse.ArgumentParser]  # noqa: SLF001 - it has no public name
 
 DONE, WRONG, BAD_INPUT, STOPPED, INTERRUPTED = 0, 1, 2, 3, 130
 EPILOG = """exit status: 0 completed and checked, 2 bad input, 3 the solution stopped (the reason is named)"""

@@ -1,77 +1,64 @@
 """Lines and bars: what is being done, and how far it is."""
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from shutil import get_terminal_size
 from time import monotonic
 from typing import TextIO
 
-from comparisons.models.progress import REDRAW, Count, Reached, Watch, bar, uncounted, unwatched
+from comparisons.models.progress import REDRAW, Count, Reached, Watch, bar
 
 PATIENCE = 2.0
 """Seconds that a work takes without a bar."""
 
 
 @contextmanager
-def watching(label: str, *, quiet: bool = False, stream: TextIO | None = None) -> Iterator[Watch]:
-    """Yield a `Watch` that draws a progress line for one solution, and clear the line afterwards; without a terminal nothing is drawn.
+def _line(*, quiet: bool, stream: TextIO) -> Iterator[Callable[[str], None]]:
+    """Yield what draws a line on a terminal in place of the line before; the line is cleared afterwards. Elsewhere nothing is drawn."""
+    drawn, shown = 0.0, not quiet and stream.isatty()
 
-    The line shows the load parameter, the Newton iterations so far and the elements in contact.
-    """
-    stream = stream or sys.stderr
-    if quiet or not stream.isatty():
-        yield unwatched
-        return
-    drawn, iterations = 0.0, 0
-
-    def show(reached: Reached) -> None:
-        nonlocal drawn, iterations
-        iterations += reached.iterations
-        if monotonic() - drawn < REDRAW:
-            return
-        drawn = monotonic()
-        t = reached.load_parameter
-        parts = [f"t = {t:.4f}", f"{iterations} iterations", *reached.contacts]
-        line = f"{label} {bar(t)} {', '.join(parts)}"
-        stream.write(f"\r{line[: get_terminal_size().columns - 1]}\x1b[K")
-        stream.flush()
+    def draw(text: str) -> None:
+        nonlocal drawn
+        if shown and monotonic() - drawn >= REDRAW:
+            drawn = monotonic()
+            stream.write(f"\r{text[: get_terminal_size().columns - 1]}\x1b[K")
+            stream.flush()
 
     try:
-        yield show
+        yield draw
     finally:
-        stream.write("\r\x1b[K")
-        stream.flush()
+        if shown:
+            stream.write("\r\x1b[K")
+            stream.flush()
+
+
+@contextmanager
+def watching(label: str, *, quiet: bool = False, stream: TextIO | None = None) -> Iterator[Watch]:
+    """Yield a `Watch` whose line shows the load parameter of one solution, the Newton iterations so far and the elements in contact."""
+    iterations = 0
+
+    def show(reached: Reached) -> None:
+        nonlocal iterations
+        iterations += reached.iterations
+        t = reached.load_parameter
+        draw(f"{label} {bar(t)} {', '.join((f't = {t:.4f}', f'{iterations} iterations', *reached.contacts))}")
+
+    with _line(quiet=quiet, stream=stream or sys.stderr) as draw:
+        yield show
 
 
 @contextmanager
 def staging(label: str, *, quiet: bool = False, stream: TextIO | None = None) -> Iterator[Count]:
-    """Write the line of a stage of the work, and yield a `Count`, which draws a bar below on a terminal; the bar is cleared afterwards.
-
-    The bar appears after `PATIENCE` seconds.
-    """
+    """Write the line of a stage of the work, and yield a `Count`, which draws a bar below after `PATIENCE` seconds."""
     stream = stream or sys.stderr
-    if quiet:
-        yield uncounted
-        return
-    stream.write(f"{label}\n")
-    stream.flush()
-    began = drawn = monotonic()
+    if not quiet:
+        print(label, file=stream, flush=True)
+    began = monotonic()
 
     def show(done: int, parts: int) -> None:
-        nonlocal drawn
-        now = monotonic()
-        if now - began < PATIENCE or now - drawn < REDRAW:
-            return
-        drawn = now
-        stream.write(f"\r{bar(done / parts)} {done} of {parts}\x1b[K")
-        stream.flush()
+        if monotonic() - began >= PATIENCE:
+            draw(f"{bar(done / parts)} {done} of {parts}")
 
-    if not stream.isatty():
-        yield uncounted
-        return
-    try:
+    with _line(quiet=quiet, stream=stream) as draw:
         yield show
-    finally:
-        stream.write("\r\x1b[K")
-        stream.flush()

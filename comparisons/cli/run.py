@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from comparisons.claims.paper.figures import FIGURES
 from comparisons.claims.solid.questions import QUESTIONS
-from comparisons.cli.options import add_workers, workers
+from comparisons.cli.options import Command, workers
 from comparisons.cli.outcome import DONE, STOPPED, WRONG, report
 from comparisons.files import result_file, writable_folder, write_text
 from comparisons.scene import InputError, load_scene
@@ -16,7 +16,6 @@ from comparisons.scene import InputError, load_scene
 if TYPE_CHECKING:
     import argparse
 
-    from comparisons.cli.outcome import Commands
     from comparisons.cost.points import Trade
 
 EPILOG = """exit status: 0 done (a solution that stopped is a result, and is named), 1 an answer of the manual is beyond its tolerance,
@@ -25,42 +24,15 @@ is there to measure errors against, 130 interrupted; what is done of a study, a 
 on from there"""
 
 
-def add_to(commands: "Commands") -> None:
-    """Add the command to the parser."""
-    parser = commands.add_parser(
-        "run",
-        help="run a suite: figures of the paper, the manual, the extremes, a trade, a question to the solid, or a study file",
-        description="; ".join(f"{name}: {suite.what}" for name, suite in SUITES.items()),
-        epilog=EPILOG,
-    )
-    parser.add_argument("suite", metavar="NAME|FILE.toml", help=f"a study file, or {', '.join(SUITES)}")
-    parser.add_argument("scene", nargs="?", metavar="SCENE", help="trade: a built-in scene or a TOML file")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="folder of the results (out/NAME)")
-    parser.add_argument(
-        "--quick", action="store_true", help="figures, extremes, trade: fewer or coarse settings"
-    )
-    add_workers(parser)
-    parser.add_argument("--only", nargs="+", metavar="PROBLEM", help="manual: these problems only")
-    parser.add_argument("--junit", type=Path, metavar="FILE", help="manual: write every answer as JUnit XML")
-    parser.add_argument(
-        "--cards",
-        type=Path,
-        metavar="DIR",
-        help="manual: write every problem as a JSON file with its scene, values and source, and solve nothing",
-    )
-    parser.add_argument("--quiet", action="store_true", help="no progress")
-    parser.set_defaults(run=run)
-
-
 def run(given: "argparse.Namespace") -> int:
     """Run what is named, with the options that it has."""
     name: str = given.suite
     suite = STUDY_FILE if name.endswith(".toml") or os.sep in name else SUITES.get(name)
     if suite is None:
         raise InputError(name, f"must be a study file, NAME.toml, or one of {', '.join(SUITES)}")
-    for option in ("scene", "quick", "workers", "cluster", "only", "junit", "cards"):
+    for option in ("of", "quick", "workers", "cluster", "junit"):
         if getattr(given, option) and option not in suite.options:
-            raise InputError(f"--{option}".replace("--scene", "SCENE"), f"is no option of {name}")
+            raise InputError("SCENE" if option == "of" else f"--{option}", f"is no option of {name}")
     return suite.run(given)
 
 
@@ -85,24 +57,31 @@ def _figures(given: "argparse.Namespace") -> int:
     return STOPPED if stopped else DONE
 
 
+def _cards(given: "argparse.Namespace") -> int:
+    from comparisons.claims.manual import problems
+    from comparisons.claims.manual.cards import write_cards
+
+    folder = given.out or Path("out") / given.suite
+    cards = write_cards(folder, _told(given), problems(given.of or None))
+    print(f"{len(cards) - 1} cards and their schema in {folder}")
+    return DONE
+
+
+def _told(given: "argparse.Namespace") -> Callable[[str], None]:
+    return (lambda _: None) if given.quiet else report
+
+
 def _manual(given: "argparse.Namespace") -> int:
     from comparisons.claims.manual import problems
 
-    watch = (lambda _: None) if given.quiet else report
-    stated = problems(given.only)
-    if given.cards is not None:
-        from comparisons.claims.manual.cards import write_cards
-
-        cards = write_cards(given.cards, watch, stated)
-        print(f"{len(cards) - 1} cards and their schema in {given.cards}")
-        return DONE
+    stated = problems(given.of or None)
     folder = _out(given, "index.md", "manual.json")
-    file = None if given.junit is None else result_file(given.junit)
+    file = None if given.junit is None else result_file(Path(given.junit))
     from comparisons.claims.junit import junit_text
     from comparisons.claims.manual import write_manual
     from comparisons.claims.manual.write import junit_cases
 
-    manual = write_manual(folder, watch, stated)
+    manual = write_manual(folder, _told(given), stated)
     if file is not None:
         write_text(file, junit_text("crossval run manual", junit_cases(manual.cases)))
     answers = [(case, one) for case in manual.cases for one in case.judgements]
@@ -130,9 +109,9 @@ def _extremes(given: "argparse.Namespace") -> int:
 
 
 def _trade(given: "argparse.Namespace") -> int:
-    if given.scene is None:
+    if len(given.of) != 1:
         raise InputError("SCENE", "is missing: crossval run trade SCENE")
-    scene = load_scene(given.scene)
+    scene = load_scene(given.of[0])
     folder = given.out or Path("out/trade") / scene.name
     from comparisons.cases.progress import shown
     from comparisons.cost.references import NoReferenceError
@@ -219,8 +198,11 @@ SUITES = {
     **{name: Suite(what, ("quick",), _figures) for name, what in FIGURES.items()},
     "manual": Suite(
         "the verification manual, problems with exact answers, put to every model that can state them",
-        ("only", "junit", "cards"),
+        ("of", "junit"),
         _manual,
+    ),
+    "cards": Suite(
+        "the problems of the manual as JSON files, with scene, values and source", ("of",), _cards
     ),
     "extremes": Suite(
         "where the models hold and where they stop, over units, slenderness, shear, meshes, contact positions, load steps, penalty, "
@@ -230,9 +212,20 @@ SUITES = {
     ),
     "trade": Suite(
         "what accuracy costs on SCENE, error against seconds, iterations and unknowns of many settings",
-        ("scene", "quick", "workers", "cluster"),
+        ("of", "quick", "workers", "cluster"),
         _trade,
     ),
     **{name: Suite(what, (), _question) for name, what in QUESTIONS.items()},
 }
 STUDY_FILE = Suite("a scene, and what is varied in it", ("workers", "cluster"), _study)
+COMMANDS = (
+    Command(
+        "run",
+        "run a suite: figures of the paper, the manual, the extremes, a trade, a question to the solid, or a study file",
+        run,
+        "suite of --out --quick --workers --cluster --junit --quiet",
+        {"suite": f"a study file, or {', '.join(SUITES)}"},
+        "; ".join(f"{name}: {suite.what}" for name, suite in SUITES.items()),
+        EPILOG,
+    ),
+)

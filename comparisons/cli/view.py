@@ -2,21 +2,19 @@
 
 import os
 import sys
+from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from comparisons.cli import values
+from comparisons.cli.options import Command
 from comparisons.cli.outcome import DONE, EPILOG, exit_status, report
 from comparisons.cli.progress import staging, watching
 from comparisons.files import OutputError, writable_folder
-from comparisons.models import SOLID, TSM
+from comparisons.models import SOLID, TSM, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
-    import argparse
-
-    from comparisons.cli.outcome import Commands
     from comparisons.response import Response
     from comparisons.scene import Scene
     from comparisons.show.export import Series
@@ -24,44 +22,17 @@ if TYPE_CHECKING:
 BEAMS = Options(elements=20)
 
 
-def add_to(commands: "Commands") -> None:
-    """Add the command to the parser."""
-    view = commands.add_parser(
-        "view",
-        help="show the motion: beams and solid side by side, with axial stress, supports, and the forces of pins and between beams",
-        description="Opens a window with a slider; with --out, or where there is no display, writes view.png and view.gif.",
-        epilog=EPILOG,
-    )
-    view.add_argument(
-        "what",
-        metavar="SCENE|DIR",
-        help="a built-in scene or a TOML file; or a folder of VTU files of `compare` or `solve --vtk`",
-    )
-    view.add_argument("--out", type=Path, metavar="DIR", help="write into this folder (out/SCENE-view)")
-    view.add_argument("--mesh", type=values.mesh, metavar="NXxNY", help="of the solid")
-    view.add_argument(
-        "--scale",
-        type=values.positive,
-        default=1.0,
-        metavar="FACTOR",
-        help="enlarge the deformation, and say so in the picture (1)",
-    )
-    view.set_defaults(run=run)
-
-
-def run(given: "argparse.Namespace") -> int:
+def run(given: Namespace) -> int:
     """Solve or read, then show or write."""
     from comparisons.show.export import read_series, solved_series
 
     folder = Path(given.what)
     if folder.is_dir():
-        if given.mesh is not None:
-            raise ModelError("--mesh: belongs to a scene, not to a folder")
         out = _target(given.out, folder.resolve().name)
         return _present(read_series(folder), given.scale, out)
     scene = load_scene(given.what)
     out = _target(given.out, scene.name)
-    found = _solve(scene, given)
+    found = _solve(scene)
     series = [solved_series(one, scene, title) for title, one in found if len(one.load_parameter)]
     status = exit_status(scene, [(f"{title}: ", response) for title, response in found])
     return max(status, _present(series, given.scale, out)) if series else status
@@ -76,12 +47,10 @@ def _target(out: Path | None, name: str) -> Path | None:
     return writable_folder(out or Path("out") / f"{name}-view", "view.png", "view.gif")
 
 
-def _solve(scene: "Scene", given: "argparse.Namespace") -> "list[tuple[str, Response]]":
+def _solve(scene: "Scene") -> "list[tuple[str, Response]]":
     """Return the responses of the models that can state the scene."""
-    from comparisons.models import solve
-
     found = []
-    for model, options in ((TSM, BEAMS), (SOLID, Options(mesh=given.mesh))):
+    for model, options in ((TSM, BEAMS), (SOLID, Options())):
         report(f"solving: {model.label}")
         try:
             with watching(model.label) as watch:
@@ -109,3 +78,16 @@ def _present(series: "list[Series]", factor: float, out: Path | None) -> int:
         report(sentence)
     print("files:", *(f"  {path}" for path in files), sep="\n")
     return DONE
+
+
+COMMANDS = (
+    Command(
+        "view",
+        "show the motion: beams and solid side by side, with axial stress, supports, and the forces of pins and between beams",
+        run,
+        "what --out --scale",
+        {"--out": "write into this folder (out/SCENE-view)"},
+        "Opens a window with a slider; with --out, or where there is no display, writes view.png and view.gif.",
+        EPILOG,
+    ),
+)

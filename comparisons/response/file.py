@@ -98,7 +98,7 @@ def _stated(field: Field, value: Any) -> Any:
 
 
 def read_response(path: str, scene: str | None = None) -> tuple[Response, Scene]:
-    """Return the response that the JSON file `path` states, as ``crossval solve --json`` writes it, and its scene.
+    """Return the response that the JSON file `path` states, as ``crossval solve --out`` writes it, and its scene.
 
     The response has no grid. The scene is the one that the response names, unless another one is given.
 
@@ -184,7 +184,7 @@ def _read(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
 def _table(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
     """Return a table by name, or the record of a table with fields."""
     if not isinstance(value, dict):
-        raise FieldError(key or "file", value, "must be a table, as `crossval solve --json` writes it")
+        raise FieldError(key or "file", value, "must be a table, as `crossval solve --out` writes it")
     prefix = f"{key}." if key else ""
     if "properties" not in field:
         for name in value if "propertyNames" in field else ():

@@ -1,10 +1,9 @@
 """The record of a beam: its axis, section, material and meshes."""
 
 import math
-from collections.abc import Iterable
 
 from comparisons.scene import rules
-from comparisons.scene.record import Record, exactly_one_of, key, optional
+from comparisons.scene.record import Record, key, one_of, optional, refused
 from comparisons.scene.rules import LARGEST, RANGE, FieldError, Mistakes, Point
 
 Dimension = float | tuple[float, float]
@@ -50,7 +49,7 @@ class BeamSpec(Record):
         "a mass times a `gravity` is a force.",
     )
     clamped: tuple[str, ...] = optional(
-        rules.ends, "Clamped ends, none by default: the short form of a `SupportSpec`.", ()
+        rules.subset("start", "end"), "Clamped ends, none by default: the short form of a `SupportSpec`.", ()
     )
     elements: int | None = optional(
         rules.whole_number,
@@ -77,24 +76,11 @@ class BeamSpec(Record):
         "st-venant-kirchhoff",
     )
 
-    def _own_rules(self) -> Iterable[Mistakes]:
-        return (
-            exactly_one_of(self, ("poissons_ratio",), ("shear_modulus",)),
-            exactly_one_of(self, ("width", "height"), ("area", "second_moment")),
-            self._has_length(),
-            self._shears_as_it_tapers(),
-            self._has_stiffness(),
-        )
-
     def _has_length(self) -> Mistakes:
         shortest = 1.0 / LARGEST
         if not shortest <= self.length <= LARGEST:
             rule = f"must differ from start, the distance {self.length:g} must lie between {shortest:g} and {LARGEST:g}"
             yield FieldError("end", self.end, rule)
-
-    def _shears_as_it_tapers(self) -> Mistakes:
-        if self.tapers and self.shear_area is not None:
-            yield FieldError("shear_area", self.shear_area, "must not be given where the section tapers")
 
     def _has_stiffness(self) -> Mistakes:
         least, most = RANGE
@@ -104,6 +90,16 @@ class BeamSpec(Record):
                 rule = f"{name} = {stiffness:g} must lie between {least:g} and {most:g}"
                 yield FieldError("youngs_modulus", self.youngs_modulus, rule)
                 return
+
+    obeys = (
+        one_of(("poissons_ratio",), ("shear_modulus",)),
+        one_of(("width", "height"), ("area", "second_moment")),
+        _has_length,
+        refused(
+            "shear_area", "must not be given where the section tapers", lambda b: b.tapers and b.shear_area
+        ),
+        _has_stiffness,
+    )
 
     @property
     def divisions(self) -> int:
@@ -198,9 +194,8 @@ class BeamSpec(Record):
 
     @property
     def mass(self) -> float:
-        """Mass, zero without `density`; Simpson's rule is exact for a section that tapers."""
-        start, middle, end = (self.mass_per_length(part) for part in (0.0, 0.5, 1.0))
-        return self.length * (start + 4.0 * middle + end) / 6.0
+        """Mass, zero without `density`."""
+        return self.length * sum(value / k for k, value in enumerate(self.mass_coefficients(), 1))
 
     def mass_coefficients(self) -> tuple[float, ...]:
         """Return the coefficients of the mass per length as a polynomial in the fraction of the length, the constant one first."""

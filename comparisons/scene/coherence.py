@@ -9,7 +9,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from comparisons.scene.beam import BeamSpec
-from comparisons.scene.conditions import COMPONENTS
+from comparisons.scene.conditions import moved_where_free
 from comparisons.scene.contact import ContactSpec
 from comparisons.scene.ends import free_ends
 from comparisons.scene.joints import joint_rules
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
     from comparisons.scene.scene import Scene
 
 
-def scene_rules(scene: "Scene") -> Iterable[Mistakes]:
-    """Return the rules between the records of `scene`; each yields its mistakes."""
+def scene_rules(scene: "Scene") -> Mistakes:
+    """Yield what is wrong between the records of `scene`."""
     names = Names(scene)
     placed = {kind: _listed(scene, f"{kind}s") for kind in ("load", "hinge", "spring")}
     stages = [(f"stage[{i}].", stage) for i, stage in enumerate(_listed(scene, "stages"))]
     placed |= {f"{key}load": _listed(stage, "load") for key, stage in stages}
     on_beams = {"support": _listed(scene, "supports"), **placed}
-    return (
-        iter(names.repeated),
+    for rule in (
+        names.repeated,
         _contacts(scene, names),
         _distinct(_listed(scene, "contacts"), "contact", "pair", "node"),
         *(_named_beams(records, place, names) for place, records in on_beams.items()),
@@ -37,11 +37,13 @@ def scene_rules(scene: "Scene") -> Iterable[Mistakes]:
         _distinct(_listed(scene, "stages"), "stage", "name", "name"),
         *(_moved_pins(stage, names, f"{key}pin") for key, stage in stages),
         *(_moved_supports(scene, stage, f"{key}support") for key, stage in stages),
-        joint_rules(scene, names.is_beam, names.is_node),
+        joint_rules(scene, names),
         _weight(scene),
         _idle_pins(scene, names),
         _cause(scene),
-    )
+    ):
+        with suppress(Unjudged):
+            yield from rule
 
 
 class Names:
@@ -84,9 +86,8 @@ class Names:
         return self.is_beam(name, "beam" if dot else "pin") and (end in ("start", "end") or not dot)
 
     def beam(self, name: str) -> BeamSpec:
-        """Return the beam called `name`; raise `Unjudged` if there is none."""
-        if not self.is_beam(name):
-            raise Unjudged(name)
+        """Return the beam called `name`; raise `Unjudged` if that is none or not clear."""
+        self.place(name)
         return self.scene.beam(name)
 
     def of(self, kind: str) -> list[str]:
@@ -129,7 +130,7 @@ def _named_beams(records: Iterable[Any], place: str, names: Names) -> Mistakes:
 
 def _idle_pins(scene: "Scene", names: Names) -> Mistakes:
     touching = {contact.node for contact in scene.contacts}
-    if any(True for contact in scene.contacts for _ in _touching(contact, names, "")):
+    if not all(names.is_node(one.node) and one.node.partition(".")[0] != one.beam for one in scene.contacts):
         return
     for i, pin in enumerate(scene.pins):
         with suppress(Unjudged):
@@ -159,74 +160,48 @@ def _weight(scene: "Scene") -> Mistakes:
 def _contacts(scene: "Scene", names: Names) -> Mistakes:
     yield from _named_beams(scene.contacts, "contact", names)
     for i, contact in enumerate(scene.contacts):
-        key = f"contact[{i}]"
-        yield from _first(
-            _touching(contact, names, key),
-            _apart(contact, names, key),
-            _has_face(contact, names, key),
-            _on_side(contact, names),
-            _clear_of_ends(contact, names),
-        )
-
-
-def _first(*rules: Mistakes) -> Mistakes:
-    """Yield the mistakes of the first rule that is broken."""
-    for rule in rules:
         with suppress(Unjudged):
-            mistakes = list(rule)
-            yield from mistakes
-            if mistakes:
-                return
+            yield from _contact(contact, names, f"contact[{i}]")
 
 
-def _touching(contact: ContactSpec, names: Names, key: str) -> Mistakes:
+def _contact(contact: ContactSpec, names: Names, key: str) -> Mistakes:
+    """Yield the first mistake of a contact: its node, its surface, and where the node is."""
     if not names.is_node(contact.node):
         ends = (f"{beam}.{end}" for beam in names.of("beam") for end in ("start", "end"))
         rule = f"must name a pin or a beam's end: {_list((*names.of('pin'), *ends))}"
         yield FieldError(f"{key}.node", contact.node, rule)
-    elif contact.node in (f"{contact.beam}.start", f"{contact.beam}.end"):
+        return
+    beam = names.beam(contact.beam)
+    if contact.node in (f"{beam.name}.start", f"{beam.name}.end"):
         yield FieldError(f"{key}.node", contact.node, "must not be an end of the beam itself")
-
-
-def _apart(contact: ContactSpec, names: Names, key: str) -> Mistakes:
-    beam = names.beam(contact.beam)
-    if "." in contact.node and _position(contact, names)[1] in (beam.start, beam.end):
-        yield FieldError(f"{key}.node", contact.node, f'must not be joined to beam "{beam.name}"')
-
-
-def _has_face(contact: ContactSpec, names: Names, key: str) -> Mistakes:
-    if contact.surface == "face" and names.beam(contact.beam).height is None:
-        rule = f'needs the height of beam "{contact.beam}"'
+    elif contact.surface == "face" and beam.height is None:
+        rule = f'needs the height of beam "{beam.name}"'
         yield FieldError(f"{key}.surface", contact.surface, rule)
+    elif "." in contact.node and names.scene.place(contact.node) in (beam.start, beam.end):
+        yield FieldError(f"{key}.node", contact.node, f'must not be joined to beam "{beam.name}"')
+    else:
+        yield from _position(contact, beam, names)
 
 
-def _on_side(contact: ContactSpec, names: Names) -> Mistakes:
-    beam = names.beam(contact.beam)
-    key, position = _position(contact, names)
+def _position(contact: ContactSpec, beam: BeamSpec, names: Names) -> Mistakes:
+    """Yield a mistake where the undeformed position of a contact's node is on the wrong side, or else over an end."""
+    name, dot, end = contact.node.partition(".")
+    if dot:
+        key, position = f"{names.place(name)}.{end}", names.scene.place(contact.node)
+    else:
+        pin = names.scene.pin(name)
+        key, position = f"{names.place(name)}.{'start' if pin.path is None else 'path'}", pin.points[0]
     _, fraction = signed_gap(beam, contact.side, 0.0, position)
     gap, fraction = signed_gap(beam, contact.side, names.scene.offset(contact, fraction), position)
     if 0.0 <= fraction <= 1.0 and gap < -1e-12 * beam.length:
         where = f'on the {contact.side} of beam "{beam.name}"'
         yield FieldError(key, position, f"must lie {where} ({contact.surface}), gap {gap:.6g}")
-
-
-def _clear_of_ends(contact: ContactSpec, names: Names) -> Mistakes:
-    key, position = _position(contact, names)
-    for end in free_ends(names.scene, contact):
-        over = -end.room(position)
-        if over > 1e-12 * names.beam(contact.beam).length:
-            where = f'the {end.name} of beam "{contact.beam}"'
+        return
+    for tip in free_ends(names.scene, contact):
+        over = -tip.room(position)
+        if over > 1e-12 * beam.length:
+            where = f'the {tip.name} of beam "{beam.name}"'
             yield FieldError(key, position, f"must lie clear of {where}, overlap {over:.6g}")
-
-
-def _position(contact: ContactSpec, names: Names) -> tuple[str, Point]:
-    """Return the key of the undeformed position of the contact's node, and the position."""
-    name, dot, end = contact.node.partition(".")
-    place = names.place(name)
-    if dot:
-        return f"{place}.{end}", names.scene.place(contact.node)
-    pin = names.scene.pin(name)
-    return f"{place}.{'start' if pin.path is None else 'path'}", pin.points[0]
 
 
 def _moved_pins(stage: StageSpec, names: Names, place: str) -> Mistakes:
@@ -253,11 +228,8 @@ def _moved_supports(scene: "Scene", stage: StageSpec, key: str) -> Mistakes:
             if place in seen:
                 yield FieldError(f"{key}[{j}].end", move.node, "must not appear twice")
             seen.add(place)
-            for component, value in zip(COMPONENTS, move.motion, strict=True):
-                if value and component not in supports[place].held:
-                    field = "rotation" if component == "rotation" else "displacement"
-                    rule = f"must be zero in {component}, which is free"
-                    yield FieldError(f"{key}[{j}].{field}", getattr(move, field), rule)
+            wrong = moved_where_free(move, supports[place].held)
+            yield from (mistake.within(f"{key}[{j}].") for mistake in wrong)
 
 
 def signed_gap(beam: BeamSpec, side: str, offset: float, point: Point) -> tuple[float, float]:

@@ -1,15 +1,17 @@
 """Supports, loads, hinges and springs of beams."""
 
-from collections.abc import Iterable
+from typing import Any
 
 from comparisons.scene import rules
-from comparisons.scene.record import Record, exactly_one_of, key, optional
-from comparisons.scene.rules import MISSING, FieldError, Mistakes, Point
+from comparisons.scene.record import Record, key, one_of, optional, refused
+from comparisons.scene.rules import FieldError, Mistakes, Point
 
 COMPONENTS = ("x", "y", "rotation")
 """Components of an end's motion, in the order of `SupportSpec.motion`."""
 HELD = {"clamped": COMPONENTS, "pinned": ("x", "y")}
 END = rules.choice("start", "end")
+ROLLS = 'must be given, a roller is free in "x" or in "y"'
+APART = "must not be given with force_per_length: it belongs to end or at"
 
 
 class AtEnd(Record):
@@ -36,7 +38,7 @@ class SupportSpec(AtEnd):
     )
     free: str | None = optional(rules.choice("x", "y"), "The direction in which a roller is free.")
     fixed: tuple[str, ...] | None = optional(
-        rules.subset(*COMPONENTS), "The components held, instead of `kind`."
+        rules.subset(*COMPONENTS, at_least=1), "The components held, instead of `kind`."
     )
     displacement: Point | None = optional(
         rules.point,
@@ -46,24 +48,12 @@ class SupportSpec(AtEnd):
         rules.number, "Prescribed rotation at load parameter 1, anticlockwise [rad]."
     )
 
-    def _own_rules(self) -> Iterable[Mistakes]:
-        return exactly_one_of(self, ("kind",), ("fixed",)), self._direction(), self._moved(), self._turned()
-
-    def _direction(self) -> Mistakes:
-        if self.kind == "roller" and self.free is None:
-            yield FieldError("free", MISSING, 'must be given, a roller is free in "x" or in "y"')
-        if self.kind != "roller" and self.free is not None:
-            yield FieldError("free", self.free, 'belongs to kind = "roller"')
-
-    def _moved(self) -> Mistakes:
-        for component, value in zip("xy", self.displacement or (), strict=False):
-            if value and component not in self.held:
-                rule = f"must be zero in {component}, which is free"
-                yield FieldError("displacement", self.displacement, rule)
-
-    def _turned(self) -> Mistakes:
-        if self.rotation is not None and "rotation" not in self.held:
-            yield FieldError("rotation", self.rotation, "must not be given, the rotation is free")
+    obeys = (
+        one_of(("kind",), ("fixed",)),
+        refused("free", ROLLS, lambda it: it.kind == "roller" and it.free is None),
+        refused("free", 'belongs to kind = "roller"', lambda it: it.kind != "roller" and it.free is not None),
+        lambda support: moved_where_free(support, support.held),
+    )
 
     @property
     def held(self) -> tuple[str, ...]:
@@ -75,14 +65,26 @@ class SupportSpec(AtEnd):
     @property
     def motion(self) -> tuple[float | None, float | None, float | None]:
         """Displacement x, y and rotation at load parameter 1, None where free."""
-        given = zip(COMPONENTS, (*(self.displacement or (0.0, 0.0)), self.rotation or 0.0), strict=True)
-        x, y, rotation = (value if name in self.held else None for name, value in given)
+        x, y, rotation = (value if name in self.held else None for name, value in _motion(self).items())
         return x, y, rotation
 
     @property
     def moves(self) -> bool:
         """Whether a prescribed component is not zero at load parameter 1."""
         return any(self.motion)
+
+
+def _motion(moved: Any) -> dict[str, float]:
+    """Return the components of the displacement and rotation that a record states, zero where it states none."""
+    return dict(zip(COMPONENTS, (*(moved.displacement or (0.0, 0.0)), moved.rotation or 0.0), strict=True))
+
+
+def moved_where_free(moved: Any, held: tuple[str, ...]) -> Mistakes:
+    """Yield a mistake for every component of a prescribed displacement and rotation that is not held."""
+    for component, value in _motion(moved).items():
+        if value and component not in held:
+            key = "rotation" if component == "rotation" else "displacement"
+            yield FieldError(key, getattr(moved, key), f"must be zero in {component}, which is free")
 
 
 class LoadSpec(Record):
@@ -105,23 +107,18 @@ class LoadSpec(Record):
         "The fractions of the undeformed length between which `force_per_length` acts; the whole beam if not given.",
     )
 
-    def _own_rules(self) -> Iterable[Mistakes]:
-        return exactly_one_of(self, ("end",), ("at",), ("force_per_length",)), self._belongs(), self._acts()
-
-    def _belongs(self) -> Mistakes:
-        if self.force_per_length is None and self.part is not None:
-            yield FieldError("part", self.part, "belongs to force_per_length")
-        for name in ("force", "moment") if self.force_per_length is not None else ():
-            if any(self.force) if name == "force" else self.moment:
-                rule = "must not be given with force_per_length: it belongs to end or at"
-                yield FieldError(name, getattr(self, name), rule)
-
-    def _acts(self) -> Mistakes:
-        if self.force_per_length is None:
-            if not any((*self.force, self.moment)):
-                yield FieldError("force", self.force, "force or moment must not be zero")
-        elif not any(self.force_per_length):
-            yield FieldError("force_per_length", self.force_per_length, "must not be zero")
+    obeys = (
+        one_of(("end",), ("at",), ("force_per_length",)),
+        refused("part", "belongs to force_per_length", lambda it: it.part and not it.force_per_length),
+        refused("force", APART, lambda it: it.force_per_length and any(it.force)),
+        refused("moment", APART, lambda it: it.force_per_length and it.moment),
+        refused(
+            "force",
+            "force or moment must not be zero",
+            lambda it: not (it.force_per_length or any(it.amount)),
+        ),
+        refused("force_per_length", "must not be zero", lambda it: it.force_per_length == (0.0, 0.0)),
+    )
 
     @property
     def amount(self) -> tuple[float, float, float]:
@@ -174,12 +171,7 @@ class SpringSpec(AtEnd):
     )
     rotation: float = optional(rules.not_negative, "Stiffness against rotation [force length/rad].", 0.0)
 
-    def _own_rules(self) -> Iterable[Mistakes]:
-        return (self._resists(),)
-
-    def _resists(self) -> Mistakes:
-        if not self.held:
-            yield FieldError("stiffness", self.stiffness, "stiffness or rotation must not be zero")
+    obeys = (refused("stiffness", "stiffness or rotation must not be zero", lambda it: not it.held),)
 
     @property
     def held(self) -> tuple[str, ...]:

@@ -2,15 +2,13 @@
 
 import math
 from bisect import bisect_left
-from collections.abc import Iterable
-from fractions import Fraction
 from functools import cached_property
-from itertools import accumulate, pairwise
+from itertools import pairwise
 from typing import ClassVar
 
 from comparisons.scene import rules
-from comparisons.scene.record import Record, Unjudged, exactly_one_of, key, optional
-from comparisons.scene.rules import Mistakes, Point
+from comparisons.scene.record import Record, Unjudged, key, one_of, optional
+from comparisons.scene.rules import Point
 from comparisons.scene.stages import PinMove, stage_of
 
 
@@ -30,9 +28,7 @@ class Path:
     def _reached(self) -> tuple[float, ...]:
         """Distance along the path at every point, each rounded once."""
         lengths = [math.dist(a, b) for a, b in pairwise(self.points)]
-        if not math.isfinite(sum(lengths)):
-            return tuple(accumulate(lengths, initial=0.0))
-        return tuple(float(reached) for reached in accumulate(map(Fraction, lengths), initial=Fraction(0)))
+        return tuple(math.fsum(lengths[:k]) for k in range(len(self.points)))
 
     @property
     def corners(self) -> tuple[float, ...]:
@@ -61,7 +57,7 @@ class PinSpec(Record):
         rules.point, "A straight path [length]; a displacement of zero leaves the pin at rest, an obstacle."
     )
     path: tuple[Point, ...] | None = optional(
-        rules.polyline, "A polyline [length], instead of `start` and `displacement`."
+        rules.polyline(2), "A polyline [length], instead of `start` and `displacement`."
     )
     radius: float | None = optional(
         rules.positive,
@@ -70,8 +66,7 @@ class PinSpec(Record):
     moves: ClassVar[tuple[PinMove | None, ...] | None] = ()
     """Motions in the stages after the first one, which the scene states; one is None where the pin rests, all are where one is wrong."""
 
-    def _own_rules(self) -> Iterable[Mistakes]:
-        return (exactly_one_of(self, ("start", "displacement"), ("path",)),)
+    obeys = (one_of(("start", "displacement"), ("path",)),)
 
     @cached_property
     def _paths(self) -> tuple[Path, ...]:

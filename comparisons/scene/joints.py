@@ -1,10 +1,10 @@
 """Joints of beams. Beams that share an end form one structure. A structure needs supports, with one at most at each joint."""
 
 import math
-from collections import defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Sequence
 from contextlib import suppress
-from itertools import combinations
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from comparisons.scene.beam import BeamSpec
@@ -13,48 +13,47 @@ from comparisons.scene.record import Unjudged
 from comparisons.scene.rules import FieldError, Mistakes, Point
 
 if TYPE_CHECKING:
+    from comparisons.scene.coherence import Names
     from comparisons.scene.scene import Scene
 
 NEAR = 1e-6
 """Distance of two ends, relative to the beam's length, below which a joint is meant: the ends must then have equal coordinates."""
 LEAST = 1e-9
 """Least pivot of the equations of rigid motions, in coordinates over the longest beam; a smaller one counts as zero."""
-IsName = Callable[[str], bool]
 
 
-def joint_rules(scene: "Scene", is_beam: IsName, is_node: IsName) -> Mistakes:
+def joint_rules(scene: "Scene", names: "Names") -> Mistakes:
     """Yield ends that nearly meet and beams end to end; without any, supports at one joint, hinges and structures that are not held."""
     misplaced = [*_nearly_meeting(scene), *_end_to_end(scene)]
     yield from misplaced
     if not misplaced:
-        yield from _one_support(scene, is_beam)
-        yield from _held(scene, is_beam, is_node)
+        yield from _one_support(scene)
+        yield from _held(scene, names)
 
 
-def _held(scene: "Scene", is_beam: IsName, is_node: IsName) -> Mistakes:
-    named = [beam.name for beam in scene.beams]
-    for records in (scene.supports, scene.springs, scene.hinges):
-        named += (record.beam for record in records)
-    if not all(map(is_beam, named)):
-        return
+def _held(scene: "Scene", names: "Names") -> Mistakes:
+    """Yield the hinges that do nothing, and the structures that are free or can move without strain."""
+    for name in (beam.name for beam in scene.beams):
+        names.place(name)
+    for item in (*scene.holding, *scene.hinges):
+        names.beam(item.beam)
     useless = list(_useless_hinges(scene))
     yield from useless
     touched: set[str] | None = None  # where a name in a contact is wrong
     with suppress(Unjudged):
-        if all(is_beam(contact.beam) and is_node(contact.node) for contact in scene.contacts):
-            touched = {name for one in scene.contacts for name in (one.beam, one.node.partition(".")[0])}
-    numbers = {beam.name: i for i, beam in enumerate(scene.beams)}
-    for structure in structures(scene):
-        with suppress(Unjudged):
-            names, key = {beam.name for beam in structure}, f"beam[{numbers[structure[0].name]}].clamped"
-            if not any(item.beam in names for item in scene.holding):
-                rule = f'beam "{structure[0].name}" is free: clamp it, give it a [[support]] or a [[spring]] or join it to a beam that has one'
-                yield FieldError(key, structure[0].clamped, rule)
-            elif not useless and touched is not None and touched.isdisjoint(names):
-                yield from _stiff(scene, structure, names, key)
+        nodes = [one.node.partition(".")[0] for one in scene.contacts]
+        touched = {name for name in (*nodes, *(one.beam for one in scene.contacts)) if names.place(name)}
+    for structure in _structures(scene):
+        own, first = {beam.name for beam in structure}, structure[0]
+        key = f"{names.place(first.name)}.clamped"
+        if not any(item.beam in own for item in scene.holding):
+            rule = f'beam "{first.name}" is free: clamp it, give it a [[support]] or a [[spring]] or join it to a beam that has one'
+            yield FieldError(key, first.clamped, rule)
+        elif not useless and touched is not None and touched.isdisjoint(own):
+            yield from _stiff(scene, structure, own, key)
 
 
-def structures(scene: "Scene") -> list[list[BeamSpec]]:
+def _structures(scene: "Scene") -> list[list[BeamSpec]]:
     """Return the beams, grouped by what is joined together."""
     meeting = _meeting(scene.beams)
     groups: list[list[BeamSpec]] = []
@@ -84,30 +83,22 @@ def _meeting(beams: Sequence[BeamSpec]) -> dict[Point, list[BeamSpec]]:
 
 def _nearly_meeting(scene: "Scene") -> Mistakes:
     """Yield ends that nearly meet an end of an earlier beam. Along a direction that is no beam's, only neighbours can be near."""
-    numbers = {id(beam): i for i, beam in enumerate(scene.beams) if beam.has("name", "start", "end")}
-    meeting = _meeting([beam for beam in scene.beams if id(beam) in numbers])
-    reach = {place: NEAR * max(beam.length for beam in beams) for place, beams in meeting.items()}
-    along = sorted((math.cos(1.0) * x + math.sin(1.0) * y, (x, y)) for x, y in meeting)
-    for k, (first, place) in enumerate(along):
-        for onward in range(k + 1, len(along)):
-            last, other = along[onward]
-            if last - first > 2.0 * reach[place]:
+    ends = sorted(
+        (math.cos(1.0) * place[0] + math.sin(1.0) * place[1], i, end)
+        for i, beam in enumerate(scene.beams)
+        if beam.has("name", "start", "end")
+        for end, place in (("start", beam.start), ("end", beam.end))
+    )
+    for k, (along, i, end) in enumerate(ends):
+        for ahead, j, other in islice(ends, k + 1, None):
+            if ahead - along > NEAR * scene.beams[i].length:
                 break
-            if math.dist(place, other) < min(reach[place], reach[other]):
-                both = {id(beam): beam for beam in (*meeting[place], *meeting[other])}
-                ordered = sorted(both.values(), key=lambda beam: numbers[id(beam)])
-                for a, b in combinations(ordered, 2):
-                    yield from _pair(a, b, numbers[id(b)])
-
-
-def _pair(a: BeamSpec, b: BeamSpec, number: int) -> Mistakes:
-    """Yield the ends of `b`, the beam of that number, that nearly meet an end of `a`."""
-    for end in ("start", "end"):
-        for place, node in ((a.start, f"{a.name}.start"), (a.end, f"{a.name}.end")):
-            near = getattr(b, end)
-            if near != place and math.dist(near, place) < NEAR * min(a.length, b.length):
+            (first, joint), (last, near) = sorted(((i, end), (j, other)))
+            a, b = scene.beams[first], scene.beams[last]
+            node, place, met = f"{a.name}.{joint}", getattr(b, near), getattr(a, joint)
+            if 0.0 < math.dist(met, place) < NEAR * min(a.length, b.length):
                 rule = f'must be "{node}" exactly, or stay clear of it'
-                yield FieldError(f"beam[{number}].{end}", near, rule)
+                yield FieldError(f"beam[{last}].{near}", place, rule)
 
 
 def _end_to_end(scene: "Scene") -> Mistakes:
@@ -122,27 +113,17 @@ def _end_to_end(scene: "Scene") -> Mistakes:
                 yield FieldError(f"beam[{j}].end", beam.end, rule)
 
 
-def _one_support(scene: "Scene", is_beam: IsName) -> Mistakes:
+def _one_support(scene: "Scene") -> Mistakes:
     """Yield supports at a place that an earlier support holds."""
+    keys = [f"beam[{i}].clamped" for i, beam in enumerate(scene.beams) for _ in beam.clamped]
+    keys += [f"support[{i}].end" for i in range(len(scene.supports))]
     held: dict[Point, str] = {}
-    for key, node in _supported(scene, is_beam):
-        with suppress(Unjudged):
-            place = scene.place(node)
-            if place in held:
-                yield FieldError(key, node, f'must not be supported twice, "{held[place]}" is there')
-            held[place] = node
-
-
-def _supported(scene: "Scene", is_beam: IsName) -> Iterator[tuple[str, str]]:
-    """Yield the keys of the supports and the ends that they hold."""
-    for i, beam in enumerate(scene.beams):
-        with suppress(Unjudged):
-            if is_beam(beam.name):
-                yield from ((f"beam[{i}].clamped", f"{beam.name}.{end}") for end in beam.clamped)
-    for i, support in enumerate(scene.supports):
-        with suppress(Unjudged):
-            if is_beam(support.beam):
-                yield f"support[{i}].end", support.node
+    for key, support in zip(keys, scene.all_supports, strict=True):
+        place = scene.place(support.node)
+        if place in held:
+            rule = f'must not be supported twice, "{held[place]}" is there'
+            yield FieldError(key, support.node, rule)
+        held.setdefault(place, support.node)
 
 
 def _stiff(scene: "Scene", structure: list[BeamSpec], names: set[str], key: str) -> Mistakes:
@@ -165,9 +146,7 @@ def _useless_hinges(scene: "Scene") -> Mistakes:
     meeting = _meeting(scene.beams)
     turned = {scene.place(item.node) for item in scene.holding if "rotation" in item.held}
     stiff = {scene.place(hinge.node) for hinge in scene.hinges if hinge.stiffness}
-    hinged: dict[Point, set[str]] = defaultdict(set)
-    for hinge in scene.hinges:
-        hinged[scene.place(hinge.node)].add(hinge.node)
+    hinged = Counter(scene.place(node) for node in {hinge.node for hinge in scene.hinges})
     for i, hinge in enumerate(scene.hinges):
         place, key = scene.place(hinge.node), f"hinge[{i}].end"
         if place in turned:
@@ -175,7 +154,7 @@ def _useless_hinges(scene: "Scene") -> Mistakes:
         if len(meeting[place]) == 1:
             rule = "must be joined to another beam, or its rotation held by a support or a spring"
             yield FieldError(key, hinge.node, rule)
-        elif len(hinged.pop(place, ())) == len(meeting[place]) and place not in stiff:
+        elif hinged.pop(place, 0) == len(meeting[place]) and place not in stiff:
             rule = "must leave one beam of the joint without a hinge: the joint turns freely"
             yield FieldError(key, hinge.node, rule)
 

@@ -6,18 +6,24 @@ attributes. Where a value is itself wrong, reading it raises `Unjudged`, and the
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import Field, FrozenInstanceError, dataclass, field, fields
 from inspect import cleandoc
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, dataclass_transform
 
-from comparisons.scene.rules import MISSING, FieldError, Mistakes, RecordError, RuleError, ValueRule
+from comparisons.scene.rules import (
+    MISSING,
+    FieldError,
+    Mistakes,
+    RecordError,
+    Records,
+    ValueRule,
+)
+from comparisons.scene.tables import misnamed_keys, table_values
 
 R = TypeVar("R", bound="Record")
 RAISES = "\nRaises\n------\nFieldError\n    With all mistakes, each in one line: field, value and rule."
-UNREADABLE: Any = object()
-"""The value of a key that is stated, and wrong in a way that is reported elsewhere."""
 
 
 class Unjudged(KeyError):  # noqa: N818 - no error of the user: the value is reported where it stands
@@ -36,7 +42,7 @@ def optional(rule: ValueRule[Any], meaning: str, default: Any = None) -> Any:
 
 @dataclass_transform(kw_only_default=True, frozen_default=True, field_specifiers=(key,))
 class Record:
-    """Immutable, hashable values that obey the rules of their keys and the record's own rules.
+    """Immutable, hashable values that obey the rules of their keys, and those between them, `obeys`.
 
     Raises
     ------
@@ -45,37 +51,33 @@ class Record:
     """
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
-    _defaults: ClassVar[dict[str, Any]]
+    obeys: ClassVar[tuple[Callable[[Any], Mistakes], ...]] = ()
+    _rules: ClassVar[dict[str, ValueRule[Any]]]
+    _free: ClassVar[dict[str, Any]]
 
     def __init_subclass__(cls) -> None:
         dataclass(init=False, repr=False, eq=False, match_args=False)(cls)
-        cls._defaults = {item.name: item.default for item in fields(cls)}
-        for name in cls._defaults.keys() & vars(cls).keys():
+        cls._rules = {item.name: rule_of(item) for item in fields(cls)}
+        cls._free = {item.name: item.default for item in fields(cls) if item.default is not MISSING}
+        for name in cls._rules.keys() & vars(cls).keys():
             delattr(cls, name)  # so that a value which is wrong is not there
         rows = (
             f"{item.name} : {rule_of(item).accepts}\n    {item.metadata['meaning']}" for item in fields(cls)
         )
         cls.__doc__ = "\n".join([cleandoc(cls.__doc__ or ""), "\nParameters\n----------", *rows, RAISES])
 
-    def __init__(self, **given: Any) -> None:
-        if unknown := given.keys() - self._defaults.keys():
-            raise TypeError(f"{type(self).__name__} has no key {min(unknown)}")
-        mistakes = []
-        for item in fields(self):
-            value = given.get(item.name, item.default)
-            if value is None and item.default is None:
-                vars(self)[item.name] = None
-            elif value is MISSING:
-                mistakes.append(FieldError(item.name, value, "must be given"))
-            elif value is not UNREADABLE:
-                try:
-                    vars(self)[item.name] = rule_of(item)(value)
-                except RuleError as error:
-                    mistakes.append(FieldError(item.name, value, str(error)))
+    def __init__(self, /, **given: Any) -> None:
+        free, rules = self._free, self._rules
+        given = {
+            name: value for name, value in given.items() if value is not None or free.get(name, 0) is not None
+        }
+        values, mistakes = table_values(given, rules, [name for name in rules if name not in free])
+        stated = given.keys() | misnamed_keys(given, rules)
+        vars(self).update({name: value for name, value in free.items() if name not in stated}, **values)
         self._settle()
-        for rule in self._own_rules():
+        for own in self.obeys:
             with suppress(Unjudged):
-                mistakes.extend(rule)
+                mistakes.extend(own(self))
             for mistake in mistakes:
                 vars(self).pop(mistake.key, None)
         if mistakes:
@@ -83,10 +85,6 @@ class Record:
 
     def _settle(self) -> None:
         """Put values that depend on others into their final form."""
-
-    def _own_rules(self) -> Iterable[Mistakes]:
-        """Return the rules between the values of the record; each yields its mistakes."""
-        return ()
 
     def has(self, *names: str) -> bool:
         """Whether none of the named values is wrong."""
@@ -96,7 +94,7 @@ class Record:
 
         def __getattr__(self, name: str) -> Any:
             """Refuse a value that is wrong."""
-            if name in self._defaults:
+            if name in self._rules:
                 raise Unjudged(name)
             raise AttributeError(f"{type(self).__name__} has no attribute {name}")
 
@@ -107,7 +105,7 @@ class Record:
         raise FrozenInstanceError(f"cannot delete field {name!r}")
 
     def _values(self) -> tuple[Any, ...]:
-        return tuple(vars(self)[name] for name in self._defaults)
+        return tuple(vars(self)[name] for name in self._rules)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Record) or type(self) is not type(other):
@@ -118,13 +116,8 @@ class Record:
         return hash(self._values())
 
     def __repr__(self) -> str:
-        values = ", ".join(f"{name}={vars(self).get(name)!r}" for name in self._defaults)
+        values = ", ".join(f"{name}={vars(self).get(name)!r}" for name in self._rules)
         return f"{type(self).__name__}({values})"
-
-
-def keys_of(kind: type[Record]) -> set[str]:
-    """Return the keys of a record."""
-    return {item.name for item in fields(kind)}
 
 
 def rule_of(item: Field[Any]) -> ValueRule[Any]:
@@ -135,28 +128,43 @@ def rule_of(item: Field[Any]) -> ValueRule[Any]:
 
 def lists_of(kind: type[Record]) -> dict[str, type[Record]]:
     """Return the kinds of records that the fields of a record list, by field."""
-    return {item.name: record for item in fields(kind) if (record := rule_of(item).kind) is not None}
+    rules = ((item.name, rule_of(item)) for item in fields(kind))
+    return {name: rule.kind for name, rule in rules if isinstance(rule, Records)}
 
 
 def copied(record: R, **attributes: object) -> R:
     """Return a copy of a record, wrong values included, with further attributes that are no keys."""
     copy = object.__new__(type(record))
-    vars(copy).update({name: value for name, value in vars(record).items() if name in record._defaults})  # noqa: SLF001
+    vars(copy).update({name: value for name, value in vars(record).items() if name in record._rules})  # noqa: SLF001
     vars(copy).update(attributes)
     return copy
 
 
-def exactly_one_of(record: Record, *groups: tuple[str, ...]) -> Mistakes:
-    """Yield a mistake unless exactly one of the `groups` of fields is given, with all its fields; None means not given."""
-    given = {name for group in groups for name in group if vars(record).get(name, MISSING) is not None}
+def refused(key: str, sentence: str, when: Callable[[Any], object]) -> Callable[[Record], Mistakes]:
+    """Return the rule between the values of a record: where `when` is true of it, the value of `key` is a mistake."""
+
+    def judged(record: Record) -> Mistakes:
+        if when(record):
+            value = getattr(record, key)
+            yield FieldError(key, MISSING if value in (None, ()) else value, sentence)
+
+    return judged
+
+
+def one_of(*groups: tuple[str, ...]) -> Callable[[Record], Mistakes]:
+    """Return the rule: exactly one of the `groups` of keys is given, with all its keys; None means not given."""
     wanted = " or ".join(" and ".join(group) for group in groups)
-    present = [group for group in groups if given.intersection(group)]
-    if not present:
-        yield FieldError(groups[0][0], MISSING, f"give {wanted}")
-    elif len(present) > 1:
-        extra = next(item for item in present[1] if item in given)
-        yield FieldError(extra, getattr(record, extra), f"give either {wanted}, not both")
-    else:
-        for item in present[0]:
-            if item not in given:
-                yield FieldError(item, MISSING, f"must be given, {' and '.join(present[0])} belong together")
+
+    def judged(record: Record) -> Mistakes:
+        missing = [[item for item in group if vars(record).get(item, MISSING) is None] for group in groups]
+        present = [k for k, group in enumerate(groups) if len(missing[k]) < len(group)]
+        if not present:
+            yield FieldError(groups[0][0], MISSING, f"give {wanted}")
+        elif len(present) > 1:
+            extra = next(item for item in groups[present[1]] if item not in missing[present[1]])
+            yield FieldError(extra, getattr(record, extra), f"give either {wanted}, not both")
+        else:
+            rule = f"must be given, {' and '.join(groups[present[0]])} belong together"
+            yield from (FieldError(item, MISSING, rule) for item in missing[present[0]])
+
+    return judged

@@ -1,13 +1,12 @@
 """Rules for single values of a scene, and the mistakes that they state.
 
-A rule is a value: called, it returns the stored form of a value or raises its sentence; `accepts` says it in words and `schema` in JSON
-Schema.
+A rule is a value: called, it returns the stored form of a value, or raises its sentence, "must be" before what it accepts.
 """
 
 import dataclasses
 import math
 import operator
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Sequence
 from itertools import pairwise
 from typing import Any, Generic, TypeVar
 
@@ -21,10 +20,12 @@ LARGEST = 1e50
 """Largest magnitude of a number: squares, products and quotients of such numbers stay in floating-point range."""
 RANGE = (1e-100, 1e100)
 """Range of positive quantities: moduli, dimensions of sections, stiffnesses."""
-LIST = {"type": "array", "minItems": 1}
-"""Schema of a list of tables."""
+MOST = 1000
+"""Number of mistakes from which the reader of a file looks for no more."""
 MISSING: Any = dataclasses.MISSING
 """The value of a key that is not there."""
+UNREADABLE: Any = object()
+"""The value of a key that is stated, and wrong in a way that is reported elsewhere."""
 
 
 class RuleError(ValueError):
@@ -47,11 +48,8 @@ class FieldError(ValueError):
     def __init__(self, key: str, value: object, rule: str) -> None:
         super().__init__(f"{key} = {shown(value)}: {rule}")
         self.key, self.value, self.rule = key, value, rule
-
-    @property
-    def mistakes(self) -> "tuple[FieldError, ...]":
+        self.mistakes: tuple[FieldError, ...] = (self,)
         """Every single mistake."""
-        return (self,)
 
     def within(self, prefix: str) -> "FieldError":
         """Return the same error with `prefix` before every key."""
@@ -59,22 +57,17 @@ class FieldError(ValueError):
 
 
 class RecordError(FieldError):
-    """Several mistakes, each in one line, the first one's key, value and rule; `record` has the values that are right."""
+    """Several mistakes, each in one line, the first one's key, value and rule; `found` has the values that are right."""
 
-    def __init__(self, mistakes: Collection[FieldError], record: Any = None) -> None:
-        self._mistakes, self.record = tuple(mistakes), record
-        first = self._mistakes[0]
+    def __init__(self, mistakes: Collection[FieldError], found: Any = None) -> None:
+        first = next(iter(mistakes))
         super().__init__(first.key, first.value, first.rule)
-        self.args = ("\n".join(map(str, self._mistakes)),)
-
-    @property
-    def mistakes(self) -> tuple[FieldError, ...]:
-        """Every single mistake."""
-        return self._mistakes
+        self.args = ("\n".join(map(str, mistakes)),)
+        self.mistakes, self.found = tuple(mistakes), found
 
     def within(self, prefix: str) -> FieldError:
         """Return the same error with `prefix` before every key."""
-        return RecordError([mistake.within(prefix) for mistake in self._mistakes])
+        return RecordError([mistake.within(prefix) for mistake in self.mistakes])
 
 
 Mistakes = Iterator[FieldError]
@@ -90,27 +83,18 @@ def shown(value: object) -> str:
 
 
 class ValueRule(Generic[T_co]):
-    """A rule as a value: it reads a value, says what it accepts, and has its JSON Schema; of a list of records, their `kind`."""
+    """A rule as a value: what it accepts in words, whether a value is right, the form in which it is stored, and the JSON Schema."""
 
     def __init__(
-        self,
-        read: Callable[[object], T_co],
-        accepts: str,
-        schema: Mapping[str, Any],
-        kind: type | None = None,
+        self, accepts: str, right: Callable[[Any], object], stored: Callable[[Any], T_co], **schema: Any
     ) -> None:
-        self._read, self.accepts, self.schema, self.kind = read, accepts, schema, kind
+        self.accepts, self.right, self.stored, self.schema = accepts, right, stored, schema
 
     def __call__(self, value: object) -> T_co:
         """Return the stored form of `value`, or raise `RuleError`."""
-        return self._read(value)
-
-
-def rule(**schema: Any) -> Callable[[Callable[[object], T_co]], ValueRule[T_co]]:
-    """Make a rule of a function, whose docstring is ``Accept ...``."""
-    return lambda read: ValueRule(
-        read, (read.__doc__ or "").removeprefix("Accept ").removesuffix("."), schema
-    )
+        if not self.right(value):
+            raise RuleError(f"must be {self.accepts}")
+        return self.stored(value)
 
 
 COMPARED: dict[str, Callable[[float, float], bool]] = {
@@ -122,137 +106,114 @@ COMPARED: dict[str, Callable[[float, float], bool]] = {
 """Limits of a number by their names in JSON Schema."""
 
 
-def limited(accepts: str, refusal: str = "", *, scaled: bool = False, **limits: float) -> ValueRule[float]:
-    """Return the rule: a finite number within `limits`, else `refusal`; `scaled`, its range is `RANGE` or zero."""
-    largest = math.inf if scaled else LARGEST
+def limited(accepts: str, *, scaled: bool = False, **limits: float) -> ValueRule[float]:
+    """Return the rule: a finite number within `limits`; `scaled`, it is zero or within `RANGE`."""
+    least, most = RANGE if scaled else (0.0, LARGEST)
 
-    def read(value: object) -> float:
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise RuleError("must be a number")
-        try:
-            result = float(value)
-        except OverflowError:
-            result = math.inf
-        if not math.isfinite(result):
-            raise RuleError("must be a finite number")
-        if abs(result) > largest:
-            raise RuleError(f"must be at most {largest:g} in size")
-        if not all(COMPARED[name](result, limit) for name, limit in limits.items()):
-            raise RuleError(refusal)
-        if scaled and result and not RANGE[0] <= result <= RANGE[1]:
-            raise RuleError(f"must lie between {RANGE[0]:g} and {RANGE[1]:g}")
-        return abs(result) if scaled else result
+    def right(value: Any) -> bool:
+        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        if not is_number or not all(COMPARED[name](value, limit) for name, limit in limits.items()):
+            return False
+        return not value or least <= abs(value) <= most
 
-    return ValueRule(read, accepts, {"type": "number", **limits})
+    return ValueRule(
+        accepts, right, lambda value: abs(float(value)) if scaled else float(value), type="number", **limits
+    )
 
 
-number = limited("a finite number of at most 1e50 in size; a truth value is not a number")
-positive = limited(
-    "a number above zero, from 1e-100 to 1e100", "must be positive", scaled=True, exclusiveMinimum=0
-)
-not_negative = limited("zero, or a positive number", "must not be negative", scaled=True, minimum=0)
-turn = limited(
-    "the angle by which an arc turns, less than a whole turn",
-    "must be less than 2 pi in size, an angle in rad",
-    exclusiveMinimum=-2.0 * math.pi,
-    exclusiveMaximum=2.0 * math.pi,
-)
-friction = limited(
-    "a coefficient of friction, between 0 and 100", "must lie between 0 and 100", minimum=0, maximum=100.0
-)
-fraction = limited(
-    "a number between zero and one", "must lie between 0 and 1", exclusiveMinimum=0, exclusiveMaximum=1
-)
+number = limited("a finite number of at most 1e50 in size")
+positive = limited("a positive number, from 1e-100 to 1e100", scaled=True, exclusiveMinimum=0)
+not_negative = limited("zero, or a positive number from 1e-100 to 1e100", scaled=True, minimum=0)
+TURN = 2.0 * math.pi
+turn = limited("an angle in rad of less than 2 pi in size", exclusiveMinimum=-TURN, exclusiveMaximum=TURN)
+friction = limited("a coefficient between 0 and 100", minimum=0, maximum=100.0)
+fraction = limited("a number between 0 and 1", exclusiveMinimum=0, exclusiveMaximum=1)
 poissons_ratio = limited(
-    "Poisson's ratio of an isotropic solid, between -1 and 1/2",
-    "must lie between -1 and 0.5, both excluded",
-    exclusiveMinimum=-1,
-    exclusiveMaximum=0.5,
+    "a number between -1 and 0.5, both excluded", exclusiveMinimum=-1, exclusiveMaximum=0.5
 )
 
 
 def whole(largest: int = 100_000) -> ValueRule[int]:
     """Return the rule: a whole number from 1 to `largest`."""
 
-    def read(value: object) -> int:
-        if isinstance(value, bool) or not isinstance(value, int):
-            raise RuleError("must be a whole number")
-        if not 1 <= value <= largest:
-            raise RuleError(f"must lie between 1 and {largest}")
-        return value
+    def right(value: Any) -> bool:
+        return isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= largest
 
-    schema = {"type": "integer", "minimum": 1, "maximum": largest}
-    return ValueRule(read, f"a whole number from 1 to {largest:,}", schema)
+    return ValueRule(
+        f"a whole number from 1 to {largest}", right, int, type="integer", minimum=1, maximum=largest
+    )
 
 
 whole_number = whole()
 
 
-def pair(item: ValueRule[Any]) -> dict[str, Any]:
-    """Return the schema of two items."""
-    return {"type": "array", "items": item.schema, "minItems": 2, "maxItems": 2}
+def several(
+    accepts: str, item: ValueRule[Any], right: Callable[[Sequence[Any]], object], **schema: Any
+) -> ValueRule[Any]:
+    """Return the rule: a list of items that are `right` together."""
+    return ValueRule(
+        accepts,
+        lambda value: isinstance(value, list | tuple) and all(map(item.right, value)) and right(value),
+        lambda value: tuple(map(item.stored, value)),
+        **{"type": "array", "items": item.schema, **schema},
+    )
 
 
-@rule(anyOf=[positive.schema, pair(positive)])
-def dimension(value: object) -> float | tuple[float, float]:
-    """Accept a positive number, or two that state a dimension at the start and at the end of a beam."""
-    if not isinstance(value, list | tuple):
-        return positive(value)
-    if len(value) != 2:
-        raise RuleError("must be a number, or two numbers [at the start, at the end]")
-    start, end = positive(value[0]), positive(value[1])
+def two(
+    accepts: str,
+    item: ValueRule[Any],
+    right: Callable[[Any, Any], object] = lambda a, b: True,  # noqa: ARG005
+    **schema: Any,
+) -> ValueRule[Any]:
+    """Return the rule: a list of two items that are `right` together."""
+    return several(
+        accepts, item, lambda pair: len(pair) == 2 and right(*pair), minItems=2, maxItems=2, **schema
+    )
+
+
+def polyline(at_least: int) -> ValueRule[Any]:
+    """Return the rule: points, no two consecutive ones equal."""
+    return several(
+        f"a list of {at_least} or more points [x, y], no two consecutive ones equal",
+        point,
+        lambda points: len(points) >= at_least and all(a != b for a, b in pairwise(map(tuple, points))),
+        minItems=at_least,
+    )
+
+
+sequence = ValueRule("a list", lambda value: isinstance(value, list | tuple), tuple[object, ...])
+point = two("two numbers [x, y], a third dimension is not modelled", number)
+stiffnesses = two("two numbers [x, y], neither negative", not_negative)
+span = two(
+    "two fractions of the length that rise from 0 to 1",
+    number,
+    lambda a, b: 0.0 <= a < b <= 1.0,
+    items={"type": "number", "minimum": 0, "maximum": 1},
+)
+mesh = two("[elements along, elements across]", whole_number)
+parts = several(
+    "a list of numbers that rise between 0 and 1, both excluded",
+    number,
+    lambda parts: all(a < b for a, b in pairwise((0.0, *parts, 1.0))),
+    items=fraction.schema,
+)
+_ends = two("", positive)
+
+
+def _dimension(value: Any) -> float | tuple[float, float]:
+    """Return a number, or two where they differ."""
+    if not _ends.right(value):
+        return positive.stored(value)
+    start, end = _ends.stored(value)
     return start if start == end else (start, end)
 
 
-@rule(**pair(number))
-def point(value: object) -> Point:
-    """Accept a point or vector [x, y] of the plane."""
-    if isinstance(value, list | tuple) and len(value) == 3:
-        raise RuleError("must be two numbers [x, y], a third dimension is not modelled")
-    if not isinstance(value, list | tuple) or len(value) != 2:
-        raise RuleError("must be two numbers [x, y]")
-    return number(value[0]), number(value[1])
-
-
-@rule(**{**pair(number), "items": {"type": "number", "minimum": 0, "maximum": 1}})
-def span(value: object) -> Point:
-    """Accept two fractions of a beam that rise."""
-    a, b = point(value)
-    if not 0.0 <= a < b <= 1.0:
-        raise RuleError("must be two fractions of the length that rise from 0 to 1")
-    return a, b
-
-
-@rule(**pair(not_negative))
-def stiffnesses(value: object) -> Point:
-    """Accept two numbers [x, y], neither negative."""
-    x, y = point(value)
-    return not_negative(x), not_negative(y)
-
-
-def sequence(value: object) -> tuple[object, ...]:
-    """Return a list as a tuple."""
-    if not isinstance(value, list | tuple):
-        raise RuleError("must be a list")
-    return tuple(value)
-
-
-@rule(type="array", items=fraction.schema)
-def parts(value: object) -> tuple[float, ...]:
-    """Accept numbers that rise between 0 and 1."""
-    items = tuple(map(number, sequence(value)))
-    if not all(a < b for a, b in pairwise((0.0, *items, 1.0))):
-        raise RuleError("must rise between 0 and 1, both excluded")
-    return items
-
-
-@rule(**pair(whole_number))
-def mesh(value: object) -> tuple[int, int]:
-    """Accept the numbers of elements along and across a solid strip."""
-    items = sequence(value)
-    if len(items) != 2:
-        raise RuleError("must be [elements along, elements across]")
-    return whole_number(items[0]), whole_number(items[1])
+dimension = ValueRule(
+    "a positive number, or two [at the start, at the end]",
+    lambda value: positive.right(value) or _ends.right(value),
+    _dimension,
+    anyOf=[positive.schema, _ends.schema],
+)
 
 
 def mesh_text(value: object) -> tuple[int, int]:
@@ -260,109 +221,85 @@ def mesh_text(value: object) -> tuple[int, int]:
     along, separator, across = value.partition("x") if isinstance(value, str) else ("", "", "")
     if not separator or not (along + across).isdecimal():
         raise RuleError("must be NXxNY, as 50x2")
-    return mesh((int(along), int(across)))
+    found: tuple[int, int] = mesh((int(along), int(across)))
+    return found
 
 
-@rule(type="array", items=point.schema, minItems=1)
-def further_points(value: object) -> tuple[Point, ...]:
-    """Accept at least one point, no two consecutive ones equal."""
-    points = tuple(map(point, sequence(value)))
-    if not points:
-        raise RuleError("must have at least one point")
-    if any(a == b for a, b in pairwise(points)):
-        raise RuleError("must move: two consecutive points are equal")
-    return points
-
-
-@rule(type="array", items=point.schema, minItems=2)
-def polyline(value: object) -> tuple[Point, ...]:
-    """Accept at least two points, no two consecutive ones equal."""
-    points = further_points(value)
-    if len(points) < 2:
-        raise RuleError("must have at least two points")
-    return points
-
-
-@rule(type="string", minLength=1)
-def text(value: object) -> str:
-    """Accept a printable text that is not empty."""
-    if not isinstance(value, str):
-        raise RuleError("must be a text")
-    if not value.strip() or not value.isprintable():
-        raise RuleError("must be a printable text, not empty")
-    return value
-
-
-@rule(type="string", pattern=r"^[\w-]+$")
-def name(value: object) -> str:
-    """Accept a name that can stand in a reference (``upper.end``, ``pin->cantilever``) and in a file name."""
-    result = text(value)
-    if not all(c.isalnum() or c in "-_" for c in result):
-        raise RuleError("must consist of letters, digits, '-' and '_'")
-    return result
-
-
-@rule(type="string", pattern="^[^,]*[^, ][^,]*,[^,]*[^, ][^,]*$")
-def units(value: object) -> str:
-    """Accept the unit of force and the unit of length, as ``N, m``."""
-    result = text(value)
-    if len(result.split(",")) != 2 or not all(part.strip() for part in result.split(",")):
-        raise RuleError('must be the units of force and of length, as "N, m"')
-    return result
-
-
-@rule(type="boolean")
-def truth(value: object) -> bool:
-    """Accept true or false."""
-    if not isinstance(value, bool):
-        raise RuleError("must be true or false")
-    return value
-
-
-def _options(options: tuple[str, ...], quote: str = '"') -> str:
-    return ", ".join(f"{quote}{option}{quote[::-1]}" for option in options)
+text = ValueRule(
+    "a printable text, not empty",
+    lambda value: isinstance(value, str) and value.strip() and value.isprintable(),
+    str,
+    type="string",
+    minLength=1,
+)
+name = ValueRule(
+    "a name of letters, digits, '-' and '_'",
+    lambda value: text.right(value) and all(c.isalnum() or c in "-_" for c in value),
+    str,
+    type="string",
+    pattern=r"^[\w-]+$",
+)
+units = ValueRule(
+    'the units of force and of length, as "N, m"',
+    lambda value: text.right(value) and [bool(part.strip()) for part in value.split(",")] == [True, True],
+    str,
+    type="string",
+    pattern="^[^,]*[^, ][^,]*,[^,]*[^, ][^,]*$",
+)
+truth = ValueRule("true or false", lambda value: isinstance(value, bool), bool, type="boolean")
 
 
 def choice(*options: str) -> ValueRule[str]:
     """Return the rule: one of `options`."""
+    listed = ", ".join(map(shown, options))
+    return ValueRule(
+        f"one of {listed}",
+        lambda value: isinstance(value, str) and value in options,
+        str,
+        enum=list(options),
+    )
 
-    def read(value: object) -> str:
-        if not isinstance(value, str) or value not in options:
-            raise RuleError(f"must be one of {_options(options)}")
-        return value
 
-    return ValueRule(read, "one of " + _options(options, '``"'), {"enum": list(options)})
-
-
-def subset(*options: str) -> ValueRule[tuple[str, ...]]:
+def subset(*options: str, at_least: int = 0) -> ValueRule[Any]:
     """Return the rule: some of `options`, each once."""
-
-    def read(value: object) -> tuple[str, ...]:
-        items = sequence(value)
-        if not items or any(item not in options for item in items) or len(set(items)) != len(items):
-            raise RuleError(f"must be a list of some of {_options(options)}, each once")
-        return tuple(map(str, items))
-
-    schema = {"type": "array", "items": {"enum": list(options)}, "uniqueItems": True, "minItems": 1}
-    return ValueRule(read, "a list of some of " + _options(options, '``"'), schema)
+    return several(
+        f"a list of some of {', '.join(map(shown, options))}, each once",
+        choice(*options),
+        lambda items: at_least <= len(items) == len(set(items)),
+        uniqueItems=True,
+        minItems=at_least,
+    )
 
 
-@rule(type="array", items={"enum": ["start", "end"]}, uniqueItems=True)
-def ends(value: object) -> tuple[str, ...]:
-    """Accept no, one or both ends of a beam."""
-    if sequence(value) in ((), ("start",), ("end",), ("start", "end"), ("end", "start")):
-        return tuple(map(str, sequence(value)))
-    raise RuleError('must be [], ["start"], ["end"] or ["start", "end"]')
+class Records(ValueRule[tuple[Any, ...]]):
+    """The rule: a list of tables ``[[name]]``, each of which states a record of one kind, or of such records."""
 
+    def __init__(self, name: str, kind: type, at_least: int = 0) -> None:
+        self.name, self.kind = name, kind
+        super().__init__(
+            f"a list of tables, [[{name}]]",
+            lambda value: (
+                isinstance(value, list | tuple)
+                and len(value) >= at_least
+                and all(isinstance(item, (kind, dict)) for item in value)
+            ),
+            self._read,
+            type="array",
+            minItems=at_least,
+        )
 
-def records(kind: type, at_least: int = 0) -> ValueRule[tuple[Any, ...]]:
-    """Return the rule: a list of records of one kind."""
-    wanted = "at least one" if at_least else "records of the kind"
-
-    def read(value: object) -> tuple[object, ...]:
-        items = sequence(value)
-        if len(items) < at_least or not all(isinstance(item, kind) for item in items):
-            raise RuleError(f"must be {wanted} {kind.__name__}")
-        return items
-
-    return ValueRule(read, f"a list of {kind.__name__}", LIST, kind)
+    def _read(self, value: Sequence[Any]) -> tuple[Any, ...]:
+        """Return the records; raise all mistakes of the tables."""
+        found: list[Any] = []
+        mistakes: list[FieldError] = []
+        for i, item in enumerate(value):
+            try:
+                found.append(self.kind(**item) if isinstance(item, dict) else item)
+            except RecordError as error:
+                mistakes += (mistake.within(f"{self.name}[{i}].") for mistake in error.mistakes)
+                found.append(error.found)
+            if len(mistakes) > MOST:
+                raise RecordError(mistakes, UNREADABLE)
+        if mistakes:
+            raise RecordError(mistakes, tuple(found))
+        return tuple(found)

@@ -6,11 +6,12 @@ from typing import Any
 
 from comparisons.scene import rules
 from comparisons.scene.beam import BeamSpec
+from comparisons.scene.coherence import scene_rules
 from comparisons.scene.conditions import HingeSpec, LoadSpec, SpringSpec, SupportSpec
 from comparisons.scene.contact import ContactSpec, PinSpec
 from comparisons.scene.record import Record, Unjudged, copied, key, optional
-from comparisons.scene.rules import Mistakes, Point
-from comparisons.scene.stages import LoadHistory, PrescribedMotion, StageSpec, amount, load_histories
+from comparisons.scene.rules import Point
+from comparisons.scene.stages import LoadHistory, PinMove, PrescribedMotion, StageSpec, amount, load_histories
 
 
 class Named(dict[str, Any]):
@@ -39,33 +40,31 @@ class Scene(Record):
         "Acceleration of gravity at load parameter 1, for beams with a `density`, in the units of the scene [length/time^2]; the unit of "
         "time is free, the product with the density is a force per volume.",
     )
-    beams: tuple[BeamSpec, ...] = key(rules.records(BeamSpec, at_least=1), "The beams.")
-    supports: tuple[SupportSpec, ...] = optional(rules.records(SupportSpec), "The supports.", ())
-    loads: tuple[LoadSpec, ...] = optional(rules.records(LoadSpec), "The loads of the first stage.", ())
-    pins: tuple[PinSpec, ...] = optional(rules.records(PinSpec), "The pins.", ())
-    contacts: tuple[ContactSpec, ...] = optional(rules.records(ContactSpec), "The contacts.", ())
-    hinges: tuple[HingeSpec, ...] = optional(rules.records(HingeSpec), "The hinges.", ())
-    springs: tuple[SpringSpec, ...] = optional(rules.records(SpringSpec), "The springs.", ())
-    stages: tuple[StageSpec, ...] = optional(rules.records(StageSpec), "Stages after the first one.", ())
+    beams: tuple[BeamSpec, ...] = key(rules.Records("beam", BeamSpec, at_least=1), "The beams.")
+    supports: tuple[SupportSpec, ...] = optional(rules.Records("support", SupportSpec), "The supports.", ())
+    loads: tuple[LoadSpec, ...] = optional(
+        rules.Records("load", LoadSpec), "The loads of the first stage.", ()
+    )
+    pins: tuple[PinSpec, ...] = optional(rules.Records("pin", PinSpec), "The pins.", ())
+    contacts: tuple[ContactSpec, ...] = optional(rules.Records("contact", ContactSpec), "The contacts.", ())
+    hinges: tuple[HingeSpec, ...] = optional(rules.Records("hinge", HingeSpec), "The hinges.", ())
+    springs: tuple[SpringSpec, ...] = optional(rules.Records("spring", SpringSpec), "The springs.", ())
+    stages: tuple[StageSpec, ...] = optional(
+        rules.Records("stage", StageSpec), "Stages after the first one.", ()
+    )
 
     def _settle(self) -> None:
         if self.has("pins"):
-            vars(self)["pins"] = tuple(map(self._with_moves, self.pins))
+            vars(self)["pins"] = tuple(copied(pin, moves=self._moves(pin)) for pin in self.pins)
 
-    def _own_rules(self) -> Iterable[Mistakes]:
-        from comparisons.scene.coherence import scene_rules
+    obeys = (scene_rules,)
 
-        return scene_rules(self)
-
-    def _with_moves(self, pin: PinSpec) -> PinSpec:
-        """Return a copy of `pin` that knows its motions in the stages."""
+    def _moves(self, pin: PinSpec) -> tuple[PinMove | None, ...] | None:
+        """Return the motions of a pin in the stages; None where one is wrong."""
         try:
-            if not (self.stages or pin.moves):
-                return pin
-            moves = tuple({move.name: move for move in stage.pin}.get(pin.name) for stage in self.stages)
+            return tuple({move.name: move for move in stage.pin}.get(pin.name) for stage in self.stages)
         except Unjudged:
-            return copied(pin, moves=None)
-        return copied(pin, moves=moves)
+            return None
 
     @cached_property
     def _beams(self) -> dict[str, BeamSpec]:

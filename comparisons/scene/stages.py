@@ -1,13 +1,13 @@
 """Stages that follow the first one of a scene: what they move on from where the stage before ended."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from comparisons.scene import rules
 from comparisons.scene.conditions import COMPONENTS, AtEnd, LoadSpec, SupportSpec
-from comparisons.scene.record import Record, exactly_one_of, key, optional
-from comparisons.scene.rules import MISSING, FieldError, Mistakes, Point
+from comparisons.scene.record import Record, key, one_of, optional, refused
+from comparisons.scene.rules import Point
 
 
 class PinMove(Record):
@@ -16,16 +16,18 @@ class PinMove(Record):
     name: str = key(rules.name, "Name of the pin.")
     displacement: Point | None = optional(rules.point, "A straight motion from where the pin is [length].")
     path: tuple[Point, ...] | None = optional(
-        rules.further_points,
+        rules.polyline(1),
         "The points that the pin moves to, one after another, instead of `displacement` [length].",
     )
 
-    def _own_rules(self) -> Iterable[Mistakes]:
-        return exactly_one_of(self, ("displacement",), ("path",)), self._moves()
-
-    def _moves(self) -> Mistakes:
-        if self.displacement is not None and not any(self.displacement):
-            yield FieldError("displacement", self.displacement, "must not be zero: the pin does not move")
+    obeys = (
+        one_of(("displacement",), ("path",)),
+        refused(
+            "displacement",
+            "must not be zero: the pin does not move",
+            lambda it: it.displacement == (0.0, 0.0),
+        ),
+    )
 
 
 class SupportMove(AtEnd):
@@ -37,12 +39,9 @@ class SupportMove(AtEnd):
     )
     rotation: float = optional(rules.number, "Rotation during the stage, anticlockwise [rad].", 0.0)
 
-    def _own_rules(self) -> Iterable[Mistakes]:
-        return (self._moves(),)
-
-    def _moves(self) -> Mistakes:
-        if not any(self.motion):
-            yield FieldError("displacement", self.displacement, "displacement or rotation must not be zero")
+    obeys = (
+        refused("displacement", "displacement or rotation must not be zero", lambda it: not any(it.motion)),
+    )
 
     @property
     def motion(self) -> tuple[float, float, float]:
@@ -60,17 +59,17 @@ class StageSpec(Record):
     name: str | None = optional(rules.name, "Letters, digits, ``-`` and ``_``.")
     load_parameters: int = key(rules.whole_number, "Number of load parameters of the stage, equally spaced.")
     pin: tuple[PinMove, ...] = optional(
-        rules.records(PinMove),
+        rules.Records("pin", PinMove),
         'Motions of pins, as ``[{ name = "pin", displacement = [0.0, -0.1] }]``; `path` is possible instead of `displacement`.',
         (),
     )
     support: tuple[SupportMove, ...] = optional(
-        rules.records(SupportMove),
+        rules.Records("support", SupportMove),
         'Motions of supports, as ``[{ beam = "strip", end = "end", displacement = [0.0, 0.1], rotation = 0.0 }]``.',
         (),
     )
     load: tuple[LoadSpec, ...] = optional(
-        rules.records(LoadSpec),
+        rules.Records("load", LoadSpec),
         'Changes of loads, as ``[{ beam = "strip", end = "end", force = [0.0, 1.0] }]``, with the keys of ``[[load]]``.',
         (),
     )
@@ -78,13 +77,13 @@ class StageSpec(Record):
         rules.point, "Change of the acceleration of gravity [length/time^2].", (0.0, 0.0)
     )
 
-    def _own_rules(self) -> Iterable[Mistakes]:
-        return (self._changes(),)
-
-    def _changes(self) -> Mistakes:
-        if not (self.pin or self.support or self.load or any(self.gravity)):
-            rule = "give pin, support, load or gravity: nothing happens in the stage"
-            yield FieldError("pin", MISSING, rule)
+    obeys = (
+        refused(
+            "pin",
+            "give pin, support, load or gravity: nothing happens in the stage",
+            lambda it: not (it.pin or it.support or it.load or any(it.gravity)),
+        ),
+    )
 
 
 def stage_of(load_parameter: float, stages: int) -> int:

@@ -2,26 +2,16 @@
 
 import re
 import tomllib
-from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
 from comparisons.files import read_regular
-from comparisons.scene.rules import MISSING, FieldError, Rule, RuleError, shown
+from comparisons.scene.rules import MISSING, MOST, UNREADABLE, FieldError, RecordError, Rule, RuleError, shown
 
 LARGEST_FILE = 16_000_000
 """Largest size of an input file [byte]."""
 DEEPEST = 50
 """Largest number of parts of a dotted key; the time to parse a key rises with the square of this number."""
-MOST = 1000
-"""Number of mistakes from which the reader of a file looks for no more."""
-_TABLE = re.compile(r"([^.\[\]]+)(?:\[(\d+)\])?")
-_HEADER = re.compile(
-    r"""\"{3}(?:\\.|[^\\])*?\"{3}|'{3}.*?'{3}|"(?:\\.|[^"\\\n])*"|'[^'\n]*'|\#[^\n]*"""
-    r"""|^[ \t]*\[\[?[ \t]*(?P<quote>["']?)(?P<key>[\w-]+)(?P=quote)[ \t]*\]""",
-    re.DOTALL | re.MULTILINE,
-)
-"""Header of a table, or a text or comment, which may look like one."""
 _DEEP = re.compile(rf"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{DEEPEST}}}""")
 
 
@@ -132,35 +122,29 @@ def table_values(
     """Return the right values of a table in their stored form, and its mistakes."""
     mistakes = list(check_keys(table, rules, required))
     values = {}
-    for key in (key for key in table if key in rules):
+    for key in (key for key in table if key in rules and table[key] is not UNREADABLE):
         try:
             values[key] = rules[key](table[key])
+        except RecordError as error:
+            mistakes += error.mistakes
+            values |= {} if error.found is UNREADABLE else {key: error.found}
         except RuleError as error:
-            mistakes.append(FieldError(key, table[key], str(error)))
+            mistakes.append(FieldError(getattr(rules[key], "name", key), table[key], str(error)))
     return values, mistakes
 
 
-def in_order(mistakes: Iterable[FieldError], text: str, tables: dict[str, Any]) -> list[FieldError]:
-    """Return mistakes in the order in which their keys stand in the TOML `text` of `tables`, one for a value.
+def in_order(mistakes: Iterable[FieldError], tables: dict[str, Any]) -> list[FieldError]:
+    """Return mistakes in the order in which their keys stand in a file of `tables`, one for a value.
 
-    A key that is missing stands at the end of its table.
+    A key that is missing stands at the end of its table. Tables of one kind that stand apart stand together.
     """
-    headers: dict[str, list[int]] = defaultdict(list)
-    for header in _HEADER.finditer(text):
-        headers[header["key"]].append(header.start())
     ranks = {key: rank for rank, key in enumerate(_keys(tables))}
 
-    def place(mistake: FieldError) -> tuple[int, int]:
-        found = _TABLE.match(mistake.key)
-        table, _, _ = mistake.key.rpartition(".")
-        rank = ranks.get(mistake.key, ranks.get(f"{table}.", len(ranks)))
-        if found is None or found[1] not in tables:
-            return len(text), rank
-        starts, number = headers[found[1]], int(found[2] or 0)
-        return starts[number] if number < len(starts) else list(tables).index(found[1]) - len(tables), rank
+    def rank(mistake: FieldError) -> int:
+        return ranks.get(mistake.key, ranks.get(mistake.key.rpartition(".")[0] + ".", len(ranks)))
 
     first: dict[tuple[str, str], FieldError] = {}
-    for mistake in sorted(mistakes, key=place):
+    for mistake in sorted(mistakes, key=rank):
         first.setdefault((mistake.key, shown(mistake.value)), mistake)
     return list(first.values())
 

@@ -1,24 +1,23 @@
 """A scene as tables and as TOML text, and the JSON Schema of scene files."""
 
-from dataclasses import Field, fields
+from collections.abc import Collection
+from dataclasses import fields
 from typing import Any
 
-from comparisons.scene.read import LISTS
+from comparisons.scene.read import HEAD
 from comparisons.scene.record import Record, lists_of, rule_of
-from comparisons.scene.rules import LIST, MISSING
+from comparisons.scene.rules import MISSING, Records
 from comparisons.scene.scene import Scene
 from comparisons.scene.values import toml_value
 
 Table = dict[str, Any]
-HEAD = tuple(item for item in fields(Scene) if item.name not in lists_of(Scene))
-"""The fields of the table ``[scene]``."""
 
 
 def to_tables(scene: Scene) -> dict[str, Table | list[Table]]:
     """Return the tables of a scene file that states `scene`, every key written out: ``scene``, and a list for each kind of record."""
     tables = _table(scene)
-    lists = {kind: tables[f"{kind}s"] for kind in LISTS if f"{kind}s" in tables}
-    return {"scene": {item.name: tables[item.name] for item in HEAD if item.name in tables}, **lists}
+    head = {name: tables.pop(name) for name in [*tables] if name in HEAD}
+    return {"scene": head, **{name.removesuffix("s"): rows for name, rows in tables.items()}}
 
 
 def _table(record: Record) -> Table:
@@ -59,7 +58,9 @@ def json_schema() -> Table:
     >>> json_schema()["properties"]["beam"]["items"]["properties"]["youngs_modulus"]["exclusiveMinimum"]
     0
     """
-    lists = {kind: {**LIST, "items": _schema(record, fields(record))} for kind, record in LISTS.items()}
+    lists = {
+        name.removesuffix("s"): table for name, table in _schema(Scene, lists_of(Scene))["properties"].items()
+    }
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Scene of tsm-crossval",
@@ -70,19 +71,20 @@ def json_schema() -> Table:
     }
 
 
-def _schema(kind: type[Record], known: tuple[Field[Any], ...]) -> Table:
-    properties = {}
-    for item in known:
+def _schema(kind: type[Record], known: Collection[str]) -> Table:
+    """Return the schema of a table with some keys of a record."""
+    properties, declared = {}, [item for item in fields(kind) if item.name in known]
+    for item in declared:
         rule, meaning = rule_of(item), item.metadata["meaning"].replace("``", "`")
         properties[item.name] = {"description": meaning, **rule.schema}
-        if rule.kind is not None:
-            properties[item.name]["items"] = _schema(rule.kind, fields(rule.kind))
+        if isinstance(rule, Records):
+            properties[item.name]["items"] = _schema(rule.kind, {item.name for item in fields(rule.kind)})
         elif item.default not in (MISSING, None):
             properties[item.name]["default"] = item.default
     return {
         "type": "object",
         "description": (kind.__doc__ or "").partition("\n")[0],
         "properties": properties,
-        "required": [item.name for item in known if item.default is MISSING],
+        "required": [item.name for item in declared if item.default is MISSING],
         "additionalProperties": False,
     }

@@ -6,10 +6,10 @@
 import difflib
 import tomllib
 from collections.abc import Collection, Mapping
-from importlib import resources
+from pathlib import Path
 from typing import Final, NamedTuple
 
-_DATA = tomllib.loads(resources.files("comparisons.scene").joinpath("words.toml").read_text("utf-8"))
+_DATA = tomllib.loads(Path(__file__).with_name("words.toml").read_text(encoding="utf-8"))
 
 
 class Topic(NamedTuple):
@@ -66,8 +66,7 @@ def hint(key: str, known: Collection[str]) -> str:
     if word in ELSEWHERE:
         return ELSEWHERE[word]
     topic = _topic(word, *word.split("_"))
-    if topic is None:
-        topic = _topic(_near(word, [item for topic in NOT_MODELLED for item in topic.words], 0.85))
+    topic = topic or _topic(_near(word, [item for topic in NOT_MODELLED for item in topic.words], 0.85))
     return topic.answer if topic else "known are " + ", ".join(sorted(known))
 
 

@@ -220,8 +220,9 @@ def read_series(folder: Path) -> list[Series]:
     """
     files = sorted(folder.glob("*.pvd")) or sorted(folder.glob("*/*.pvd"), reverse=True)
     if not files:
-        words = "has no PVD file, `crossval solve --vtk` and `crossval compare` write them"
-        raise OutputError(f"{folder}: {words}")
+        raise OutputError(
+            f"{folder}: has no PVD file, `crossval solve --out` and `crossval compare` write them"
+        )
     return [_read(path) for path in files]
 
 

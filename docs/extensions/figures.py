@@ -17,7 +17,7 @@ COLOURS = 200
 COMPARED = ("shapes", "side-by-side", "budget")
 COMMANDS = {
     "check mine.toml --out check.png": {"check.png": "mine-check.png"},
-    "solve mine.toml --plot solve.png": {"solve.png": "mine-solve.png"},
+    "solve mine.toml --out solve.png": {"solve.png": "mine-solve.png"},
     "compare mine.toml --out mine --quiet": {f"mine/{name}.png": f"mine-{name}.png" for name in COMPARED},
     "compare ks-cantilever --out ks --quiet": {f"ks/{name}.png": f"ks-{name}.png" for name in COMPARED},
     "run fig9 --out paper": {"paper/fig9.png": "double-beam.png"},

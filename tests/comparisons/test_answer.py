@@ -102,9 +102,8 @@ def test_a_picture_has_shape_diagrams_and_forces():
 
 def test_solve_writes_a_history_and_a_picture(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    files = ["--csv", "a.csv", "--plot", "a.svg", "--json", "a.json"]
-    assert main(["solve", "two-pins", *files, "--times"]) == 0
-    out = capsys.readouterr().out
+    files = ["--out", "a.csv", "--out", "a.svg", "--out", "a.json"]
+    assert main(["solve", "two-pins", *files]) == 0
     rows = list(csv.DictReader(Path("a.csv").read_text().splitlines()))
     assert [float(row["load_parameter"]) for row in rows] == pytest.approx(np.arange(1, 11) / 10)
     reaction = json.loads(Path("a.json").read_text())["supports"]["beam.start"]["force"]
@@ -112,8 +111,6 @@ def test_solve_writes_a_history_and_a_picture(tmp_path, monkeypatch, capsys):
     assert main(["certify", "a.json", "--scene", "two-pins"]) == 0
     assert "CERTIFIED" in capsys.readouterr().out
     assert "</svg>" in Path("a.svg").read_text(encoding="utf-8")
-    stages = out.splitlines()[-1].removeprefix("seconds: ").partition(";")[0].split(", ")
-    assert [stage.rpartition(" ")[0] for stage in stages] == ["read", "set up", "solve", "certify", "write"]
 
 
 def test_the_element_suits_and_is_named(capsys):

@@ -182,15 +182,6 @@ contact = [{{ node = "ball", beam = "b", side = "right", surface = "face" }}]
     )
 
 
-@pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("count", [1, 10])
-def test_a_ball_beside_a_tip_meets_its_corner(model, count):
-    """The tip was 2 mm inside the ball, completed and certified. The corner is (40, -.4)."""
-    found = solve(nose(count=count), *MODELS[model])
-    assert (found.status, len(found.load_parameter)) == ("END_CONTACT", 0 if count == 1 else 2)
-    assert met_at(found) == pytest.approx((4.0 - 0.4 - math.sqrt(2.5**2 - 0.5**2)) / 4.0, abs=WITHIN)
-
-
 def test_a_pin_over_an_end_is_refused():
     with pytest.raises(InputError, match="must lie clear of the end"):
         nose(start=(42.0, 0.0))

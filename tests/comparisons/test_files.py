@@ -5,7 +5,6 @@ import os
 import re
 from dataclasses import replace
 from pathlib import Path
-from threading import Thread
 
 import pytest
 
@@ -62,31 +61,15 @@ def test_places_that_cannot_be_written_are_named_and_a_link_is_followed(tmp_path
     assert target.read_text() == "new"
 
 
-def test_sets_of_files_are_written_one_after_the_other(tmp_path):
-    order: list[str] = []
-
-    def write() -> None:
-        with files.alone_in(tmp_path):
-            order.append("second")
-
-    other = Thread(target=write)
-    with files.alone_in(tmp_path):
-        other.start()
-        other.join(0.2)
-        order.append("first")
-    other.join(10)
-    assert order == ["first", "second"]
-
-
 HERE = "of a user"
 """What a command must leave alone."""
-INTO_A_FILE = """check s.toml --json FILE
+INTO_A_FILE = """check s.toml --out FILE.json
 check s.toml --out FILE.png
-solve s.toml --csv FILE
-solve s.toml --plot FILE.svg
-certify s.toml --json FILE
+solve s.toml --out FILE.csv
+solve s.toml --out FILE.svg
+certify s.toml --out FILE.json
 compare s.toml --max-error force=1 --junit FILE
-run manual --only roll-up --quiet --out new --junit FILE"""
+run manual roll-up --quiet --out new --junit FILE"""
 INTO_A_FOLDER = {
     "compare s.toml --out": ("report.html", "budget.json", "tsm/tsm.pvd", "solid/solid-0002.vtm"),
     "view s.toml --out": ("view.png", "view.gif"),
@@ -95,8 +78,8 @@ INTO_A_FOLDER = {
     "run fig8 --quick --out": ("report.html",),
     "run extremes --quick --out": ("extremes.csv",),
     "run locking --out": ("locking.csv",),
-    "run manual --only roll-up --quiet --out": ("index.md", "roll-up.svg"),
-    "run manual --only roll-up --cards": ("roll-up.json", "card.schema.json"),
+    "run manual roll-up --quiet --out": ("index.md", "roll-up.svg"),
+    "run cards roll-up --out": ("roll-up.json", "card.schema.json"),
 }
 
 
@@ -108,7 +91,7 @@ def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     return text
 
 
-@pytest.mark.slow_at(*(line for line in INTO_A_FILE.splitlines() if re.match("solve .*--plot|manual", line)))
+@pytest.mark.slow_at(*(line for line in INTO_A_FILE.splitlines() if re.match("solve .*svg|manual", line)))
 @pytest.mark.parametrize("line", INTO_A_FILE.splitlines())
 def test_no_file_of_a_user_is_replaced(line, scene, capsys):
     """The scene itself among them; and the same command replaces what it wrote, until that is edited."""
@@ -148,15 +131,15 @@ def test_a_folder_of_a_user_is_left_alone(line, capsys):
 
 @pytest.mark.usefixtures("scene")
 def test_an_answer_is_not_replaced_by_its_certificate_nor_a_new_scene_by_anything(capsys):
-    assert main(["solve", "s.toml", "--json", "a.json"]) == main(["new", "mine", "--like", "tip-load"]) == 0
+    assert main(["solve", "s.toml", "--out", "a.json"]) == main(["new", "mine", "--like", "tip-load"]) == 0
     judged = (
-        "certify a.json --scene s.toml --json ./a.json",
+        "certify a.json --scene s.toml --out ./a.json",
         "a.json",
-        "--json ./a.json: is the answer to be judged",
+        "a.json: is the answer to be judged",
     )
     for line, file, told in (
         judged,
-        ("check mine.toml --json mine.toml", "mine.toml", "mine.toml: is there already"),
+        ("check mine.toml --out mine.toml", "mine.toml", "mine.toml: must end in"),
     ):
         there = Path(file).read_bytes()
         assert main(line.split()) == 2

@@ -89,8 +89,8 @@ def test_a_solution_that_stops_holds_no_bound(tmp_path, capsys):
 
 
 BAD = {
-    "ks-cantilever --max-error force=-1": "force=-1: must be QUANTITY=X",
-    "ks-cantilever --max-error force=nan": "force=nan: must be QUANTITY=X",
+    "ks-cantilever --max-error force=-1": "force=-1: must be a positive number",
+    "ks-cantilever --max-error force=nan": "force=nan: must be a positive number",
     "ks-cantilever --max-error weight=1": "weight=1: must be QUANTITY=X",
     "ks-cantilever --max-error tip=1 --max-error tip=2": "bounds a quantity twice",
     "ks-cantilever --max-error stress=1": "stress: is measured between two solids of a single beam",

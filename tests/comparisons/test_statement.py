@@ -31,7 +31,7 @@ def rod() -> Response:
 def stated(folder: Path, scene: Scene, *options: str) -> dict[str, Any]:
     """What ``crossval solve`` writes."""
     (folder / "my.toml").write_text(to_toml(scene))
-    main(["solve", str(folder / "my.toml"), *options, "--json", str(folder / "a.json"), "--quiet"])
+    main(["solve", str(folder / "my.toml"), *options, "--out", str(folder / "a.json"), "--quiet"])
     found: dict[str, Any] = json.loads((folder / "a.json").read_text())
     return found
 

@@ -43,7 +43,7 @@ def test_a_stop_has_its_name_and_status_3(case, model, tmp_path, monkeypatch, ca
     monkeypatch.chdir(tmp_path)
     name, contacts, _, reached = STOPS[case]
     Path("a.toml").write_text(BEAM + contacts)
-    status = main(["solve", "a.toml", "--model", *model.split(), "--json", "a.json"])
+    status = main(["solve", "a.toml", "--model", *model.split(), "--out", "a.json"])
     data = json.loads(Path("a.json").read_text())
     assert (status, data["status"]) == (0 if name == "COMPLETED" else 3, name)
     assert len(data["load_parameter"]) == reached

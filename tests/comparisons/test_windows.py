@@ -36,7 +36,7 @@ def test_commands_without_unix(tmp_path):
     """A set of files, whose folder is locked, and a scene from a file, which is read without waiting for a pipe."""
     text = built_in_scenes()["ks-cantilever"]
     (tmp_path / "a.toml").write_text(text.replace("load_parameters = 50", "load_parameters = 2"))
-    said = crossval(tmp_path, "solve", "a.toml", "--elements", "4", "--json", "a.json", "--vtk", "vtk")
+    said = crossval(tmp_path, "solve", "a.toml", "--elements", "4", "--out", "a.json", "--out", "vtk")
     assert "COMPLETED" in said
     assert not list(tmp_path.rglob(".crossval.lock"))
     assert json.loads((tmp_path / "a.json").read_text())["status"] == "COMPLETED"

@@ -4,23 +4,30 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
 
 from comparisons import scene as reader
 from comparisons.cli import main
-from comparisons.scene import FieldError, InputError, Scene, load_scene
+from comparisons.scene import FieldError, InputError, Scene, StageSpec, load_scene
+
+# where a rule is declared, and what it accepts
+from comparisons.scene.read import LISTS
+from comparisons.scene.record import lists_of, rule_of
 from docs.extensions.messages import FILE, SCENES, messages
 
 SOURCES = [path.read_text(encoding="utf-8") for path in sorted(Path(reader.__file__).parent.glob("*.py"))]
 LISTED = messages()
 ERRORS = {"RuleError", "FieldError", "InputError", "SceneError", "kind"}
 """Names by which the reader calls its errors; `kind` is the class of error that a caller hands down."""
-HANDED = {"limited", "read_text"}
+HANDED = {"read_text", "refused"}
 """Functions that are given a sentence as their second argument."""
-NAMES = {"rule", "refusal", "absent", "reason"}
+NAMES = {"rule", "absent", "reason", "APART", "ROLLS", "sentence"}
 """Variables that hold a sentence."""
+RULE = "must be {}"
+"""The sentence of a rule for a single value: what the rule accepts."""
 
 
 def sentences(source: str) -> set[str]:
@@ -37,7 +44,7 @@ def sentences(source: str) -> set[str]:
             said += node.args[-1:] if node.func.id in ERRORS else []
             said += node.args[1:2] if node.func.id in HANDED else []
         elif isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
-            said += [node.value] if node.targets[0].id in {"rule", "absent"} else []
+            said += [node.value] if node.targets[0].id in {"rule", "absent", "APART", "ROLLS"} else []
     return {words for value in said for words in _template(value)}
 
 
@@ -53,8 +60,13 @@ def _template(value: ast.expr) -> Iterator[str]:
 
 
 def test_every_sentence_is_listed_once_and_none_is_stale():
-    found = {words for source in SOURCES for words in sentences(source)}
+    found = {words for source in SOURCES for words in sentences(source)} - {RULE}
     listed = Counter(message.sentence for message in LISTED)
+    kinds = [Scene, *LISTS.values(), *lists_of(StageSpec).values()]
+    for rule in {RULE.format(rule_of(item).accepts) for kind in kinds for item in fields(kind)}:
+        found |= {
+            words for words in listed if re.fullmatch(".*".join(map(re.escape, words.split("{}"))), rule)
+        } or {rule}
     assert found
     assert set(listed) == found, f"{FILE} and the source of the reader differ"
     assert max(listed.values()) == 1

@@ -97,7 +97,7 @@ def test_json_output_obeys_its_schema(scene, options, tmp_path, monkeypatch):
     """With friction, which slips both ways."""
     monkeypatch.chdir(tmp_path)
     Path("my.toml").write_text(to_toml(replace(load_scene(scene), load_parameters=15)))
-    run_line(f"crossval solve my.toml {options} --json a.json")
+    run_line(f"crossval solve my.toml {options} --out a.json")
     found = json.loads(Path("a.json").read_text())
     check_schema(SCHEMAS["response"], found)
     if scene == "ks-friction":
@@ -113,10 +113,10 @@ def test_json_output_obeys_its_schema(scene, options, tmp_path, monkeypatch):
 def test_a_resolved_scene_obeys_its_schema(scene):
     found = load_scene(scene)
     if unstated(found, "the resolved scene") is not None:
-        said = run_line(f"crossval check {scene} --json -  # exit status 2")
+        said = run_line(f"crossval check {scene} --out -  # exit status 2")
         assert "the resolved scene does not state" in said
         return
-    data = json.loads(run_line(f"crossval check {scene} --json -"))
+    data = json.loads(run_line(f"crossval check {scene} --out -"))
     check_schema(SCHEMAS["resolved-scene"], data)
     assert len(data["beams"]) == len(found.beams)
 

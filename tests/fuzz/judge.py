@@ -111,7 +111,7 @@ def tally(number: int, first: int) -> Tally:
         seen.add((model, data))
         file.write_bytes(data)
         kind, wrong = judged(
-            ["solve", str(file), "--model", *model.split(), "--json", str(file.with_suffix(".json"))]
+            ["solve", str(file), "--model", *model.split(), "--out", str(file.with_suffix(".json"))]
         )
         file.with_suffix(".json").unlink(missing_ok=True)
         found.kinds[model.partition(" ")[0], kind] += 1

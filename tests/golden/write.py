@@ -77,7 +77,7 @@ def _scene(scene: str) -> Iterator[str]:
         for model, options in MODELS.items():
             yield f"== solve {model}"
             file = Path(folder) / f"{model}.json"
-            given = ("--quiet", "--certify", "none", "--json", str(file))
+            given = ("--quiet", "--certify", "none", "--out", str(file))
             printed = list(said("solve", scene, *options, *given))
             yield from (line for line in printed if line.startswith(("crossval", "exit")))
             if file.exists():
@@ -126,7 +126,7 @@ def compared(scene: str) -> Iterator[str]:
 def problem(name: str) -> Iterator[str]:
     """Yield what the manual says of a problem."""
     with TemporaryDirectory() as folder:
-        yield from said("run", "manual", "--only", name, "--quiet", "--out", folder, folder=folder)
+        yield from said("run", "manual", name, "--quiet", "--out", folder, folder=folder)
         (case,) = json.loads((Path(folder) / "manual.json").read_text())["cases"]
     yield f"{case['title']}: {_flat([item['exact'] for item in case['quantities']])}"
     for run in case["runs"]:

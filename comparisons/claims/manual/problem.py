@@ -209,5 +209,5 @@ def problems(names: Sequence[str] | None = None, folder: Path = FOLDER) -> list[
     known = [name for name in ORDER if name in files] + [name for name in files if name not in ORDER]
     for name in names or ():
         if name not in files:
-            raise InputError("--only", f"{name}: no such problem ({', '.join(known)})")
+            raise InputError(name, f"no such problem ({', '.join(known)})")
     return [files[name] for name in known if names is None or name in names]

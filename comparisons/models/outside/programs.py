@@ -111,7 +111,7 @@ def read_program(path: Path) -> Program:
     given, mistakes = head_values(tables, "program", RULES, required=("name", "command"))
     mistakes += check_keys(tables, ("program",), required=("program",))
     if mistakes:
-        raise ProgramFileError(source, RecordError(in_order(mistakes, text, tables)))
+        raise ProgramFileError(source, RecordError(in_order(mistakes, tables)))
     return Program(Command(folder=path.resolve().parent, **given))
 
 

@@ -56,7 +56,7 @@ def truth(name: str) -> str:
     folder = Path(FOLDER[0])
     (folder / "truth.toml").write_text(to_toml(scene), encoding="utf-8")
     out = folder / "truth.json"
-    assert main(["solve", str(folder / "truth.toml"), *options, "--certify", "none", "--quiet", "--json", str(out)]) == 0  # fmt: skip
+    assert main(["solve", str(folder / "truth.toml"), *options, "--certify", "none", "--quiet", "--out", str(out)]) == 0  # fmt: skip
     return out.read_text(encoding="utf-8")
 
 
@@ -251,7 +251,7 @@ FORGED: dict[str, tuple[str, Forgery, str]] = {
     "drag reversed": ("rubbed", rubs("tangential", by(-1.0)), NOT + "pin->cantilever slips with F_t = 0.3 F_n, not -0.3 F_n"),
     "stick that moves": ("rubbed", pin("arc_position", plus(1e-3), 12), NOT + "pin->cantilever sticks and moves by 0.001 L"),
     "stick outside the cone": ("rubbed", both(rubs("slip", [0] * 20), rubs("tangential", by(np.sin(STEEP) / np.sin(CONE))), rubs("normal", by(np.cos(STEEP) / np.cos(CONE))), claimed(events=None)), NOT + "pin->cantilever sticks with a force outside its cone"),
-    "dissipation": ("rubbed", both(rubs("dissipated", by(1.5)), claimed(work=None)), NOT + "the dissipation of pin->cantilever up to load parameter 0.6 is off by 0.0054 of the work"),
+    "dissipation": ("rubbed", both(rubs("dissipated", by(1.5)), claimed(work=None)), NOT + "the dissipation of pin->cantilever up to load parameter 0.75 is off by 0.0078 of the work"),
     "stick is not stated": ("rubbed", events(lambda own: own.pop(0)), NOT + "pin->cantilever sticks without an event up to load parameter 0.65"),
     "stick is stated too early": ("rubbed", shifted("stick", load_parameter=-0.015), NOT + "pin->cantilever sticks from load parameter 0.605498, exactly from 0.620498"),
     "slip is stated too late": ("rubbed", shifted("slip", load_parameter=0.015), NOT + "pin->cantilever slips from load parameter 0.698287, exactly from 0.683287"),
@@ -277,7 +277,7 @@ TEXTS: dict[str, tuple[Callable[[str], str], str]] = {
     "infinite": (lambda text: text.replace("0.1", "1e400", 1), "load_parameter[0] = inf: must be a finite number"),
     "5000 digits": (lambda text: text.replace("0.1", "1" * 5000, 1), "must be valid JSON: "),
 }  # fmt: skip
-FEW = ("--few", "--allowance", "0.01")
+NEAR = ("--allowance", "0.01")
 
 
 @pytest.mark.parametrize("forgery", FORGED)
@@ -285,7 +285,7 @@ def test_a_forged_file_is_refused(forgery, judged):
     name, forge, words = FORGED[forgery]
     data = json.loads(truth(name if name in SOURCES else "ks"))
     forge(data)
-    status, line = judged(name, json.dumps(data), *(FEW if name == "rubbed" else ()))
+    status, line = judged(name, json.dumps(data), *(NEAR if name == "rubbed" else ()))
     assert words in line
     assert status == {"crossval": 2, "NOT_JUDGED": 3}.get(line.split(":")[0], 1)
 
@@ -305,7 +305,7 @@ def test_a_damaged_file_is_one_line(damage, judged):
 )
 def test_the_true_file_is_certified(name, judged):
     """Whatever it claims to be."""
-    status, line = judged(name, truth(name), *(FEW if name == "rubbed" else ()))
+    status, line = judged(name, truth(name), *(NEAR if name == "rubbed" else ()))
     assert (status, line.split(" within")[0]) == (0, "CERTIFIED"), line
     if name in ("ks", "portal"):
         data = json.loads(truth(name)) | {"model": "other", "outside": False, "continuum": True}
@@ -314,7 +314,7 @@ def test_the_true_file_is_certified(name, judged):
 
 def test_a_stored_response_is_judged_as_the_response_itself(tmp_path, judged):
     scene, out = SOURCES["mixed"][0], tmp_path / "certificate.json"
-    assert judged("mixed", truth("mixed"), "--few", "--json", str(out))[0] == 0
+    assert judged("mixed", truth("mixed"), "--out", str(out))[0] == 0
     read = json.loads(out.read_text(encoding="utf-8"))
     whole = certify(solve(scene, "tsm", Options(element="mixed", elements=10)), scene)
     assert read["verdict"] == "CERTIFIED"
@@ -326,9 +326,6 @@ def test_a_stored_response_is_judged_as_the_response_itself(tmp_path, judged):
     assert arc == pytest.approx(whole.judged[-1].exact.contacts[PAIR].arc_position, rel=1e-13)
 
 
-def test_options_that_do_not_belong_together_are_refused(judged, capsys):
-    status, line = judged("ks", truth("ks"), "--elements", "3")
-    assert status == 2
-    assert "--elements: belongs to a scene" in line
+def test_a_scene_takes_no_scene_of_a_response(capsys):
     assert main(["certify", "ks-cantilever", "--scene", "ks-face"]) == 2
     assert "--scene: belongs to a response" in capsys.readouterr().err

@@ -47,18 +47,14 @@ def test_the_table_has_every_scene_and_every_model(stated):
 
 
 @pytest.mark.slow_at(
-    *(f"{name}-{element}-2" for name in DEAR for element in ELEMENTS),
-    *(f"{name}-{element}-1" for name in NAMES for element in ELEMENTS),
+    *(f"{name}-{element}" for name in DEAR for element in ELEMENTS),
 )
-@pytest.mark.parametrize("count", [2, 1])
 @pytest.mark.parametrize("element", ELEMENTS)
 @pytest.mark.parametrize("name", NAMES)
-def test_any_number_of_load_parameters_has_the_answer_of_the_table(name, element, count):
-    scene, problem = replace(load_scene(name), load_parameters=count), PROBLEMS[name]
-    response = answer(scene, element)
-    if count == 2:
-        response = certified(response, scene)
-        assert response.completed, response.message
+def test_two_load_parameters_have_the_answer_of_the_table(name, element):
+    scene, problem = replace(load_scene(name), load_parameters=2), PROBLEMS[name]
+    response = certified(answer(scene, element), scene)
+    assert response.completed, response.message
     assert problem.mistakes(response, problem.errors[element]) == []
     if element == "exact":
         assert problem.misplaced(response) == []
@@ -132,16 +128,10 @@ SOURCES: dict[str, Callable[[float], Mapping[str, Any]]] = {
 }
 
 
-@pytest.mark.parametrize("name", SOURCES)
-def test_closed_forms_have_the_digits_of_the_table(name):
-    for t in PROBLEMS[name].answers:
-        row = PROBLEMS[name].at(t)
-        for quantity, found in SOURCES[name](t).items():
-            assert found == pytest.approx(row[quantity], rel=6e-10, abs=1e-12), quantity
-
-
-@pytest.mark.parametrize("name", ["beam-on-springs", "hinged-truss", "straightened-arc"])
-@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize(
+    ("name", "element"),
+    [(name, element) for name in SOURCES for element in ELEMENTS if name != "roll-up" or element == "exact"],
+)
 def test_a_path_is_that_of_the_closed_form(name, element):
     response = answer(load_scene(name), element)
     for k, t in enumerate(response.load_parameter):

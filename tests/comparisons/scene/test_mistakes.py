@@ -43,7 +43,7 @@ def test_twelve_mistakes_are_twelve_lines_of_one_run(tmp_path, capsys):
 
 
 def test_the_order_is_that_of_the_file():
-    """Tables of one kind may stand apart or inline, and texts and comments may look like headers."""
+    """Tables of one kind may stand apart or inline, and texts may look like headers."""
     beam, pin, rest = re.split(r"(?=\[\[pin\]\]|\[\[contact\]\])", SCENES["strip"])
     wrong = beam.replace("height = 0.01", 'height = -1 # "[[beam]]\n# name = """[[pin]]"""')
     second = beam.partition("[[beam]]")[2].replace('"strip"', '"second"').replace("0.02", "-2")
@@ -53,7 +53,7 @@ def test_the_order_is_that_of_the_file():
         + f"[[beam]]{second.replace('0.0]', '0.9]')}"
         + rest.replace('"right"', "0")
     )
-    assert keys(text) == ["beam[0].height", "pin[0].displacement", "beam[1].width", "contact[0].side"]
+    assert keys(text) == ["beam[0].height", "beam[1].width", "pin[0].displacement", "contact[0].side"]
     assert keys("") == ["scene", "beam"]
     assert keys("pin = [{ name = 1 }]\nscene = { load_parameters = 0 }\nbeam = [{}]") == [
         *("pin[0].name", "pin[0].start", "scene.load_parameters", "scene.name"),

@@ -74,10 +74,10 @@ def test_a_new_scene_is_like_a_built_in_one():
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        (["new", "a/b"], "NAME: a/b: must consist of letters, digits"),
+        (["new", "a/b"], "NAME: a/b: must be a name of letters, digits"),
         (["new", "there"], "there.toml: is there already"),
         (["check", "there.toml"], "there.toml: "),
-        (["check", "ks-cantilever", "--out", "picture.pdf"], "picture.pdf: must end in .png or .svg"),
+        (["check", "ks-cantilever", "--out", "picture.pdf"], "picture.pdf: must end in .json, .png, .svg"),
         (["check", "ks-cantilever", "--out", "nowhere/p.png"], "nowhere"),
     ],
 )
@@ -164,8 +164,8 @@ def test_a_file_that_cannot_be_read_is_named_in_one_line(case, command, capsys):
     [
         ["solve", "{}.toml", "--model", "tsm"],
         ["view", "./{}"],
-        ["solve", "ks-cantilever", "--model", "tsm", "--vtk", "/proc/{}"],
-        ["solve", "ks-cantilever", "--model", "tsm", "--json", "/proc/{}/a.json"],
+        ["solve", "ks-cantilever", "--model", "tsm", "--out", "/proc/{}"],
+        ["solve", "ks-cantilever", "--model", "tsm", "--out", "/proc/{}/a.json"],
     ],
 )
 def test_a_name_commands_no_terminal(arguments, capsys):

@@ -33,7 +33,7 @@ def stored(scene: Scene) -> str:
     with TemporaryDirectory() as folder:
         file, answer = (Path(folder) / name for name in ("scene.toml", "answer.json"))
         file.write_text(to_toml(scene))
-        assert main(["solve", str(file), "--element", "exact", "--json", str(answer), "--quiet"]) == 0
+        assert main(["solve", str(file), "--element", "exact", "--out", str(answer), "--quiet"]) == 0
         data = json.loads(answer.read_text())
     for key in ("certificate", "index", "reported_success", "tips", "events", "material_force"):
         del data[key]

@@ -68,7 +68,7 @@ def test_control_characters_of_a_program_reach_no_terminal_and_no_file(
 ):
     monkeypatch.chdir(tmp_path)
     file = program(lines.format(repr(f"ready {CONTROLS} {'x' * 100_000}")))
-    assert main(["solve", "ks.toml", "--model", file, "--json", "a.json", "--quiet"]) == status
+    assert main(["solve", "ks.toml", "--model", file, "--out", "a.json", "--quiet"]) == status
     out, err = capfd.readouterr()
     said = out + err + (Path("a.json").read_text() if status == 3 else "")
     assert "ready" in said or "exit" in lines
@@ -138,7 +138,7 @@ GOOD = "[program]\nname = 'a'\ncommand = ['c']\n"
         ("", "program = (missing): must be given"),
         (GOOD.replace("'a'", "'rod'"), "must not be the name of a model"),
         (GOOD.replace("['c']", "'c'"), 'program.command = "c": must be a list'),
-        (GOOD + "seconds = 0", "program.seconds = 0: must be positive"),
+        (GOOD + "seconds = 0", "program.seconds = 0: must be a positive number"),
         (GOOD + "colour = 'red'", "must be a colour, as #AA3377"),
         ("[program", "must be valid TOML"),
     ],
@@ -168,7 +168,7 @@ def test_solve_and_gate_have_it(program, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     program()
     bounds = ["--max-error", "force=1e-9"]
-    assert main(["solve", "ks.toml", "--model", "liar.toml", "--json", "a.json", "--vtk", "vtk"]) == 0
+    assert main(["solve", "ks.toml", "--model", "liar.toml", "--out", "a.json", "--out", "vtk"]) == 0
     assert main(["compare", "ks.toml", "--model", "liar.toml", *bounds]) == 0
     assert main(["compare", "ks.toml", "--elements", "20", "--against", "liar.toml", *bounds]) == 1
     assert "tsm mixed 20 against liar" in capsys.readouterr().out
@@ -176,7 +176,7 @@ def test_solve_and_gate_have_it(program, tmp_path, capsys, monkeypatch):
     assert (data["model"], data["status"], data["reported_success"]) == ("liar", "COMPLETED", True)
     assert (tmp_path / "vtk" / "liar-0005.vtm").is_file()
     program("support['moment'] = [2 * m for m in support['moment']]")
-    assert main(["solve", "ks.toml", "--model", "liar.toml", "--json", "a.json"]) == 3
+    assert main(["solve", "ks.toml", "--model", "liar.toml", "--out", "a.json"]) == 3
     data = json.loads((tmp_path / "a.json").read_text())
     assert (data["status"], data["reported_success"]) == ("NOT_AN_EQUILIBRIUM", True)
     assert main(["certify", "a.json", "--scene", "ks.toml"]) == 1
