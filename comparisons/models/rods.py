@@ -65,7 +65,7 @@ def solve_rods(scene: Scene, watch: Watch) -> Response:
         tips={beam: rows([state.ends[end] for state in states], 2) for beam, end in ends.items()},
         newton_iterations=np.array([state.iterations for state in states], dtype=np.int64),
         cutbacks=0,
-        unknowns=max((len(state.solution.z) for state in states), default=0),
+        unknowns=max((len(state.z) for state in states), default=0),
         axis_line=axis_line,
         grid=lambda k: axis_grid(scene, axis_line, k),
         events=None,

@@ -4,8 +4,8 @@ from comparisons.referee.certificate import Certificate, Judgement, Verdict
 from comparisons.referee.certify import certify, default_allowance
 from comparisons.referee.distance import Distance
 from comparisons.referee.guess import AnswerState, answer_state
-from comparisons.referee.newton import SearchStatus
-from comparisons.referee.state import Contact, Equilibrium, Shape, equilibrium
+from comparisons.referee.newton import equilibrium
+from comparisons.referee.state import Contact, Equilibrium, SearchStatus, Shape
 
 __all__ = [
     "AnswerState",

@@ -33,10 +33,6 @@ class Judgement:
         Reason of the verdict in one line.
     distance : Distance or None
         Differences from the exact equilibrium; None without one.
-    index : int
-        Index of the exact equilibrium; -1 without one, and with friction, which has no potential.
-    residual : float
-        Estimated relative error of the exact equilibrium itself.
     exact : Equilibrium or None
         The exact equilibrium.
     """
@@ -45,9 +41,17 @@ class Judgement:
     verdict: Verdict
     reason: str
     distance: Distance | None = None
-    index: int = -1
-    residual: float = math.nan
     exact: Equilibrium | None = field(default=None, repr=False)
+
+    @property
+    def index(self) -> int:
+        """Index of the exact equilibrium; -1 without one, and with friction, which has no potential."""
+        return -1 if self.exact is None else self.exact.index
+
+    @property
+    def residual(self) -> float:
+        """Estimated relative error of the exact equilibrium itself."""
+        return math.nan if self.exact is None else self.exact.error
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -110,7 +114,7 @@ def _as_dict(item: Judgement) -> dict[str, Any]:
         "index": item.index,
         "residual": item.residual,
     }
-    if exact is not None and exact.solution.found:
+    if exact is not None:
         values["exact"] = {
             "contacts": {
                 pair: {"force": list(map(float, here.force)), "arc_position": here.arc_position}

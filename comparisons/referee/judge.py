@@ -12,10 +12,10 @@ from comparisons.referee.certificate import Judgement, Verdict
 from comparisons.referee.distance import Distance, Scales, distance
 from comparisons.referee.grip import UnknownFrictionError
 from comparisons.referee.guess import answer_state, idle_at_an_end, pull_allowed
-from comparisons.referee.newton import SearchStatus
+from comparisons.referee.newton import equilibrium
 from comparisons.referee.path import reach
 from comparisons.referee.rod import angle, cross, face_of
-from comparisons.referee.state import Equilibrium, equilibrium
+from comparisons.referee.state import Equilibrium, SearchStatus
 from comparisons.response import ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
 
@@ -67,8 +67,8 @@ def judged(
             return Judgement(load_parameter=t, verdict=verdict, reason=str(error))
     if before is not None and not answer.grips and before.contacts.keys() == answer.arcs.keys():
         # it is the nearest one if it is close, though it was not sought from the answer
-        found = reach(before.solution, t, {}, halvings=0)
-        item = compared(response, k, Equilibrium(found), allowed, history) if found.found else None
+        found = reach(before, t, {}, halvings=0)
+        item = compared(response, k, found, allowed, history) if found.found else None
         if (
             item
             and item.distance
@@ -76,7 +76,7 @@ def judged(
         ):
             return item
     exact = equilibrium(scene, answer)
-    if not exact.solution.found:
+    if not exact.found:
         not_judged = exact.status in (SearchStatus.NOT_JUDGED, SearchStatus.NOT_RESOLVED)
         verdict = Verdict.NOT_JUDGED if not_judged else Verdict.NOT_AN_EQUILIBRIUM
         return Judgement(load_parameter=t, verdict=verdict, reason=exact.message)
@@ -101,9 +101,8 @@ def compared(
         violation = next(rubs_wrongly(history, k, exact, allowed), "")
         verdict, reason = (Verdict.INADMISSIBLE, violation) if violation else (verdict, reason)
     return Judgement(
-        load_parameter=exact.load_parameter, verdict=verdict, reason=reason, distance=differences, index=exact.index,
-        residual=exact.error, exact=exact,
-    )  # fmt: skip
+        load_parameter=exact.load_parameter, verdict=verdict, reason=reason, distance=differences, exact=exact
+    )
 
 
 def _verdict(stated: int, exact: Equilibrium, differences: Distance, allowed: float) -> tuple[Verdict, str]:
@@ -190,10 +189,7 @@ def _rooms(exact: Equilibrium, spec: ContactSpec) -> Iterator[tuple[str, float]]
     beam, radius = scene.beam(spec.beam), scene.radius(spec)
     for end, arc, out in (("start", 0.0, -1.0), ("end", beam.length, 1.0)):
         half = beam.height_at(arc / beam.length) / 2.0 if spec.surface == "face" else 0.0
-        if any(
-            f"{spec.beam}.{end}" in item.joint and len(item.joint) > 1
-            for item in exact.solution.layout.stations
-        ):
+        if any(f"{spec.beam}.{end}" in item.joint and len(item.joint) > 1 for item in exact.layout.stations):
             continue
         there = exact.shape(spec.beam, np.array([arc]))
         away, tangent = node - there.position[0], out * there.tangent[0] / np.hypot(*there.tangent[0])

@@ -1,22 +1,19 @@
 """The search for the exact equilibrium of a scene's rods near an answer, by Newton's method on elements that are halved."""
 
-from dataclasses import dataclass, replace
-from enum import Enum
-from functools import cached_property
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.elements import AMPLITUDE, DEGREE, GAUSS, VALUES, Mesh, mesh_of, rotations, shapes
-from comparisons.referee.equations import System, assemble, index_of, solved
+from comparisons.referee.elements import AMPLITUDE, DEGREE, GAUSS, VALUES, Mesh, mesh_of
+from comparisons.referee.equations import solved
 from comparisons.referee.guess import SHORTEST, AnswerState, first_guess
 from comparisons.referee.layout import Layout, lay_out
+from comparisons.referee.state import Change, Equilibrium, SearchStatus, rotation_at, tails
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Change = tuple[Array, Array]
-"""Of the unknowns and the bubbles."""
 
 _RESOLVED = 3e-14
 """Largest amplitude of the last two bubbles of a resolved element [rad]."""
@@ -43,80 +40,30 @@ _INSIDE = 1.0 - 1e-9
 _PLACES = np.append((GAUSS + 1.0) / 2.0, [0.0, 1.0])
 
 
-class SearchStatus(Enum):
-    """Outcome of the search for an equilibrium; the value is the message for the user."""
+def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
+    """Return the exact equilibrium of `scene` near an answer.
 
-    FOUND = "the exact equilibrium was found"
-    NO_EQUILIBRIUM = "no equilibrium was found near the answer"
-    NOT_RESOLVED = "the deflection has layers that are not resolved"
-    NOT_JUDGED = "the scene or the arrangement of its contacts is beyond double precision"
+    The force in a rod between ends, joints and contacts is constant but for the load along the rod. The rotation is a polynomial of
+    degree 16 on elements that are halved until its last terms are round-off. Newton's method with the exact Hessian starts from the
+    answer.
 
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Solution:
-    """Result of Newton's method in the units of `layout`, or a guess."""
-
-    layout: Layout
-    mesh: Mesh
-    z: Array
-    bubbles: Array
-    """Coefficients (e, p - 1) of the bubbles."""
-    status: SearchStatus = SearchStatus.NO_EQUILIBRIUM
-    reason: str = ""
-    """Reason of a search without success."""
-    iterations: int = 0
-    correction: float = np.inf
-    """Last correction of the unknowns."""
-
-    @property
-    def found(self) -> bool:
-        """Whether it is an equilibrium."""
-        return self.status is SearchStatus.FOUND
-
-    @property
-    def t(self) -> float:
-        """The load parameter."""
-        return self.layout.load_parameter
-
-    @cached_property
-    def closed(self) -> dict[str, float]:
-        """Arc positions of the closed contacts in the units of the scene, by pair."""
-        return {item.spec.pair: float(self.z[item.arc]) * self.layout.length for item in self.layout.touches}
-
-    @cached_property
-    def system(self) -> System:
-        """The equations."""
-        return assemble(self.layout, self.mesh, self.z, self.bubbles)
-
-    @cached_property
-    def index(self) -> int:
-        """The index."""
-        return index_of(self.layout, self.z, self.system)
-
-    def plus(self, change: Change, part: float = 1.0) -> "Solution":
-        """Return the guess with a part of a change."""
-        return replace(self, z=self.z + part * change[0], bubbles=self.bubbles + part * change[1])
-
-
-def rotation_at(solution: Solution, part: Ints, x: Array) -> Array:
-    """Return the rotations at fractions x (...) of the parts `part` (...)."""
-    mesh, inside = solution.mesh, np.minimum(x, _INSIDE)
-    e = np.searchsorted(mesh.part + mesh.start, part + inside, side="right") - 1
-    values = shapes(2.0 * (x - mesh.start[e]) / mesh.share[e] - 1.0)[0]
-    return np.asarray(
-        (values * rotations(solution.layout, mesh, solution.z, solution.bubbles)[e]).sum(axis=-1)
-    )
-
-
-def solve(scene: Scene, answer: AnswerState) -> Solution:
-    """Return the equilibrium near an answer, on a mesh that resolves it."""
+    Examples
+    --------
+    >>> from comparisons.models import solve
+    >>> from comparisons.referee import equilibrium, answer_state
+    >>> from comparisons.scene import load_scene
+    >>> scene = load_scene("ks-cantilever")
+    >>> exact = equilibrium(scene, answer_state(solve(scene, "tsm"), scene, -1))
+    >>> f"{exact.contacts['pin->cantilever'].push:.12e}", exact.index
+    ('2.288274307175e-03', 0)
+    """
     layout = lay_out(scene, answer.load_parameter, answer.arcs, answer.grips)
     z, turns = first_guess(layout, answer)
     reason = _reason_not_to_judge(layout, z)
     if reason:
         mesh, status = mesh_of(layout, [np.array([0.0, 1.0])] * len(layout.parts)), SearchStatus.NOT_JUDGED
-        return Solution(
-            layout=layout, mesh=mesh, z=z, bubbles=np.zeros((0, DEGREE - 1)), status=status, reason=reason
+        return Equilibrium(
+            layout=layout, mesh=mesh, z=z, bubbles=np.zeros((0, DEGREE - 1)), status=status, message=reason
         )
     mesh = mesh_of(layout, _first_grids(layout, z))
     places = _places(mesh)
@@ -136,16 +83,16 @@ def solve(scene: Scene, answer: AnswerState) -> Solution:
     return best
 
 
-def _is_near(z: Array, solution: Solution) -> bool:
+def _is_near(z: Array, found: Equilibrium) -> bool:
     """Whether an equilibrium was found with nearly the forces and arc positions of the answer."""
-    arcs, forces = solution.layout.arcs, solution.layout.forces
+    arcs, forces = found.layout.arcs, found.layout.forces
     size = float(np.abs(z[forces]).max(initial=0.0))
-    apart = np.abs(solution.z[: len(z)] - z)
+    apart = np.abs(found.z[: len(z)] - z)
     close = apart[forces].max(initial=0.0) <= _NEAR * size and apart[arcs].max(initial=0.0) <= _NEAR
-    return solution.found and bool(close)
+    return found.found and bool(close)
 
 
-def correct(guess: Solution, iterations: int) -> Solution:
+def correct(guess: Equilibrium, iterations: int) -> Equilibrium:
     """Return the equilibrium near a guess, by some iterations on each mesh; elements that do not resolve the rotation are halved."""
     spent, layout = 0, guess.layout
     for _ in range(_ROUNDS):
@@ -160,10 +107,11 @@ def correct(guess: Solution, iterations: int) -> Solution:
         finer = mesh_of(layout, grids)
         seen = rotation_at(found, finer.part[:, None], _places(finer))
         guess = _fitted(layout, finer, found.z[: layout.unknowns], seen, _FIT)
-    return replace(found, status=SearchStatus.NOT_RESOLVED, iterations=spent)
+    status = SearchStatus.NOT_RESOLVED
+    return replace(found, status=status, message=status.value, iterations=spent)
 
 
-def _rotations_corrected(guess: Solution, held: Ints) -> Solution:
+def _rotations_corrected(guess: Equilibrium, held: Ints) -> Equilibrium:
     """Correct the rotations while the unknowns `held` keep the values of the answer."""
     # the first correction of inaccurate rotations could move a contact beyond an end, or lead to another equilibrium near GA EA/(EA - GA)
     for _ in range(_HOLDING):
@@ -209,30 +157,30 @@ def _places(mesh: Mesh) -> Array:
     return np.asarray(mesh.start[:, None] + mesh.share[:, None] * _PLACES)
 
 
-def _fitted(layout: Layout, mesh: Mesh, z: Array, rotation: Array, fit: Array) -> Solution:
+def _fitted(layout: Layout, mesh: Mesh, z: Array, rotation: Array, fit: Array) -> Equilibrium:
     """Return the guess with rotations at `_places`; z are the unknowns without the rotations inside the parts."""
     whole, at = np.append(z, np.zeros(mesh.unknowns - len(z))), mesh.local[:, 0]
     whole[at[at >= len(z)]] = rotation[at >= len(z), -2]
     bubbles: Array = (rotation[:, :-2] - rotation[:, -2:] @ VALUES[:, :2].T) @ fit.T
-    return Solution(layout=layout, mesh=mesh, z=whole, bubbles=bubbles)
+    return Equilibrium(layout=layout, mesh=mesh, z=whole, bubbles=bubbles)
 
 
-def _newton(now: Solution, iterations: int) -> Solution:
+def _newton(now: Equilibrium, iterations: int) -> Equilibrium:
     """Iterate until the corrections are round-off."""
     layout, last, error = now.layout, np.inf, np.inf
     most = [part.rod.greatest for part in layout.parts]
     least = _LAST_PLACES / (_ROUND_OFF * min(min(stretch, shear or np.inf) for _, stretch, shear in most))
     turning = np.ones(now.mesh.unknowns, bool)
     turning[layout.forces] = turning[layout.moving] = False
-    status, reason = SearchStatus.NO_EQUILIBRIUM, SearchStatus.NO_EQUILIBRIUM.value
+    status, message = SearchStatus.NO_EQUILIBRIUM, SearchStatus.NO_EQUILIBRIUM.value
     for iteration in range(1, iterations + 1):  # noqa: B007, the number of the last one is told
         error = np.inf
         if np.diff(layout.extents(now.z)).min() <= 0.0:
-            reason = _AT_ONE_PLACE
+            message = _AT_ONE_PLACE
             break
         step = newton_step(now)
         if step is None:
-            reason = "the equations are singular"
+            message = "the equations are singular"
             break
         change, inside = step
         turn = max(float(np.abs(change[turning]).max(initial=0.0)), float((np.abs(inside) * AMPLITUDE).max()))
@@ -245,13 +193,13 @@ def _newton(now: Solution, iterations: int) -> Solution:
         if not np.isfinite(size):
             break
         if part == 1.0 and (size < 1e-15 or (size < _ROUND_OFF and size >= 0.25 * last)):
-            status, reason = SearchStatus.FOUND, ""
+            status, message = SearchStatus.FOUND, SearchStatus.FOUND.value
             break
         last = size if part == 1.0 else np.inf
-    return replace(now, status=status, reason=reason, iterations=iteration, correction=error)
+    return replace(now, status=status, message=message, iterations=iteration, correction=error)
 
 
-def newton_step(guess: Solution, held: Ints | None = None) -> Change | None:
+def newton_step(guess: Equilibrium, held: Ints | None = None) -> Change | None:
     """Newton correction with the unknowns `held` fixed; None if singular."""
     system = guess.system
     change = solved(system, held)
@@ -266,11 +214,6 @@ def _damping(layout: Layout, z: Array, change: Array) -> float:
     before = np.diff(layout.extents(z))
     less = before - np.diff(layout.extents(z + change))
     return float(np.min(2.0 / 3.0 * before / np.maximum(less, 2.0 / 3.0 * before)))
-
-
-def tails(bubbles: Array) -> Array:
-    """Largest amplitude of the last two bubbles of every element."""
-    return np.asarray((np.abs(bubbles) * AMPLITUDE)[:, -2:].max(axis=1))
 
 
 def _refined(mesh: Mesh, coarse: NDArray[np.bool_]) -> list[Array]:

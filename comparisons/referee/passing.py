@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from comparisons.referee.distance import gap_off, largest_force
 from comparisons.referee.guess import answer_state
-from comparisons.referee.newton import solve
+from comparisons.referee.newton import equilibrium
 from comparisons.referee.path import PASSES, at_rest, changes_of, events_between, on_the_way, reach
 from comparisons.referee.rod import Face, axis_at_rest, cross, face_of
 from comparisons.referee.state import Equilibrium
@@ -112,13 +112,13 @@ class _Pair:
         now = (
             at_rest(self.scene)
             if k == 0
-            else solve(self.scene, answer_state(self.response, self.scene, k - 1))
+            else equilibrium(self.scene, answer_state(self.response, self.scene, k - 1))
         )
         if not now.found:
             return []
         way, beam = [begin], self.spec.beam
         stops = np.linspace(begin.t, end.t, _STEPS + 1)[1:].tolist()
-        for exact in map(Equilibrium, on_the_way(now, events_between(self.response, begin.t, end.t), stops)):
+        for exact in on_the_way(now, events_between(self.response, begin.t, end.t), stops):
             line = exact.shape(beam, self.response.axis_line(beam, k)[0]).position
             way.append(_Moment(exact.load_parameter, line, exact.place(self.spec.node)))
         apart = np.hypot(*(way[-1].line - end.line).T).max()
@@ -248,8 +248,8 @@ def _disorder(response: Response, spec: ContactSpec) -> Iterator[str]:
 
 def _at(near: Equilibrium | None, t: float) -> Equilibrium | None:
     """Return the equilibrium with the same contacts at an event beside a load parameter; None if there is none."""
-    found = None if near is None else reach(near.solution, t, near.solution.layout.grips, halvings=2)
-    return Equilibrium(found) if found and found.found else None
+    found = None if near is None else reach(near, t, near.layout.grips, halvings=2)
+    return found if found and found.found else None
 
 
 def _wrong(spec: ContactSpec, event: ContactEvent, there: Equilibrium, allowed: float) -> str:

@@ -12,8 +12,8 @@ from comparisons.referee.equations import orientation_of
 from comparisons.referee.grip import Grip
 from comparisons.referee.guess import AnswerState
 from comparisons.referee.layout import lay_out
-from comparisons.referee.newton import Change, Solution, correct, newton_step, rotation_at, solve
-from comparisons.referee.state import Equilibrium
+from comparisons.referee.newton import correct, equilibrium, newton_step
+from comparisons.referee.state import Change, Equilibrium, rotation_at
 from comparisons.response import ContactEvent, Response
 from comparisons.scene import Scene
 
@@ -63,29 +63,29 @@ def corners(scene: Scene) -> tuple[float, ...]:
     return tuple(sorted(turns | {float(k + 1) for k in range(len(scene.stages))}))
 
 
-def moved(now: Solution, t: float, grips: Mapping[str, Grip]) -> Solution:
+def moved(now: Equilibrium, t: float, grips: Mapping[str, Grip]) -> Equilibrium:
     """Return the guess at load parameter t with the contacts of an equilibrium and its unknowns."""
     layout = lay_out(now.layout.scene, t, now.closed, grips)
-    return Solution(layout=layout, mesh=mesh_for(layout, now.mesh), z=now.z, bubbles=now.bubbles)
+    return Equilibrium(layout=layout, mesh=mesh_for(layout, now.mesh), z=now.z, bubbles=now.bubbles)
 
 
-def reach(near: Solution, t: float, grips: Mapping[str, Grip], halvings: int = _HALVINGS) -> Solution:
+def reach(near: Equilibrium, t: float, grips: Mapping[str, Grip], halvings: int = _HALVINGS) -> Equilibrium:
     """Return the equilibrium at load parameter t with the same contacts, held by `grips`, by steps from `near`."""
     there = correct(moved(near, t, grips), _ITERATIONS)
     turning = [k for k in (item.numbers[2] for item in there.layout.stations) if k >= 0]
     turned = float(np.abs(there.z[turning] - near.z[turning]).max(initial=0.0))
-    if (there.found and turned < _TURN) or not halvings or near.t == t:
+    if (there.found and turned < _TURN) or not halvings or near.load_parameter == t:
         return there
-    middle = reach(near, (near.t + t) / 2.0, grips, halvings - 1)
+    middle = reach(near, (near.load_parameter + t) / 2.0, grips, halvings - 1)
     return reach(middle, t, grips, halvings - 1) if middle.found else middle
 
 
-def tangent(now: Solution, little: float) -> Change:
+def tangent(now: Equilibrium, little: float) -> Change:
     """Rates of the unknowns and bubbles per load parameter, by a difference over `little`."""
     nothing = np.zeros_like(now.z), np.zeros_like(now.bubbles)
     if little == 0.0:
         return nothing
-    ahead = newton_step(moved(now, now.t + little, now.layout.grips)) or nothing
+    ahead = newton_step(moved(now, now.load_parameter + little, now.layout.grips)) or nothing
     # in a stage that changes nothing the difference is round-off alone, which the correction here has too
     here = (newton_step(now) or nothing) if now.layout.scene.stages else nothing
     return (ahead[0] - here[0]) / little, (ahead[1] - here[1]) / little
@@ -99,15 +99,15 @@ def departures(response: Response, states: Mapping[int, Equilibrium]) -> Iterato
         for k in range(len(response.load_parameter))
     ]
     now, begin = None, -1
-    for k, exact in states.items():
-        there, now = exact.solution, now or at_rest(exact.scene)
+    for k, there in states.items():
+        now = now or at_rest(there.scene)
         if now.found:
-            events = events_between(response, now.t, there.t)
+            events = events_between(response, now.load_parameter, there.load_parameter)
             same = all(closed[i] == now.closed.keys() for i in range(max(begin, 0), k + 1))
             ways = [now] if same and not events else on_the_way(now, events)
             for way in (item for item in ways[-1:] if _alike(item, there)):
                 # beyond an event that is stated within an allowance only, a path that is not found tells nothing
-                if way is now or not _followed(way, there.t, there)[1]:
+                if way is now or not _followed(way, there.load_parameter, there)[1]:
                     yield from filter(None, [departs(way, there)])
         now, begin = there, k
 
@@ -117,11 +117,13 @@ def events_between(response: Response, after: float, until: float) -> list[Conta
     return [event for event in changes_of(response) if after <= event.load_parameter <= until]
 
 
-def on_the_way(now: Solution, events: Sequence[ContactEvent], stops: Sequence[float] = ()) -> list[Solution]:
+def on_the_way(
+    now: Equilibrium, events: Sequence[ContactEvent], stops: Sequence[float] = ()
+) -> list[Equilibrium]:
     """Follow the path through events to the equilibria at stops and behind the events; none where contacts rub or jump, or none leads on."""
     if now.layout.grips or any(event.kind not in _SWITCHED for event in events):
         return []
-    found: list[Solution] = []
+    found: list[Equilibrium] = []
     marks = [(t, None) for t in stops] + [(event.load_parameter, event) for event in events]
     for t, event in sorted(marks, key=lambda mark: mark[0]):
         now, stopped = _followed(now, t)
@@ -133,24 +135,24 @@ def on_the_way(now: Solution, events: Sequence[ContactEvent], stops: Sequence[fl
     return found
 
 
-def _switched(now: Solution, event: ContactEvent) -> Solution:
+def _switched(now: Equilibrium, event: ContactEvent) -> Equilibrium:
     """Return the equilibrium with the contact of an event closed or open."""
-    exact, arcs = Equilibrium(now), {**now.closed}
+    arcs = {**now.closed}
     arcs.pop(event.pair, None)
     if event.kind == "touch":
         arcs[event.pair] = event.arc_position
-    lines = {beam.name: np.linspace(0.0, beam.length, _POINTS) for beam in exact.scene.beams}
+    lines = {beam.name: np.linspace(0.0, beam.length, _POINTS) for beam in now.scene.beams}
     answer = AnswerState(
-        load_parameter=now.t,
+        load_parameter=now.load_parameter,
         arcs=arcs,
-        forces={pair: exact.contacts[pair].force if pair in exact.contacts else np.zeros(2) for pair in arcs},
-        axes={name: (arc, exact.shape(name, arc).position) for name, arc in lines.items()},
-        reactions=exact.reactions,
+        forces={pair: now.contacts[pair].force if pair in now.contacts else np.zeros(2) for pair in arcs},
+        axes={name: (arc, now.shape(name, arc).position) for name, arc in lines.items()},
+        reactions=now.reactions,
     )
-    return solve(exact.scene, answer)
+    return equilibrium(now.scene, answer)
 
 
-def _alike(one: Solution, other: Solution) -> bool:
+def _alike(one: Equilibrium, other: Equilibrium) -> bool:
     """Whether two equilibria have the same contacts in the same order along the beams, which slip in the same direction or stick."""
     slips = [{pair: grip.slip for pair, grip in item.layout.grips.items()} for item in (one, other)]
     orders = [[(part.beam, part.first, part.last) for part in item.layout.parts] for item in (one, other)]
@@ -162,41 +164,52 @@ def _alike(one: Solution, other: Solution) -> bool:
     )
 
 
-def at_rest(scene: Scene) -> Solution:
+def at_rest(scene: Scene) -> Equilibrium:
     """Return the undeformed state of a scene with all contacts open."""
     layout = lay_out(scene, 0.0, {})
     mesh = mesh_of(layout, [np.linspace(0.0, 1.0, 4) for _ in layout.parts])
     bubbles = np.zeros((len(mesh.part), DEGREE - 1))
-    return correct(Solution(layout=layout, mesh=mesh, z=np.zeros(mesh.unknowns), bubbles=bubbles), 6)
+    return correct(Equilibrium(layout=layout, mesh=mesh, z=np.zeros(mesh.unknowns), bubbles=bubbles), 6)
 
 
-def departs(first: Solution, last: Solution) -> str:
+def departs(first: Equilibrium, last: Equilibrium) -> str:
     """Return the reason why the path from `first` does not lead to `last` with the same contacts; empty if it does."""
-    there, stopped = _followed(first, last.t, last)
+    there, stopped = _followed(first, last.load_parameter, last)
     if not stopped:
         off = _apart(there, last)
         if off < _SAME:
             return ""
-        return f"the path from load parameter {first.t:.6g} ends on another branch at {last.t:.6g}, {off:.2g} L away"
+        return f"the path from load parameter {first.load_parameter:.6g} ends on another branch at {last.load_parameter:.6g}, {off:.2g} L away"
     # where it ends at a bifurcation, all stable branches that lead back to it are right
-    back, stopped = _followed(last, first.t)
-    if stopped and abs(back.t - there.t) < _MEET * (last.t - first.t) and _apart(there, back) < _MEETING:
+    back, stopped = _followed(last, first.load_parameter)
+    if (
+        stopped
+        and abs(back.load_parameter - there.load_parameter)
+        < _MEET * (last.load_parameter - first.load_parameter)
+        and _apart(there, back) < _MEETING
+    ):
         return ""
     kind = "" if first.index < 0 else f" of index {first.index}"
-    return f"no continuous path{kind} leads on beyond load parameter {there.t:.6g}"
+    return f"no continuous path{kind} leads on beyond load parameter {there.load_parameter:.6g}"
 
 
-def _followed(first: Solution, end: float, last: Solution | None = None) -> tuple[Solution, bool]:
+def _followed(first: Equilibrium, end: float, last: Equilibrium | None = None) -> tuple[Equilibrium, bool]:
     """Follow the path to a load parameter, and to the equilibrium `last` there if it is on the path; say if it stopped.
 
     A step is accepted if the tangents at both its ends explain it, and the index, or with friction the sign of the determinant, is unchanged.
     """
-    index, ways, sign = _kind(first), abs(end - first.t), 1.0 if end > first.t else -1.0
+    index, ways, sign = (
+        _kind(first),
+        abs(end - first.load_parameter),
+        1.0 if end > first.load_parameter else -1.0,
+    )
     stops = sorted(
-        sign * t for t in {*corners(first.layout.scene), end} if 0.0 < sign * (t - first.t) <= ways
+        sign * t
+        for t in {*corners(first.layout.scene), end}
+        if 0.0 < sign * (t - first.load_parameter) <= ways
     )
     now, step, rate = first, ways, None
-    while (here := now.t) != end:
+    while (here := now.load_parameter) != end:
         stop = sign * next(t for t in stops if t > sign * here)
         left = abs(stop - here)
         rate = rate or tangent(now, sign * _LITTLE * left)
@@ -212,41 +225,43 @@ def _followed(first: Solution, end: float, last: Solution | None = None) -> tupl
         step = min(step, abs(t - here)) * float(np.clip(_AIM / max(off, 1e-300), 0.25, 3.0))
         if off < _NEAR:
             now, rate = there, None if t == stop else behind
-        elif step < _SMALLEST * max(abs(here - first.t), _SMALLEST * ways):
+        elif step < _SMALLEST * max(abs(here - first.load_parameter), _SMALLEST * ways):
             return now, True
     return now, False
 
 
-def _unexplained(now: Solution, rate: Change, there: Solution, index: int) -> tuple[float, Change | None]:
+def _unexplained(
+    now: Equilibrium, rate: Change, there: Equilibrium, index: int
+) -> tuple[float, Change | None]:
     """Largest part of a step that the tangents at its ends do not explain, and the tangent at its end; infinite off the branch."""
     if not there.found or _kind(there) != index:
         return np.inf, None
     off = _off(now, rate, there)
     if off >= _NEAR:
         return off, None
-    behind = tangent(there, _LITTLE * (now.t - there.t))
+    behind = tangent(there, _LITTLE * (now.load_parameter - there.load_parameter))
     return max(off, _off(there, behind, now)), behind
 
 
-def _kind(solution: Solution) -> int:
+def _kind(now: Equilibrium) -> int:
     """What changes at a critical point: the index, or the sign of the determinant where there is none."""
-    return orientation_of(solution.system) if solution.layout.grips else solution.index
+    return orientation_of(now.system) if now.layout.grips else now.index
 
 
-def _off(now: Solution, rate: Change, there: Solution) -> float:
+def _off(now: Equilibrium, rate: Change, there: Equilibrium) -> float:
     """Error of a prediction along a tangent over the change from one state to another; infinite for a large error."""
     guess = replace(now, layout=there.layout, mesh=mesh_for(there.layout, now.mesh))
-    off = _apart(guess.plus(rate, there.t - now.t), there)
+    off = _apart(guess.plus(rate, there.load_parameter - now.load_parameter), there)
     return off / (_apart(now, there) + _ROUND_OFF) if off < _SHORT else np.inf
 
 
-def _apart(one: Solution, other: Solution) -> float:
+def _apart(one: Equilibrium, other: Equilibrium) -> float:
     return float(np.abs(_state(one) - _state(other)).max())
 
 
 @lru_cache(maxsize=3)
-def _state(solution: Solution) -> Array:
+def _state(now: Equilibrium) -> Array:
     """Displacements, arc positions and directions of the stations, and the rotations along all parts."""
-    layout = solution.layout
-    rest = np.delete(solution.z[: layout.unknowns], layout.forces)
-    return np.append(rest, rotation_at(solution, np.arange(len(layout.parts))[:, None], _PLACES))
+    layout = now.layout
+    rest = np.delete(now.z[: layout.unknowns], layout.forces)
+    return np.append(rest, rotation_at(now, np.arange(len(layout.parts))[:, None], _PLACES))

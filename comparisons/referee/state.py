@@ -1,18 +1,34 @@
 """The exact equilibrium in the units of the scene: contacts, reactions, ends, and shapes of the beams."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from enum import Enum
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.elements import GAUSS, VALUES, WEIGHTS, fields, places, rotations, shapes, up_to
-from comparisons.referee.guess import AnswerState
-from comparisons.referee.layout import NONE, Touch
-from comparisons.referee.newton import SearchStatus, Solution, solve, tails
+from comparisons.referee.elements import (
+    AMPLITUDE,
+    GAUSS,
+    VALUES,
+    WEIGHTS,
+    Mesh,
+    fields,
+    places,
+    rotations,
+    shapes,
+    up_to,
+)
+from comparisons.referee.equations import System, assemble, index_of
+from comparisons.referee.layout import NONE, Layout, Touch
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Change = tuple[Array, Array]
+"""Of the unknowns and the bubbles."""
+_INSIDE = 1.0 - 1e-9
+"""Fraction of a part up to which points lie before its end."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -57,65 +73,89 @@ class Shape:
     Q: Array
 
 
-@dataclass(frozen=True, eq=False)
-class Equilibrium:
-    """The exact equilibrium near an answer, or the reason why there is none.
+class SearchStatus(Enum):
+    """Outcome of the search for an equilibrium; the value is the message for the user."""
 
-    All but `status`, `message` and `load_parameter` is valid for `SearchStatus.FOUND` only.
+    FOUND = "the exact equilibrium was found"
+    NO_EQUILIBRIUM = "no equilibrium was found near the answer"
+    NOT_RESOLVED = "the deflection has layers that are not resolved"
+    NOT_JUDGED = "the scene or the arrangement of its contacts is beyond double precision"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Equilibrium:
+    """The exact equilibrium near an answer, or a guess of it, by the unknowns of a layout.
 
     Attributes
     ----------
-    solution : Solution
-        The solution in the units of `Layout`.
+    status : SearchStatus
+        Outcome of the search; what follows from the unknowns is valid for `SearchStatus.FOUND` only.
+    message : str
+        The status as a sentence.
+    iterations : int
+        Number of Newton iterations.
     """
 
-    solution: Solution = field(repr=False)
+    layout: Layout = field(repr=False)
+    mesh: Mesh = field(repr=False)
+    z: Array = field(repr=False)
+    bubbles: Array = field(repr=False)
+    """Coefficients (e, p - 1) of the bubbles."""
+    status: SearchStatus = SearchStatus.NO_EQUILIBRIUM
+    message: str = ""
+    iterations: int = 0
+    correction: float = np.inf
+    """Last correction of the unknowns."""
+
+    def plus(self, change: Change, part: float = 1.0) -> "Equilibrium":
+        """Return the guess with a part of a change."""
+        return replace(self, z=self.z + part * change[0], bubbles=self.bubbles + part * change[1])
 
     @property
-    def status(self) -> SearchStatus:
-        """Outcome of the search."""
-        return self.solution.status
-
-    @property
-    def message(self) -> str:
-        """The status as a sentence."""
-        return self.solution.reason or self.status.value
+    def found(self) -> bool:
+        """Whether it is an equilibrium."""
+        return self.status is SearchStatus.FOUND
 
     @property
     def scene(self) -> Scene:
         """The scene."""
-        return self.solution.layout.scene
+        return self.layout.scene
 
     @property
     def load_parameter(self) -> float:
-        """Load parameter of the answer."""
-        return self.solution.t
+        """The load parameter."""
+        return self.layout.load_parameter
 
-    @property
-    def iterations(self) -> int:
-        """Number of Newton iterations."""
-        return self.solution.iterations
+    @cached_property
+    def closed(self) -> dict[str, float]:
+        """Arc positions of the closed contacts, by pair."""
+        return {item.spec.pair: float(self.z[item.arc]) * self.layout.length for item in self.layout.touches}
+
+    @cached_property
+    def system(self) -> System:
+        """The equations in the units of the layout."""
+        return assemble(self.layout, self.mesh, self.z, self.bubbles)
 
     @cached_property
     def contacts(self) -> dict[str, Contact]:
         """Closed contacts, by pair."""
-        return {touch.spec.pair: touching(self.solution, touch) for touch in self.solution.layout.touches}
+        return {touch.spec.pair: _contact(self, touch) for touch in self.layout.touches}
 
     @cached_property
     def reactions(self) -> dict[str, Array]:
         """Force and moment (3,) of every support, by the supported end; zero in free components."""
-        layout, held = self.solution.layout, self.solution.system.held
-        unit, found = layout.force * np.array([1.0, 1.0, layout.length]), dict[str, Array]()
+        layout, found = self.layout, dict[str, Array]()
+        unit = layout.force * np.array([1.0, 1.0, layout.length])
         for support in self.scene.all_supports:
             numbers = layout.stations[layout.joint(support.node)].numbers
             given = [value is not None for value in support.motion]
-            found[support.node] = np.where(given, unit * held[np.minimum(numbers, NONE)], 0.0)
+            found[support.node] = np.where(given, unit * self.system.held[np.minimum(numbers, NONE)], 0.0)
         return found
 
     @cached_property
     def ends(self) -> dict[str, Array]:
         """Positions (2,) of the beams' ends, by names such as ``upper.end``."""
-        layout, moved = self.solution.layout, self.solution.layout.motions(self.solution.z)
+        layout, moved = self.layout, self.layout.motions(self.z)
         return {
             end: np.array(self.scene.beams[0].start) + layout.length * (station.reference + moved[k, :2])
             for k, station in enumerate(layout.stations)
@@ -125,21 +165,21 @@ class Equilibrium:
     @property
     def strain_energy(self) -> float:
         """Energy of all rods, springs and hinges."""
-        return self.solution.system.energy * self.solution.layout.force * self.solution.layout.length
+        return self.system.energy * self.layout.force * self.layout.length
 
-    @property
+    @cached_property
     def index(self) -> int:
         """Number of negative eigenvalues of the energy's Hessian on the admissible variations; -1 with friction."""
-        return self.solution.index
+        return index_of(self.layout, self.z, self.system)
 
     @property
     def error(self) -> float:
         """Estimated relative error: the last correction and the last terms of the rotation."""
-        return max(self.solution.correction, float(tails(self.solution.bubbles).max()))
+        return max(self.correction, float(tails(self.bubbles).max()))
 
     def shape(self, beam: str, arc: Array) -> Shape:
         """Return the shape of a beam at arc lengths (m,)."""
-        return _shape(self.solution, beam, np.asarray(arc, dtype=np.float64))
+        return _shape(self, beam, np.asarray(arc, dtype=np.float64))
 
     def place(self, node: str) -> Array:
         """Return the position of a beam's end such as ``upper.end``, or of a pin."""
@@ -149,57 +189,49 @@ class Equilibrium:
 
     def joint_rotation(self, end: str) -> float:
         """Return the rotation of the joint to which a beam's end belongs, which differs from the end's behind a hinge."""
-        layout = self.solution.layout
-        return float(layout.motions(self.solution.z)[layout.joint(end), 2])
+        return float(self.layout.motions(self.z)[self.layout.joint(end), 2])
 
 
-def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
-    """Return the exact equilibrium of `scene` near an answer.
-
-    The force in a rod between ends, joints and contacts is constant but for the load along the rod. The rotation is a polynomial of
-    degree 16 on elements that are halved until its last terms are round-off. Newton's method with the exact Hessian starts from the
-    answer.
-
-    Examples
-    --------
-    >>> from comparisons.models import solve
-    >>> from comparisons.referee import equilibrium, answer_state
-    >>> from comparisons.scene import load_scene
-    >>> scene = load_scene("ks-cantilever")
-    >>> exact = equilibrium(scene, answer_state(solve(scene, "tsm"), scene, -1))
-    >>> f"{exact.contacts['pin->cantilever'].push:.12e}", exact.index
-    ('2.288274307175e-03', 0)
-    """
-    return Equilibrium(solve(scene, answer))
+def rotation_at(exact: Equilibrium, part: Ints, x: Array) -> Array:
+    """Return the rotations at fractions x (...) of the parts `part` (...)."""
+    mesh, inside = exact.mesh, np.minimum(x, _INSIDE)
+    e = np.searchsorted(mesh.part + mesh.start, part + inside, side="right") - 1
+    values = shapes(2.0 * (x - mesh.start[e]) / mesh.share[e] - 1.0)[0]
+    return np.asarray((values * rotations(exact.layout, mesh, exact.z, exact.bubbles)[e]).sum(axis=-1))
 
 
-def _tangents(solution: Solution, touch: Touch) -> tuple[Array, Array]:
+def tails(bubbles: Array) -> Array:
+    """Largest amplitude of the last two bubbles of every element."""
+    return np.asarray((np.abs(bubbles) * AMPLITUDE)[:, -2:].max(axis=1))
+
+
+def _tangents(exact: Equilibrium, touch: Touch) -> tuple[Array, Array]:
     """Return ``r'_-`` and ``r'_+`` at a contact."""
-    parts, z = solution.layout.beside(touch), solution.z
-    s, theta = float(z[touch.arc]), float(solution.layout.motions(z)[parts[0].last, 2])
+    parts, z = exact.layout.beside(touch), exact.z
+    s, theta = float(z[touch.arc]), float(exact.layout.motions(z)[parts[0].last, 2])
     before, behind = (np.asarray(part.rod.tangent(part.piece, part.constant(z), s, theta)) for part in parts)
     return before, behind
 
 
-def touching(solution: Solution, touch: Touch) -> Contact:
+def _contact(exact: Equilibrium, touch: Touch) -> Contact:
     """Return a contact in the units of the scene."""
-    layout, z = solution.layout, solution.z
+    layout, z = exact.layout, exact.z
     before, behind = layout.beside(touch)
     force = layout.force * before.rod.axes @ (before.constant(z) - behind.constant(z))
-    x, y = np.sum(_tangents(solution, touch), axis=0)
+    x, y = np.sum(_tangents(exact, touch), axis=0)
     size = np.hypot(x, y)
     return Contact(
         force=force,
         push=float(touch.right * (x * force[1] - y * force[0]) / size),
         drag=float((x * force[0] + y * force[1]) / size),
-        arc_position=float(z[touch.arc]) * layout.length,
+        arc_position=exact.closed[touch.spec.pair],
     )
 
 
-def _shape(solution: Solution, beam: str, arc: Array) -> Shape:
+def _shape(exact: Equilibrium, beam: str, arc: Array) -> Shape:
     """Evaluate the shape of a beam at arc lengths (m,)."""
-    layout, z, mesh = solution.layout, solution.z, solution.mesh
-    coefficients, s = rotations(layout, mesh, z, solution.bubbles), arc / layout.length
+    layout, z, mesh = exact.layout, exact.z, exact.mesh
+    coefficients, s = rotations(layout, mesh, z, exact.bubbles), arc / layout.length
     number = [item.name for item in layout.scene.beams].index(beam)
     numbers = np.array([k for k, part in enumerate(layout.parts) if part.beam == number])
     begins = layout.extents(z)[numbers, 0]

@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 from comparisons.referee.friction.history import History
 from comparisons.referee.friction.slip import slip_rate
 from comparisons.referee.grip import Grip, UnknownFrictionError
-from comparisons.referee.newton import Solution
 from comparisons.referee.path import corners, reach
-from comparisons.referee.state import Equilibrium, touching
+from comparisons.referee.state import Equilibrium
 
 Array = NDArray[np.float64]
 
@@ -34,7 +33,7 @@ def dissipated(history: History, k: int, exact: Equilibrium) -> dict[str, float]
     pairs = [spec.pair for spec in history.scene.contacts if spec.friction]
     between = [t for t in corners(history.scene) if begin < t < end]
     try:
-        cuts = dict.fromkeys([begin, *between]) | _cuts(history, k) | {end: exact.solution}
+        cuts = dict.fromkeys([begin, *between]) | _cuts(history, k) | {end: exact}
         spent, there = dict.fromkeys(pairs, 0.0), None
         for first, last in reversed(list(pairwise(sorted(cuts)))):
             there = cuts[last] or there
@@ -47,21 +46,21 @@ def dissipated(history: History, k: int, exact: Equilibrium) -> dict[str, float]
     return spent
 
 
-def _cuts(history: History, k: int) -> dict[float, Solution | None]:
+def _cuts(history: History, k: int) -> dict[float, Equilibrium | None]:
     """Load parameters before number k, after the one before, at which a contact changes, with the equilibria there."""
-    found: dict[float, Solution | None] = {}
+    found: dict[float, Equilibrium | None] = {}
     for pair, own in history.phases.items():
         before = history.numbers[pair][k - 1] if k else 0
         for phase in own[before + 1 : history.numbers[pair][k] + 1]:
             if phase.before is not None and phase.slip != phase.before.slip:
                 begin = history.begin(phase)
-                found[begin.t] = begin
+                found[begin.load_parameter] = begin
     return found
 
 
 def _between(
-    history: History, first: float, last: float, there: Solution | None
-) -> tuple[dict[str, float], Solution | None]:
+    history: History, first: float, last: float, there: Equilibrium | None
+) -> tuple[dict[str, float], Equilibrium | None]:
     """Dissipation between two load parameters without a change, and the equilibrium at the first; `there` is one at the last, in any state."""
     middle = (first + last) / 2.0
     grips, closed = history.around(middle), history.closed(middle)
@@ -84,8 +83,8 @@ def _between(
 
 
 def _powers(
-    low: float, high: float, there: Solution, grips: dict[str, Grip]
-) -> tuple[dict[str, Array], Solution]:
+    low: float, high: float, there: Equilibrium, grips: dict[str, Grip]
+) -> tuple[dict[str, Array], Equilibrium]:
     """``F_t v`` of the slipping contacts at the Gauss points between two load parameters, and the equilibrium at the first of them."""
     powers: dict[str, Array] = {}
     for k in reversed(range(len(_POINTS))):
@@ -95,6 +94,6 @@ def _powers(
             raise UnknownFrictionError(f"no equilibrium was found at load parameter {t:.6g}")
         for touch in there.layout.touches:
             if touch.grip is not None and touch.grip.slip:
-                power = touching(there, touch).drag * slip_rate(there, touch) * there.layout.length
+                power = there.contacts[touch.spec.pair].drag * slip_rate(there, touch) * there.layout.length
                 powers.setdefault(touch.spec.pair, np.zeros(len(_POINTS)))[k] = power
     return powers, there

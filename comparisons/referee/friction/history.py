@@ -14,12 +14,12 @@ from comparisons.referee.friction.phases import OPEN, SAME, UNKNOWN, Phase, phas
 from comparisons.referee.friction.slip import place, relative_slip_rate, roll, slip_rate
 from comparisons.referee.grip import LOOSE, Grip, Hold, UnknownFrictionError
 from comparisons.referee.guess import answer_state
-from comparisons.referee.newton import Solution, solve
-from comparisons.referee.path import changes_of, corners, reach
+from comparisons.referee.newton import equilibrium
+from comparisons.referee.path import corners, reach
 from comparisons.referee.rod import face_of
-from comparisons.referee.state import touching
-from comparisons.response import ContactEvent, Response
-from comparisons.scene import BeamSpec, ContactSpec, Scene
+from comparisons.referee.state import Equilibrium
+from comparisons.response import Response
+from comparisons.scene import ContactSpec, Scene
 from comparisons.scene.coherence import signed_gap
 
 _ITERATIONS = 60
@@ -49,7 +49,7 @@ class History:
             self.phases[spec.pair], self.numbers[spec.pair] = phases(response, spec, column)
             how += [f"friction of {spec.pair} taken from {taken}"] if taken else []
         self.taken = "; ".join(how)
-        self._begins: dict[Phase, Solution] = {}
+        self._begins: dict[Phase, Equilibrium] = {}
         self._holds: dict[Phase, Hold] = {}
         self._reached: dict[Phase, Hold] = {}
         self._followed: set[tuple[Phase, float]] = set()
@@ -73,7 +73,7 @@ class History:
         """Return the contacts that are closed at load parameter t, those that touch there included."""
         return {pair for pair in self.phases if self._phase_at(pair, t).slip != OPEN}
 
-    def begin(self, phase: Phase) -> Solution:
+    def begin(self, phase: Phase) -> Equilibrium:
         """Return the equilibrium where a phase of a contact begins, in the state before it; not for the first phase, nor for a slip-off."""
         if phase not in self._begins:
             if phase in self._sought:
@@ -119,7 +119,7 @@ class History:
         began = [self._begins[item] for item in sticking.values() if item in self._begins]
         began = [item for item in began if item.closed.keys() == closed]
         # a stick is followed from its begin: at the load parameters of the answer it may have no equilibrium
-        latest = max(began, key=lambda item: item.t, default=None)
+        latest = max(began, key=lambda item: item.load_parameter, default=None)
         near = self.near(middle, closed, grips) if latest is None else latest
         rolled = roll(near, (begin, last), grips, begins)
         if rolled is None:
@@ -133,13 +133,13 @@ class History:
         pair = phase.spec.pair
         if phase.before is not None and phase.before.slip == 0:
             solution = self.begin(phase)
-            return 1 if touching(solution, solution.layout.touch(pair)).drag > 0.0 else -1
+            return 1 if solution.contacts[pair].drag > 0.0 else -1
         for after in self.phases[pair]:
             if after.before is phase and after.slip == 0:
                 return self.begin(after).layout.grips[pair].slip
         raise UnknownFrictionError(f"{pair} slips between two load parameters, and its sign is not stated")
 
-    def _found(self, phase: Phase) -> Solution:
+    def _found(self, phase: Phase) -> Equilibrium:
         """Find the root of a phase's margin, in each state that the contact may have been in before."""
         before, friction = phase.before, phase.spec.friction
         assert before is not None, "the first phase has no begin"
@@ -164,33 +164,22 @@ class History:
         # at a corner of a pin's path, and where another contact changes, a slip of either sign can end
         return min(found, key=lambda item: item[0])[1]
 
-    def _unlike(self, phase: Phase, before: Phase, own: Grip, begin: Solution) -> tuple[bool, float, float]:
+    def _unlike(
+        self, phase: Phase, before: Phase, own: Grip, begin: Equilibrium
+    ) -> tuple[bool, float, float]:
         """How unlikely it is that the slip `own` ends where a phase begins: a slip rate of the other sign, and distances from the stated place."""
-        off = abs(begin.closed[phase.spec.pair] - self.stated_arc(phase))
-        slipped, t = self._slipped(phase, before, own, begin), begin.t
-        return not slipped, 0.0 if math.isnan(off) else off, abs(t - phase.begin)
+        pair, t, slipped = (
+            phase.spec.pair,
+            begin.load_parameter - _BEFORE * (begin.load_parameter - before.begin),
+            True,
+        )
+        if self.closed(t) == begin.closed.keys():
+            now = reach(begin, t, {**self.around(t, phase.spec), pair: own})
+            slipped = now.found and own.slip * slip_rate(now, now.layout.touch(pair)) > 0.0
+        off = abs(begin.closed[pair] - phase.stated_arc)
+        return not slipped, 0.0 if math.isnan(off) else off, abs(begin.load_parameter - phase.begin)
 
-    def events_at(self, phase: Phase) -> list[ContactEvent]:
-        """Return the events at which the answer states that a phase of a contact begins."""
-        events = changes_of(self.response, phase.spec.pair)
-        return [event for event in events if event.load_parameter == phase.stated]
-
-    def stated_arc(self, phase: Phase) -> float:
-        """Return the arc position that the answer states where a phase of a contact begins; nan without an event."""
-        return next((event.arc_position for event in reversed(self.events_at(phase))), math.nan)
-
-    def _slipped(self, phase: Phase, before: Phase, own: Grip, begin: Solution) -> bool:
-        """Whether the slip rate before the beginning of a phase has the sign of the slip `own`, where the same contacts are closed there."""
-        pair, t = phase.spec.pair, begin.t
-        t = t - _BEFORE * (t - before.begin)
-        if self.closed(t) != begin.closed.keys():
-            return True
-        now = reach(begin, t, {**self.around(t, phase.spec), pair: own})
-        if not now.found:
-            return False
-        return own.slip * slip_rate(now, now.layout.touch(pair)) > 0.0
-
-    def _root(self, phase: Phase, own: Grip) -> Solution:
+    def _root(self, phase: Phase, own: Grip) -> Equilibrium:
         """Return the equilibrium at which the state `own` of a contact ends."""
         state = {**self.around(phase.begin, phase.spec), phase.spec.pair: own}
         now = self._start(phase, state)
@@ -212,7 +201,7 @@ class History:
             _bisected(margin, phase)
         return now
 
-    def _start(self, phase: Phase, state: dict[str, Grip]) -> Solution:
+    def _start(self, phase: Phase, state: dict[str, Grip]) -> Equilibrium:
         """Return an equilibrium from which the beginning of a phase is sought, in the state before: near an answer, or where that state began."""
         t, found, before = phase.begin, None, phase.before
         closed = self.closed(t) | {phase.spec.pair}
@@ -253,7 +242,7 @@ class History:
             held[other.pair] = LOOSE if now.slip == OPEN else self.grip(now, until)
         return held
 
-    def near(self, t: float, closed: set[str], state: dict[str, Grip]) -> Solution:
+    def near(self, t: float, closed: set[str], state: dict[str, Grip]) -> Equilibrium:
         """Return an equilibrium with given contacts and state, at a load parameter of the answer that is near t."""
         times = self.response.load_parameter
         after = int(np.searchsorted(times, t))
@@ -265,7 +254,7 @@ class History:
             # far from t there may be no equilibrium in this state, while frictionless contacts lead to t
             loose = dict.fromkeys(state, LOOSE)
             for first in (state, loose):
-                found = solve(self.scene, replace(answer, arcs=kept, grips=first))
+                found = equilibrium(self.scene, replace(answer, arcs=kept, grips=first))
                 for then in (loose, state) if first is loose else ():
                     if found.found:
                         found = reach(found, t, then)
@@ -276,7 +265,7 @@ class History:
         )
 
 
-def _found_at(solution: Solution | None, phase: Phase, t: float) -> Solution:
+def _found_at(solution: Equilibrium | None, phase: Phase, t: float) -> Equilibrium:
     """Return an equilibrium that was found where a phase begins, or raise `UnknownFrictionError`."""
     if solution is None or not solution.found:
         raise UnknownFrictionError(
@@ -292,7 +281,7 @@ def at_rest(scene: Scene, spec: ContactSpec) -> Hold:
     there = scene.place(spec.node) if "." in spec.node else scene.pin(spec.node).position(0.0)
     face = face_of(scene, spec)
     steep = face.slope
-    arc = _foot(beam, there)
+    arc = min(max(signed_gap(beam, "left", 0.0, there)[1], 0.0), 1.0) * beam.length
     for _ in range(_FEET if steep else 0):
         apart = np.array(there) - np.array(beam.place(arc / beam.length))
         ahead = float(apart @ beam.tangent(arc / beam.length)) + steep * face.reach(arc)
@@ -308,21 +297,12 @@ def at_rest(scene: Scene, spec: ContactSpec) -> Hold:
     )
 
 
-def _foot(beam: BeamSpec, point: tuple[float, float]) -> float:
-    """Arc position of the point of the undeformed axis that is nearest to `point`."""
-    x, y = beam.direction
-    if not beam.turn:
-        return float(np.clip((np.array(point) - np.array(beam.start)) @ np.array([x, y]), 0.0, beam.length))
-    _, fraction = signed_gap(beam, "left", 0.0, point)
-    return float(np.clip(fraction, 0.0, 1.0)) * beam.length
-
-
-def _margin(now: Solution, phase: Phase, own: Grip) -> float:
+def _margin(now: Equilibrium, phase: Phase, own: Grip) -> float:
     """A dimensionless number that is zero where a state ends: push at a touch or release, slip rate in slip, distance from the cone in stick."""
     touch, opens = now.layout.touch(phase.spec.pair), phase.slip == OPEN
     if own.friction and own.slip and not opens:
         return relative_slip_rate(now, touch)
-    contact = touching(now, touch)
+    contact = now.contacts[touch.spec.pair]
     if opens or not own.friction:
         return contact.push / now.layout.force
     return (own.friction * contact.push - abs(contact.drag)) / now.layout.force

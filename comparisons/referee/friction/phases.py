@@ -1,5 +1,6 @@
 """The phases of the contacts in an answer: open, slip one way or the other, or stick, with where each begins."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,11 +29,22 @@ class Phase:
     spec: ContactSpec
     low: float = 0.0
     high: float = 0.0
-    stated: float
-    """Where it begins by the answer's events; nan without an event."""
+    event: ContactEvent | None = None
+    """The answer's event at which it begins."""
     slip: int
     """Sign of the slip rate, 0 in stick, `UNKNOWN` for a slip between two load parameters; `OPEN` for an open contact."""
     before: "Phase | None"
+
+    @property
+    def stated(self) -> float:
+        """Where it begins by the answer's events; nan without an event."""
+        rest = math.nan if self.before else 0.0
+        return self.event.load_parameter if self.event else rest
+
+    @property
+    def stated_arc(self) -> float:
+        """Arc position there; nan without an event."""
+        return self.event.arc_position if self.event else math.nan
 
     @property
     def does(self) -> str:
@@ -97,13 +109,12 @@ def phases(response: Response, spec: ContactSpec, column: Ints) -> tuple[tuple[P
             between = [event for event in between if event.load_parameter < high - SAME]
         events = events[len(between) :]
         if not found:
-            found.append(Phase(spec=spec, stated=0.0, slip=_before(between, now), before=None))
+            found.append(Phase(spec=spec, slip=_before(between, now), before=None))
         for n, event in enumerate(between):
             slip = now if event is between[-1] else _after(event, between[n + 1])
-            t = event.load_parameter
-            found.append(Phase(spec=spec, low=low, high=high, stated=t, slip=slip, before=found[-1]))
+            found.append(Phase(spec=spec, low=low, high=high, event=event, slip=slip, before=found[-1]))
         if found[-1].slip != now:
-            found.append(Phase(spec=spec, low=low, high=high, stated=np.nan, slip=now, before=found[-1]))
+            found.append(Phase(spec=spec, low=low, high=high, slip=now, before=found[-1]))
         numbers.append(len(found) - 1)
     return tuple(found), tuple(numbers)
 

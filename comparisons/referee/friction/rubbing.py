@@ -9,9 +9,9 @@ import numpy as np
 from comparisons.referee.certificate import Judgement
 from comparisons.referee.friction.dissipation import dissipated
 from comparisons.referee.friction.history import History, at_rest
-from comparisons.referee.friction.phases import OPEN, UNKNOWN, Phase
+from comparisons.referee.friction.phases import OPEN, UNKNOWN
 from comparisons.referee.friction.slip import place, relative_slip_rate
-from comparisons.referee.grip import UnknownFrictionError
+from comparisons.referee.grip import Hold, UnknownFrictionError
 from comparisons.referee.layout import Touch
 from comparisons.referee.path import corners
 from comparisons.referee.state import Equilibrium
@@ -62,18 +62,21 @@ def _unlawful(
 
 def rubs_wrongly(history: History, k: int, exact: Equilibrium, allowed: float) -> Iterator[str]:
     """Yield violations of Coulomb's law by more than `allowed` by the exact equilibrium next to an answer, and its moves in stick."""
-    for touch in exact.solution.layout.touches:
+    for touch in exact.layout.touches:
         if touch.grip is None:
             continue
         contact, pair = exact.contacts[touch.spec.pair], touch.spec.pair
         outside = abs(contact.drag) - touch.grip.friction * contact.push
         size = max(float(np.hypot(*contact.force)), least_force(history.scene))
-        if touch.grip.slip == 0 and outside > allowed * size:
+        if touch.grip.hold is None:
+            if _backwards(exact, touch) > allowed:
+                yield f"{pair} slips against the stated direction"
+            continue
+        if outside > allowed * size:
             yield f"{pair} sticks with an exact force outside its cone, F_t = {contact.drag / contact.push:.6g} F_n"
-        if touch.grip.slip == 0:
-            yield from _creeps(history, k, touch, exact, allowed)
-        elif _backwards(exact, touch) > allowed:
-            yield f"{pair} slips against the stated direction"
+        moved = _crept(history, k, touch, touch.grip.hold, exact, allowed)
+        if moved:
+            yield f"{pair} sticks and moves by {moved:.2g} L"
 
 
 def wanders(history: History, k: int, allowed: float) -> Iterator[str]:
@@ -87,27 +90,22 @@ def wanders(history: History, k: int, allowed: float) -> Iterator[str]:
                 yield f"{spec.pair} sticks and moves by {moved / length:.2g} L"
 
 
-def _creeps(history: History, k: int, touch: Touch, exact: Equilibrium, allowed: float) -> Iterator[str]:
-    """Yield a contact whose held material point moves: ``A (s - s*) + lever (psi - psi*) + roll (phi - phi*) = 0`` holds it."""
+def _crept(history: History, k: int, touch: Touch, hold: Hold, exact: Equilibrium, allowed: float) -> float:
+    """Move over the length of a held material point, ``A (s - s*) + lever (psi - psi*) + roll (phi - phi*) = 0``; zero within its bound."""
     # an answer states s alone; the angles are exact, and it knows each of the three terms to its accuracy only
-    assert touch.grip is not None, "a contact that sticks has friction"
-    hold = touch.grip.hold
-    assert hold is not None, "a contact that sticks has a place"
     length = history.scene.beam(touch.spec.beam).length
-    here, unit = place(exact.solution, touch), exact.solution.layout.length
+    here, unit = place(exact, touch), exact.layout.length
     rolled = here.arc_position - hold.arc_position
-    moved = _moved(history, touch.spec, k) - rolled
     sheared = unit * touch.lever(here.arc_position / unit) * math.remainder(here.shear - hold.shear, math.tau)
     turned = unit * touch.roll * (here.direction - hold.direction)
-    terms = abs(rolled), abs(sheared), abs(turned)
-    if abs(moved) > _law(history.response, allowed) * length + allowed * max(terms):
-        yield f"{touch.spec.pair} sticks and moves by {moved / length:.2g} L"
+    moved, most = _moved(history, touch.spec, k) - rolled, max(abs(rolled), abs(sheared), abs(turned))
+    return moved / length if abs(moved) > _law(history.response, allowed) * length + allowed * most else 0.0
 
 
 def _moved(history: History, spec: ContactSpec, k: int) -> float:
     """Change of the stated arc position since the event at which a stick began, or since the start; nan without an event."""
     phase = history.phase(spec.pair, k)
-    began = at_rest(history.scene, spec).arc_position if phase.before is None else history.stated_arc(phase)
+    began = at_rest(history.scene, spec).arc_position if phase.before is None else phase.stated_arc
     return float(history.response.contacts[spec.pair].arc_position[k]) - began
 
 
@@ -120,7 +118,7 @@ def _backwards(exact: Equilibrium, touch: Touch) -> float:
     """Slip rate against the sign of the slip, over the speed; at a corner of a pin's path the smaller of those before and behind it."""
     least = np.inf
     for behind in (False, True):
-        least = min(least, -relative_slip_rate(exact.solution, touch, behind=behind))
+        least = min(least, -relative_slip_rate(exact, touch, behind=behind))
         if least <= 0.0 or not any(abs(exact.load_parameter - t) < 1e-9 for t in corners(exact.scene)):
             break
     return least
@@ -169,7 +167,6 @@ def rubs_wrongly_on_the_way(
         if spec.friction and friction is not None:
             yield from _falls(spec, friction, response, _least_energy(history.scene))
         if spec.friction:
-            yield from _unstated(history, spec)
             yield from _elsewhere(history, spec, allowed)
     apart = max((item.distance.largest[1] for item in states if item.distance is not None), default=0.0)
     found = [(k, item.exact) for k, item in zip(numbers, states, strict=True) if item.exact is not None]
@@ -193,33 +190,27 @@ def _falls(spec: ContactSpec, friction: FrictionHistory, response: Response, lea
         yield f"the dissipation of {spec.pair} falls up to load parameter {response.load_parameter[np.argmax(falls)]:.6g}"
 
 
-def _changes(history: History, spec: ContactSpec) -> list[tuple[Phase, Phase]]:
-    """Return the changes between slip and stick: the phases before and behind."""
-    changes = pairwise(history.phases[spec.pair])
-    return [(before, phase) for before, phase in changes if OPEN not in (before.slip, phase.slip)]
-
-
-def _unstated(history: History, spec: ContactSpec) -> Iterator[str]:
-    """Yield changes between slip and stick without an event, or against it, if the answer records events."""
-    for _, phase in _changes(history, spec) if history.response.events is not None else ():
-        events = history.events_at(phase)
-        if not events:
-            yield f"{spec.pair} {phase.does} without an event up to load parameter {phase.high:.6g}"
-        elif (events[-1].kind == "stick") != (phase.slip == 0):
-            yield f"{spec.pair} {phase.does} after an event of kind {events[-1].kind} at load parameter {phase.stated:.6g}"
-
-
 def _elsewhere(history: History, spec: ContactSpec, allowed: float) -> Iterator[str]:
-    """Yield changes between slip and stick that are not where the referee's own equilibria change."""
-    for before, phase in _changes(history, spec)[-_MOST:]:
+    """Yield changes between slip and stick without an event, or against it, or not where the referee's own equilibria change."""
+    changes = [
+        (before, phase)
+        for before, phase in pairwise(history.phases[spec.pair])
+        if OPEN not in (before.slip, phase.slip)
+    ]
+    for _, phase in changes if history.response.events is not None else ():
+        if phase.event is None:
+            yield f"{spec.pair} {phase.does} without an event up to load parameter {phase.high:.6g}"
+        elif (phase.event.kind == "stick") != (phase.slip == 0):
+            yield f"{spec.pair} {phase.does} after an event of kind {phase.event.kind} at load parameter {phase.stated:.6g}"
+    for before, phase in changes[-_MOST:]:
         if UNKNOWN in (phase.slip, before.slip):
             continue
         try:
-            begin = history.begin(phase).t
+            begin = history.begin(phase).load_parameter
         except UnknownFrictionError as error:
             if error.wrong:
                 yield str(error)
             continue
-        width = phase.high - phase.low if math.isnan(phase.stated) else 0.0
+        width = phase.high - phase.low if phase.event is None else 0.0
         if abs(begin - phase.begin) > max(allowed, width):
             yield f"{spec.pair} {phase.does} from load parameter {phase.begin:.6g}, exactly from {begin:.6g}"

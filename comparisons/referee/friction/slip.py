@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from comparisons.referee.equations import element_before
 from comparisons.referee.grip import Grip, Hold, rows
 from comparisons.referee.layout import NONE, Touch
-from comparisons.referee.newton import Solution
 from comparisons.referee.path import corners, reach, tangent
+from comparisons.referee.state import Equilibrium
 
 Array = NDArray[np.float64]
 Holds = dict[str, Hold]
@@ -40,16 +40,16 @@ _SWEEPS, _LEAST = 30, 1e-4
 
 
 @lru_cache(maxsize=2)
-def _rates(now: Solution, behind: bool) -> Array:
+def _rates(now: Equilibrium, behind: bool) -> Array:
     """Rates of the unknowns ahead, or behind, up to the next of the `corners`."""
     scene, sign = now.layout.scene, -1.0 if behind else 1.0
     turned = any(change[2] for motion in scene.prescribed_motions.values() for change in motion.increments)
-    apart = [sign * (corner - now.t) for corner in corners(scene)]
+    apart = [sign * (corner - now.load_parameter) for corner in corners(scene)]
     little = [part / 2.0 for part in apart if part > _CORNER]
     return tangent(now, sign * min([_AHEAD_TURNED if turned else _AHEAD, *little]))[0]
 
 
-def slip_rate(now: Solution, touch: Touch, *, behind: bool = False) -> float:
+def slip_rate(now: Equilibrium, touch: Touch, *, behind: bool = False) -> float:
     """Slip rate of a contact with friction, ahead or behind, in units of the layout."""
     layout, rate = now.layout, _rates(now, behind)
     before, _ = layout.beside(touch)
@@ -61,7 +61,7 @@ def slip_rate(now: Solution, touch: Touch, *, behind: bool = False) -> float:
     return slipping + float(touch.lever(float(now.z[touch.arc]))) * (phi - theta) + touch.roll * phi
 
 
-def relative_slip_rate(now: Solution, touch: Touch, *, behind: bool = False) -> float:
+def relative_slip_rate(now: Equilibrium, touch: Touch, *, behind: bool = False) -> float:
     """Slip rate in the direction of the slip, over the largest rate of a position."""
     assert touch.grip is not None, "only a contact with friction slips"
     rate = _rates(now, behind)[now.layout.moving]
@@ -70,14 +70,14 @@ def relative_slip_rate(now: Solution, touch: Touch, *, behind: bool = False) -> 
     return touch.grip.slip * slip_rate(now, touch, behind=behind) / speed
 
 
-def place(solution: Solution, touch: Touch) -> Hold:
+def place(now: Equilibrium, touch: Touch) -> Hold:
     """The place of a contact with friction, at which it may begin to stick."""
-    layout, z = solution.layout, solution.z
+    layout, z = now.layout, now.z
     before, _ = layout.beside(touch)
     phi = 0.0 if touch.angle == NONE else float(z[touch.angle])
-    moment = float(solution.system.ends[element_before(solution.mesh, touch), 1])
+    moment = float(now.system.ends[element_before(now.mesh, touch), 1])
     return Hold(
-        load_parameter=solution.t,
+        load_parameter=now.load_parameter,
         arc_position=float(z[touch.arc]) * layout.length,
         stretch=rows(layout, touch, z, moment).stretch,
         shear=phi - float(layout.motions(z)[before.last, 2]) - before.rod.curvature * float(z[touch.arc]),
@@ -86,7 +86,7 @@ def place(solution: Solution, touch: Touch) -> Hold:
 
 
 def roll(
-    near: Solution, span: tuple[float, float], grips: Mapping[str, Grip], begins: Holds
+    near: Equilibrium, span: tuple[float, float], grips: Mapping[str, Grip], begins: Holds
 ) -> tuple[Holds, Holds] | None:
     """Follow contacts that stick without a change from `begins` to an equilibrium near the end; where they began, and the places at the end."""
     first, last = span
@@ -121,7 +121,7 @@ def roll(
     return None
 
 
-def _trail(hold: Hold, begin: Hold, found: list[Solution], pair: str) -> Array:
+def _trail(hold: Hold, begin: Hold, found: list[Equilibrium], pair: str) -> Array:
     """Changes (4, n) of s, A, psi and the lever since the stick began, at the begin of an interval and at equilibria."""
     touches = [item.layout.touch(pair) for item in found]
     unit, touch = found[0].layout.length, touches[0]

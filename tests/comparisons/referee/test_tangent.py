@@ -91,11 +91,10 @@ def test_the_hessian_is_the_derivative_of_the_gradient(name):
 def test_the_direction_of_a_face_follows_the_variations_of_the_axis():
     """The angle phi is no unknown of its own where the index is counted: it changes as ``nu . (r'_- + r'_+)/2 = -offset'`` says."""
     exact = nearest(on_its_face())
-    solution = exact.solution
-    layout, z, touch = solution.layout, solution.z, solution.layout.touches[0]
+    layout, z, touch = exact.layout, exact.z, exact.layout.touches[0]
 
     def phi(z: np.ndarray) -> float:
-        x, y = sum(_tangents(replace(solution, z=z), touch)) / 2.0
+        x, y = sum(_tangents(replace(exact, z=z), touch)) / 2.0
         return math.atan2(y, x) + math.asin(touch.slope / math.hypot(x, y))
 
     assert phi(z) == pytest.approx(z[touch.angle], abs=1e-12)
@@ -113,5 +112,5 @@ def test_nothing_moves_in_a_stage_that_changes_nothing():
     """The round-off of an equilibrium does not count as a rate: over a short step it would lead the path elsewhere."""
     rest = StageSpec(load_parameters=1, load=(LoadSpec(beam="a", end="start", force=(0.0, 1.0)),))
     idle = Scene(name="idle", load_parameters=2, stages=(rest,), **HEAVY_TAPER)
-    for rate in tangent(found(idle, seen(idle, 1.5)).solution, 1e-7):
+    for rate in tangent(found(idle, seen(idle, 1.5)), 1e-7):
         assert not np.any(rate)
