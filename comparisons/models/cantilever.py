@@ -10,7 +10,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.exact import ElasticaPath, Outcome, RodPath, rod_under_pin
+from comparisons.exact import Outcome, RodPath, rod_under_pin
 from comparisons.models.options import ModelError
 from comparisons.models.rod import ROD
 from comparisons.models.shared import POINTS
@@ -35,7 +35,6 @@ STOPS = {
     Outcome.JAMMED.name: "the contact can neither stick nor slip",
 }
 """Reasons why an exact solution stops."""
-Path = RodPath | ElasticaPath
 _LOST = [state.name for state in Outcome if state.ends]
 
 
@@ -191,7 +190,7 @@ def _events(path: RodPath, local: RodScene) -> Iterator[ContactEvent]:
 
 
 def local_response(
-    model: str, scene: Scene, local: RodScene, path: Path, *, unknowns: int, seconds: float
+    model: str, scene: Scene, local: RodScene, path: RodPath, *, unknowns: int, seconds: float
 ) -> Response:
     """Return the response in the scene's frame, up to the last load parameter at which an equilibrium was found."""
     name, length, hits = local.beam.name, local.beam.length, local.hits
@@ -244,7 +243,7 @@ def local_response(
     )
 
 
-def _end(path: Path, local: RodScene, times: Array) -> tuple[str | None, int]:
+def _end(path: RodPath, local: RodScene, times: Array) -> tuple[str | None, int]:
     """Return the reason why the solution stops, None if it does not, and the number of load parameters reached before."""
     closed, keep = False, local.contact.keep
     slipped = np.searchsorted(times, path.slip_off) if keep else len(times)
@@ -260,7 +259,7 @@ def _end(path: Path, local: RodScene, times: Array) -> tuple[str | None, int]:
     return ("SLIPPED_OFF", int(slipped)) if slipped < len(times) else (None, len(times))
 
 
-def _end_contact(scene: Scene, local: RodScene, found: Path) -> float:
+def _end_contact(scene: Scene, local: RodScene, found: RodPath) -> float:
     """Load parameter at which the pin meets the tip while the rod is straight, or rolls onto its corner; inf if it does not."""
     if not local.offset:
         return math.inf
