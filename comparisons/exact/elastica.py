@@ -21,7 +21,7 @@ from scipy.optimize import brentq
 from scipy.special import elliprd, elliprf
 
 from comparisons.exact.checks import require_positive
-from comparisons.exact.contact import Cantilever, Held, Phase
+from comparisons.exact.contact import Cantilever
 from comparisons.exact.follow import Event, Standing
 from comparisons.exact.outcome import Outcome
 from comparisons.exact.rod import RodPath, collect, fractions
@@ -202,5 +202,5 @@ def elastica_along(points: ArrayLike, *, EI: float = 1.0, length: float = 1.0) -
             )
             / EI
         )
-        path.append(Standing(state=outcome, z=z, phase=Phase(1, 0.0, Held(1.0, 1.0, 0.0)), events=events))
+        path.append(Standing(state=outcome, z=z, events=events))
     return collect(rod, path, t, EI=EI, length=length)
