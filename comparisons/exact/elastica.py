@@ -18,10 +18,14 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
-from scipy.special import ellipj, elliprd, elliprf
+from scipy.special import elliprd, elliprf
 
 from comparisons.exact.checks import require_positive
+from comparisons.exact.contact import Cantilever
+from comparisons.exact.follow import Event, Standing
 from comparisons.exact.outcome import Outcome
+from comparisons.exact.rod import RodPath, collect, fractions
+from comparisons.exact.section import Flexibility
 
 Array = NDArray[np.float64]
 
@@ -46,8 +50,6 @@ class ElasticaState:
         Moment of the clamp on the beam, anticlockwise positive: `-(r x force)`.
     tip : ndarray, shape (2,)
         Position of the free tip.
-    length : float
-        Length of the beam.
     """
 
     outcome: Outcome
@@ -57,51 +59,6 @@ class ElasticaState:
     force: Array
     clamp_moment: float
     tip: Array
-    length: float
-
-    def shape(self, n: int) -> Array:
-        """Points of the axis at `n` equal distances from the clamp to the tip.
-
-        Between clamp and pin `sqrt(sin u)` is the lemniscate sine of `(s - arc)/(2 lam)`.
-
-        Returns
-        -------
-        ndarray, shape (n, 2)
-        """
-        arc = np.linspace(0.0, self.length, n)
-        if self.magnitude == 0.0:
-            return np.stack([arc, np.zeros(n)], axis=1)
-        tc, lam = self.tangent_angle, self.arc_position / _integrals(self.tangent_angle)[0]
-        from_pin = np.maximum(self.arc_position - arc, 0.0)
-        sn, cn, dn, _ = ellipj(from_pin / (np.sqrt(2.0) * lam), 0.5)
-        u = np.arctan2((sn / dn) ** 2 / 2.0, cn / dn**2)
-        tail = np.maximum(arc - self.arc_position, 0.0)
-        tangent = np.array([np.cos(tc), np.sin(tc)])
-        pin = self.tip - (self.length - self.arc_position) * tangent
-        return np.asarray(pin + np.outer(tail, tangent) - lam * _chord(tc, u), dtype=np.float64)
-
-
-@dataclass(frozen=True, kw_only=True)
-class ElasticaPath:
-    """Equilibria at `s` positions of a pin; the arrays have the states' values, see `ElasticaState`.
-
-    `load_parameter` (s,) is the fraction of the path's length, `slip_off` that of the first position at which the pin has left the beam
-    over its tip, or nan. There are no iterations.
-    """
-
-    states: tuple[ElasticaState, ...]
-    load_parameter: Array
-    outcome: tuple[Outcome, ...]
-    force: Array
-    arc_position: Array
-    clamp_moment: Array
-    tip: Array
-    iterations: NDArray[np.int64]
-    slip_off: float
-
-    def shape(self, k: int, n: int) -> Array:
-        """Points (n, 2) of the axis at a position."""
-        return self.states[k].shape(n)
 
 
 def _integrals(u: NDArray[np.float64] | float) -> tuple[Array, Array, Array]:
@@ -120,13 +77,6 @@ def _integrals(u: NDArray[np.float64] | float) -> tuple[Array, Array, Array]:
         2.0 * z,
         np.where(beyond, whole_second - second, second),
     )
-
-
-def _chord(tc: float, u: NDArray[np.float64] | float) -> Array:
-    """Vector (..., 2) from the point with `theta = tc - u` to the pin, in units of `lam`."""
-    _, I1, I2 = _integrals(u)
-    c, s = np.cos(tc), np.sin(tc)
-    return np.stack([c * I1 + s * I2, s * I1 - c * I2], axis=-1)
 
 
 def _polar_angle(tc: float) -> float:
@@ -165,7 +115,6 @@ def _straight(outcome: Outcome, length: float, arc_position: float = np.nan) -> 
         force=np.zeros(2),
         clamp_moment=0.0,
         tip=np.array([length, 0.0]),
-        length=length,
     )
 
 
@@ -225,26 +174,33 @@ def elastica_under_pin(x: float, y: float, *, EI: float = 1.0, length: float = 1
         force=F * normal,
         clamp_moment=-F * lam * I1,
         tip=np.array([x, y]) + (length - s) * tangent,
-        length=length,
     )
 
 
-def elastica_along(points: ArrayLike, *, EI: float = 1.0, length: float = 1.0) -> ElasticaPath:
-    """Equilibria of the elastica at the vertices (s, 2) of a pin's path; a pin that has slipped off stays off above the straight beam."""
-    pins, states = np.asarray(points, dtype=np.float64), list[ElasticaState]()
-    for x, y in pins:
-        left = y > 0.0 and states and states[-1].outcome is Outcome.SLIPPED
-        states.append(states[-1] if left else elastica_under_pin(float(x), float(y), EI=EI, length=length))
-    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(pins, axis=0).T))])
-    t, slipped = way / (way[-1] or 1.0), [state.outcome is Outcome.SLIPPED for state in states]
-    return ElasticaPath(
-        states=tuple(states),
-        load_parameter=t,
-        outcome=tuple(state.outcome for state in states),
-        force=np.array([state.force for state in states]),
-        arc_position=np.array([state.arc_position for state in states]),
-        clamp_moment=np.array([state.clamp_moment for state in states]),
-        tip=np.array([state.tip for state in states]),
-        iterations=np.zeros(len(states), dtype=np.int64),
-        slip_off=float(t[slipped.index(True)]) if any(slipped) else np.nan,
-    )
+def elastica_along(points: ArrayLike, *, EI: float = 1.0, length: float = 1.0) -> RodPath:
+    """Equilibria of the elastica at the vertices (s, 2) of a pin's path; a pin that has slipped off stays off above the straight beam.
+
+    They are those of a rod without stretch and shear, whose contact has the force, the place and the clamp moment of `ElasticaState`.
+    The slip-off is at the first vertex at which the pin has left the beam.
+    """
+    pins, path, events = np.asarray(points, dtype=np.float64), list[Standing](), tuple[Event, ...]()
+    rod = Cantilever(flexibility=Flexibility(stretch=0.0, shear=0.0), face=0.0, radius=0.0, friction=0.0)
+    t, outcome = fractions(pins), Outcome.OPEN
+    for when, (x, y) in zip(t, pins, strict=True):
+        before, state = outcome, elastica_under_pin(float(x), float(y), EI=EI, length=length)
+        if y <= 0.0 or before is not Outcome.SLIPPED:
+            outcome = state.outcome
+        if outcome is Outcome.SLIPPED and outcome is not before:
+            events += (
+                Event(
+                    load_parameter=float(when), before=before, after=outcome, arc_position=1.0, magnitude=0.0
+                ),
+            )
+        z = (
+            np.array(
+                [*state.force * length**2, -state.clamp_moment * length, state.arc_position * EI / length]
+            )
+            / EI
+        )
+        path.append(Standing(state=outcome, z=z, events=events))
+    return collect(rod, path, t, EI=EI, length=length)

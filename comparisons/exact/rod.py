@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from comparisons.exact.checks import require_not_negative, require_positive
 from comparisons.exact.contact import Cantilever
-from comparisons.exact.follow import Event, follow
+from comparisons.exact.follow import Event, Standing, follow
 from comparisons.exact.outcome import Outcome
 from comparisons.exact.section import Flexibility
 
@@ -164,16 +164,26 @@ def rod_under_pin(
     pins = np.asarray(points, dtype=np.float64)
     if pins.ndim != 2 or pins.shape[1] != 2 or not len(pins) or not np.all(np.isfinite(pins)):
         raise ValueError(f"points, shape {pins.shape}: must be finite and of shape (s, 2), s >= 1")
-    unit, energy = EI / length**2, EI / length
+    unit = EI / length**2
     rod = Cantilever(
         flexibility=Flexibility(stretch=unit / EA, shear=unit / GA),
         face=offset / length,
         radius=radius / length,
         friction=friction,
     )
-    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(pins, axis=0).T))])
-    t = way / (way[-1] or 1.0)
-    path = list(follow(rod, pins / length, t))
+    t = fractions(pins)
+    return collect(rod, list(follow(rod, pins / length, t)), t, EI=EI, length=length)
+
+
+def fractions(points: Array) -> Array:
+    """Fractions of a path's length at its vertices."""
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    return np.asarray(way / (way[-1] or 1.0))
+
+
+def collect(rod: Cantilever, path: list[Standing], t: Array, *, EI: float, length: float) -> RodPath:
+    """Return the states at load parameters in the units of the input."""
+    unit, energy = EI / length**2, EI / length
     outcome = tuple(one.state for one in path)
     touches = np.array([state.touches for state in outcome])
     lost = np.where([state.ends for state in outcome], np.nan, 0.0)
@@ -191,10 +201,7 @@ def rod_under_pin(
         normal=unit * (contact.normal + lost),
         arc_position=length * np.where(touches, z[:, 3], np.nan),
         clamp_moment=-energy * (z[:, 2] + lost),
-        tip=length
-        * np.array(
-            [_axis(rod, state, row, np.ones(1))[0, :2] for state, row in zip(outcome, z, strict=True)]
-        ),
+        tip=length * np.array([_axis(rod, *one, np.ones(1))[0, :2] for one in zip(outcome, z, strict=True)]),
         work=column("work"),
         dissipated=column("dissipated"),
         stored=energy * (np.array([rod.energy(row) for row in z]) + lost),

@@ -1,16 +1,17 @@
 """One rod, clamped at one end, under one pin: the scene in the rod's frame, and its exact states as a response."""
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.exact import ElasticaPath, Outcome, RodPath, rod_under_pin
+from comparisons.exact import Outcome, RodPath, rod_under_pin
 from comparisons.models.options import ModelError
 from comparisons.models.rod import ROD
 from comparisons.models.shared import POINTS
@@ -35,7 +36,6 @@ STOPS = {
     Outcome.JAMMED.name: "the contact can neither stick nor slip",
 }
 """Reasons why an exact solution stops."""
-Path = RodPath | ElasticaPath
 _LOST = [state.name for state in Outcome if state.ends]
 
 
@@ -43,23 +43,11 @@ _LOST = [state.name for state in Outcome if state.ends]
 class RodScene:
     """One cantilever under one pin in a local frame: the clamp at the origin, the beam along +x, the pin pushes towards +y.
 
-    Attributes
-    ----------
-    beam, contact : BeamSpec, ContactSpec
-        The cantilever, and the contact pair.
-    clamp : {"start", "end"}
-        The beam's clamped end.
-    offset : float
-        Distance of the contact surface from the axis.
-    path : ndarray, shape (p, 2)
-        Positions of the pin in the local frame: at the start, at the scene's load parameters and at
-        the corners of the path.
-    hits : ndarray of int, shape (s,)
-        Indices of the points of `path` that belong to the load parameters.
-    origin, axes : ndarray, shape (2,) and (2, 2)
-        Position of the clamp, and the local x and y axes as columns.
+    `clamp` is the beam's clamped end. `path` (p, 2) has the pin at the start, at the load parameters, whose indices are `hits` (s,), and at
+    the corners of its path. `origin` (2,) is the place of the clamp, and `axes` (2, 2) has the local x and y axes as columns.
     """
 
+    scene: Scene
     beam: BeamSpec
     clamp: str
     contact: ContactSpec
@@ -91,15 +79,15 @@ class RodScene:
         return self.beam.length - np.asarray(local) if self.from_end else np.asarray(local)
 
 
-def to_rod(scene: Scene) -> RodScene:
-    """Return `scene` as the exact models state it.
+def to_rod(scene: Scene, who: str = "the exact rod") -> RodScene:
+    """Return `scene` as the exact models state it; `who` refuses it.
 
     Raises
     ------
     ModelError
         Unless the scene is one beam, clamped at one end, under one pin.
     """
-    unknown = unstated(scene, "the exact rod", ONE_ROD)
+    unknown = unstated(scene, who, ONE_ROD)
     if unknown is not None:
         raise ModelError(unknown)
     clamp = _clamp(scene)
@@ -110,6 +98,7 @@ def to_rod(scene: Scene) -> RodScene:
     origin, axes = np.array(scene.place(clamp.node)), np.stack([along, -left if mirrored else left], axis=1)
     stations = np.union1d([0.0, *scene.times], pin.corners)
     return RodScene(
+        scene=scene,
         beam=beam,
         clamp=clamp.end,
         contact=contact,
@@ -138,38 +127,12 @@ def _clamp(scene: Scene) -> SupportSpec:
     return clamp
 
 
-def solve_rod(scene: Scene, local: RodScene) -> Response:
-    """Solve `scene` as a Reissner rod; `local` is the scene in the rod's frame."""
-    beam, contact, radius = local.beam, local.contact, scene.radius(local.contact)
-    began = perf_counter()
-    path = rod_under_pin(
-        local.path,
-        EA=beam.EA,
-        GA=beam.GA,
-        EI=beam.EI,
-        length=beam.length,
-        friction=contact.friction,
-        offset=local.offset - radius,
-        radius=radius,
-    )
-    seconds = perf_counter() - began
-    response = local_response(ROD.name, scene, local, path, unknowns=path.unknowns.shape[1], seconds=seconds)
-    if not contact.friction:
-        return response
-    reached, sense = local.hits[: len(response.load_parameter)], -1 if local.from_end else 1
-    friction = FrictionHistory(
-        tangential=sense * path.tangential[reached],
-        normal=path.normal[reached],
-        slip=np.array([sense * path.outcome[k].sense for k in reached], dtype=np.int64),
-        dissipated=path.dissipated[reached],
-    )
-    return replace(
-        response,
-        contacts={pair: replace(item, friction=friction) for pair, item in response.contacts.items()},
-        work=path.work[reached],
-        events=tuple(_events(path, local)),
-        index=np.full(len(reached), -1, dtype=np.int64),
-    )
+def solve_rod(local: RodScene) -> Response:
+    """Solve a scene as a Reissner rod."""
+    beam, radius = local.beam, local.scene.radius(local.contact)
+    section = {"EA": beam.EA, "GA": beam.GA, "EI": beam.EI, "length": beam.length}
+    pin = {"friction": local.contact.friction, "offset": local.offset - radius, "radius": radius}
+    return local_response(ROD.name, local, lambda: rod_under_pin(local.path, **section, **pin), unknowns=4)
 
 
 def _events(path: RodPath, local: RodScene) -> Iterator[ContactEvent]:
@@ -190,14 +153,15 @@ def _events(path: RodPath, local: RodScene) -> Iterator[ContactEvent]:
         )
 
 
-def local_response(
-    model: str, scene: Scene, local: RodScene, path: Path, *, unknowns: int, seconds: float
-) -> Response:
+def local_response(model: str, local: RodScene, solve: Callable[[], RodPath], *, unknowns: int) -> Response:
     """Return the response in the scene's frame, up to the last load parameter at which an equilibrium was found."""
-    name, length, hits = local.beam.name, local.beam.length, local.hits
+    began = perf_counter()
+    path = solve()
+    seconds = perf_counter() - began
+    scene, name, length = local.scene, local.beam.name, local.beam.length
     times = np.array(scene.times)
     stop, reached = _end(path, local, times)
-    met = _end_contact(scene, local, path)
+    met = _end_contact(local, path)
     if times[:reached].max(initial=0.0) >= met or (stop in _LOST and met <= times[reached]):
         stop, reached = "END_CONTACT", int(np.searchsorted(times, met))
     when = f" at load parameter {times[reached]:.6g}" if stop else ""
@@ -207,22 +171,30 @@ def local_response(
 
     @cache
     def axis_line(_: str, k: int) -> tuple[Array, Array]:
-        line = local.position(path.shape(int(hits[k]), POINTS)[:, :2])
+        line = local.position(path.shape(int(local.hits[k]), POINTS)[:, :2])
         return np.linspace(0.0, length, POINTS), line[::-1] if local.from_end else line
 
-    at = hits[:reached]
+    at, sense = local.hits[:reached], -1 if local.from_end else 1
     force, outcome = local.vector(path.force[at]), [path.outcome[k] for k in at]
-    closed, slipped = (
-        np.array(values, dtype=bool)
-        for values in ([one.touches for one in outcome], [one is Outcome.SLIPPED for one in outcome])
-    )
-    below = -local.path[at, 1] - local.offset
+    closed = np.array([one.touches for one in outcome], dtype=bool)
+    slipped = np.array([one is Outcome.SLIPPED for one in outcome], dtype=bool)
+    more: dict[str, Any] = {}
+    friction = None
+    if local.contact.friction:
+        friction = FrictionHistory(
+            tangential=sense * path.tangential[at],
+            normal=path.normal[at],
+            slip=np.array([sense * one.sense for one in outcome], dtype=np.int64),
+            dissipated=path.dissipated[at],
+        )
+        more = {"work": path.work[at], "events": tuple(_events(path, local)), "index": np.full(reached, -1)}
     contact = ContactHistory(
         force=np.hypot(*force.T),
         arc_position=np.where(closed, local.arc(path.arc_position[at]), np.nan),
-        gap=np.where(closed, 0.0, np.where(slipped, np.nan, below)),
+        gap=np.where(closed, 0.0, np.where(slipped, np.nan, -local.path[at, 1] - local.offset)),
         slip_off=path.slip_off if reached and path.slip_off <= times[reached - 1] else np.nan,
         vector=force,
+        friction=friction,
     )
     support = SupportHistory(force=-force, moment=local.moment(path.clamp_moment[at]))
     return Response(
@@ -240,10 +212,11 @@ def local_response(
         wall_seconds=seconds,
         axis_line=axis_line,
         grid=lambda k: axis_grid(scene, axis_line, k),
+        **more,
     )
 
 
-def _end(path: Path, local: RodScene, times: Array) -> tuple[str | None, int]:
+def _end(path: RodPath, local: RodScene, times: Array) -> tuple[str | None, int]:
     """Return the reason why the solution stops, None if it does not, and the number of load parameters reached before."""
     closed, keep = False, local.contact.keep
     slipped = np.searchsorted(times, path.slip_off) if keep else len(times)
@@ -259,11 +232,15 @@ def _end(path: Path, local: RodScene, times: Array) -> tuple[str | None, int]:
     return ("SLIPPED_OFF", int(slipped)) if slipped < len(times) else (None, len(times))
 
 
-def _end_contact(scene: Scene, local: RodScene, found: Path) -> float:
+def _end_contact(local: RodScene, found: RodPath) -> float:
     """Load parameter at which the pin meets the tip while the rod is straight, or rolls onto its corner; inf if it does not."""
     if not local.offset:
         return math.inf
-    radius, path, t = scene.radius(local.contact), local.path - [local.beam.length, 0.0], found.load_parameter
+    radius, path, t = (
+        local.scene.radius(local.contact),
+        local.path - [local.beam.length, 0.0],
+        found.load_parameter,
+    )
     tip = BeamEnd("", (0.0, 0.0), (-1.0, 0.0), local.offset - radius, radius)
     corner = found.slip_off if radius and not np.isnan(found.slip_off) else math.inf
     for k, (start, end) in enumerate(pairwise(path)):

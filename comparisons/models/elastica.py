@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.models.base import Model, Style
 from comparisons.models.options import ModelError, Options
-from comparisons.scene.keys import ONE_ROD, unstated
+from comparisons.scene.keys import ONE_ROD
 
 if TYPE_CHECKING:
     from comparisons.models.cantilever import RodScene
@@ -40,15 +40,13 @@ class Elastica(Model):
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked."""
-        from time import perf_counter
-
         from comparisons.exact import elastica_along
         from comparisons.models.cantilever import local_response
 
         del options, watch
-        local, began = _stated(scene), perf_counter()
-        path = elastica_along(local.path, EI=local.beam.EI, length=local.beam.length)
-        return local_response(self.name, scene, local, path, unknowns=1, seconds=perf_counter() - began)
+        local = _stated(scene)
+        sizes = {"EI": local.beam.EI, "length": local.beam.length}
+        return local_response(self.name, local, lambda: elastica_along(local.path, **sizes), unknowns=1)
 
     def styles(self) -> dict[str, Style]:
         """Return one style."""
@@ -66,10 +64,7 @@ def _stated(scene: Scene) -> RodScene:
     """Return `scene` in the frame of the one cantilever that a pin on its axis pushes."""
     from comparisons.models.cantilever import to_rod
 
-    unknown = unstated(scene, "the elastica", ONE_ROD)
-    if unknown is not None:
-        raise ModelError(unknown)
-    local = to_rod(scene)
+    local = to_rod(scene, "the elastica")
     if local.contact.friction:
         raise ModelError("the elastica has no friction here, the scene has some")
     if local.offset:

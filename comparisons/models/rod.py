@@ -54,7 +54,7 @@ class Rod(Model):
         from comparisons.models.rods import solve_rods
 
         del options
-        return solve_rods(scene, watch) if self.by_referee(scene) else solve_rod(scene, to_rod(scene))
+        return solve_rods(scene, watch) if self.by_referee(scene) else solve_rod(to_rod(scene))
 
     def styles(self) -> dict[str, Style]:
         """Return one style."""

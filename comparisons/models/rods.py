@@ -12,7 +12,7 @@ from comparisons.models.rod import ROD
 from comparisons.models.shared import POINTS, Axis, rows
 from comparisons.models.tsm import TSM
 from comparisons.referee import Equilibrium, Verdict, certify
-from comparisons.response import ContactHistory, FrictionHistory, Response, Sections, SupportHistory
+from comparisons.response import Array, ContactHistory, FrictionHistory, Response, Sections, SupportHistory
 from comparisons.response.axis import axis_grid
 from comparisons.scene import Scene
 
@@ -34,11 +34,10 @@ def solve_rods(scene: Scene, watch: Watch) -> Response:
         lambda item: item.verdict is Verdict.CERTIFIED and item.exact is not None, found.judged
     )
     states = [item.exact for item in judged if item.exact is not None]
-    friction = _frictions(scene, followed, states)
+    spent = _dissipated(scene, followed, states)
     sound = found.verdict in (Verdict.CERTIFIED, Verdict.NOT_JUDGED) or not found.judged
     # work of pins, supports and loads is strain energy and dissipation, unknown where a node slipped off
-    work = np.array([state.strain_energy for state in states])
-    work = work + sum(item.dissipated for item in friction.values())
+    work = np.array([state.strain_energy for state in states]) + sum(spent.values())
     held = {
         node.node: rows([state.reactions[node.node] for state in states], 3) for node in scene.all_supports
     }
@@ -55,10 +54,10 @@ def solve_rods(scene: Scene, watch: Watch) -> Response:
         message=followed.message if sound else found.reason,
         load_parameter=followed.load_parameter[: len(states)],
         contacts={
-            pair: _contact(pair, history, states, friction.get(pair))
+            pair: _contact(pair, history, states, spent.get(pair, np.zeros(0)))
             for pair, history in followed.contacts.items()
         },
-        work=work if friction and np.all(np.isfinite(work)) else None,
+        work=work if spent and np.all(np.isfinite(work)) else None,
         supports={
             node: SupportHistory(force=table[:, :2], moment=table[:, 2]) for node, table in held.items()
         },
@@ -77,12 +76,17 @@ def solve_rods(scene: Scene, watch: Watch) -> Response:
     )
 
 
-def _contact(
-    pair: str, followed: ContactHistory, states: States, friction: FrictionHistory | None
-) -> ContactHistory:
-    """Return the contact of the referee's equilibria; the gaps of open ones are those of TSM."""
-    closed = [state.contacts.get(pair) for state in states]
+def _contact(pair: str, followed: ContactHistory, states: States, spent: Array) -> ContactHistory:
+    """Return the contact of the referee's equilibria; the gaps of open ones and the senses of slips are those of TSM."""
+    closed, friction = [state.contacts.get(pair) for state in states], followed.friction
     forces = rows([(0.0, 0.0) if here is None else here.force for here in closed], 2)
+    if friction is not None:
+        friction = FrictionHistory(
+            tangential=np.array([0.0 if here is None else here.drag for here in closed]),
+            normal=np.array([0.0 if here is None else here.push for here in closed]),
+            slip=friction.slip[: len(states)],
+            dissipated=spent,
+        )
     return replace(
         followed,
         force=np.hypot(*forces.T),
@@ -93,26 +97,16 @@ def _contact(
     )
 
 
-def _frictions(scene: Scene, followed: Response, states: States) -> dict[str, FrictionHistory]:
-    """Forces, states and dissipation of the contacts with friction, by pair."""
+def _dissipated(scene: Scene, followed: Response, states: States) -> dict[str, Array]:
+    """Energies (s,) that the contacts with friction have dissipated, by pair."""
     pairs = [spec.pair for spec in scene.contacts if spec.friction]
     if not pairs:
         return {}
     from comparisons.referee.friction import History, dissipated
 
     history = History(followed, scene)
-    spent = [dissipated(history, k, state) for k, state in enumerate(states)]
-    found = {}
-    for pair in pairs:
-        closed, stated = [state.contacts.get(pair) for state in states], followed.contacts[pair].friction
-        assert stated is not None, "beams state their friction"
-        found[pair] = FrictionHistory(
-            tangential=np.array([0.0 if here is None else here.drag for here in closed]),
-            normal=np.array([0.0 if here is None else here.push for here in closed]),
-            slip=stated.slip[: len(states)],
-            dissipated=np.cumsum([part[pair] for part in spent]),
-        )
-    return found
+    parts = [dissipated(history, k, state) for k, state in enumerate(states)]
+    return {pair: np.cumsum([part[pair] for part in parts]) for pair in pairs}
 
 
 def _sections(scene: Scene, beam: str, state: Equilibrium) -> Sections:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from comparisons.exact import Outcome, elastica_under_pin, rod_under_pin
+from comparisons.exact import Outcome, elastica_along, elastica_under_pin, rod_under_pin
 from tests.oracles.elastica import slip_off_height
 from tests.oracles.shooting import KS as SECTION
 from tests.oracles.shooting import RIGID, ks_pins, shot
@@ -29,7 +29,8 @@ def arrives(force, moment, loaded, shape, section, atol):
 @pytest.mark.parametrize("pin", [KS_END, (0.5, 1.0 / np.pi), (1.0, 2.0), (1.0, 0.1), (-0.05, 0.5)])
 def test_integration_from_the_clamp_arrives_at_the_elasticas_contact(pin):
     state = elastica_under_pin(*pin, EI=2.0, length=3.0)
-    shape = [*zip(np.linspace(0.0, 3.0, 7), state.shape(7), strict=True), (3.0, state.tip)]
+    axis = elastica_along([pin], EI=2.0, length=3.0).shape(0, 7)[:, :2]
+    shape = [*zip(np.linspace(0.0, 3.0, 7), axis, strict=True), (3.0, state.tip)]
     arc, section = state.arc_position, {**RIGID, "EI": 2.0}
     end, tangent = arrives(state.force, state.clamp_moment, arc, shape, section, 1e-11)
     np.testing.assert_allclose(end[:4], [*pin, state.tangent_angle, 0.0], atol=4e-12)
@@ -84,7 +85,9 @@ def test_outcomes_of_the_elastica():
     free = elastica_under_pin(0.9, 0.6)
     assert free.magnitude == 0.0
     assert np.isnan(free.arc_position)
-    np.testing.assert_array_equal(free.shape(3), [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0]])
+    path = elastica_along([(0.9, 0.5), (0.9, 0.6), (0.5, 0.1), (0.5, -0.1)])
+    assert (path.outcome, path.slip_off) == ((SLIPPED, SLIPPED, SLIPPED, OPEN), 0.0)
+    np.testing.assert_array_equal(path.shape(1, 3)[:, :2], [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0]])
 
 
 @pytest.mark.parametrize("t", [0.05, 0.6, 1.0])
