@@ -15,8 +15,7 @@ import numpy as np
 from comparisons.files import OutputError, alone_in, check_free, interrupts_held, move, own, staging
 from comparisons.response import Array, Grid, Response
 from comparisons.scene import ContactSpec, Scene
-from comparisons.scene.conditions import COMPONENTS
-from comparisons.show.symbols import inward
+from comparisons.show.symbols import fixed, inward
 from comparisons.show.vtk import read_entries, read_grid, read_units, write_blocks, write_grid, write_list
 
 CONTACTS, SUPPORTS, HINGES = POINTS = ("contact points", "support points", "hinge points")
@@ -105,12 +104,10 @@ def _reactions(response: Response, scene: Scene, k: int) -> dict[str, Array]:
     """Return force and moment of supports and springs on the beam; for pictures, what is held (1, by a spring 2) and the way into the beam."""
     found = [response.supports.get(one.node) for one in scene.all_supports]
     found += [response.springs.get(one.node) for one in scene.springs]
-    kinds = [1] * len(scene.all_supports) + [2] * len(scene.springs)
-    held = [[name in one.held for name in COMPONENTS] for one in scene.holding]
     return {
         "reaction_force": np.array([np.full(2, np.nan) if one is None else one.force[k] for one in found]),
         "reaction_moment": np.array([np.nan if one is None else one.moment[k] for one in found]),
-        "held": np.array(kinds)[:, None] * np.array(held),
+        "held": fixed(scene),
         "inward": np.array([inward(scene, one) for one in scene.holding]),
     }
 

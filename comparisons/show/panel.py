@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 
 from comparisons.response import CONTACT_STATES, OPEN, SLIPS, Array, Grid, Response
 from comparisons.scene import Scene
-from comparisons.scene.conditions import COMPONENTS
 from comparisons.show.export import CONTACTS, HINGES, POINTS, SUPPORTS, blocks
 from comparisons.show.palette import PIN
-from comparisons.show.symbols import SYMBOL, Segments, hinge_symbol, placed, spring_symbol, support_symbol
+from comparisons.show.symbols import SYMBOL, Segments, fixings, hinge_symbol, placed
 
 Body = tuple[Array, Array]
 """Quadrilaterals (m, 4, 2) of a deformed body, and the stress (m, 4) at their corners."""
@@ -214,12 +213,7 @@ def _symbols(grids: Mapping[str, Grid], factor: float) -> Iterator[tuple[Array, 
     data = grids[SUPPORTS].point_data
     places = _enlarged(grids[SUPPORTS], factor)
     for place, kinds, away in zip(places, data["held"], data["inward"], strict=True):
-        held = tuple(name for name, kind in zip(COMPONENTS, kinds, strict=True) if kind == 1)
-        if held:
-            yield place, support_symbol(held, away)
-        for name, kind in zip(COMPONENTS, kinds, strict=True):
-            if kind == 2:
-                yield place, spring_symbol(name, away)
+        yield from ((place, symbol) for _, symbol in fixings(kinds, away))
 
 
 def _state(force: Array, slip: float) -> str:

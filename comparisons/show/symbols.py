@@ -4,7 +4,7 @@ Every symbol has its node at the origin. A picture turns, enlarges and moves its
 matplotlib and by pyvista, and stand in a legend.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -52,6 +52,9 @@ _GUIDE = np.concatenate(
 )
 _SQUARE = chain([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5)])
 _COIL = chain([(0, 0), (0, -0.4), (0.4, -0.6), (-0.4, -1), (0.4, -1.4), (-0.4, -1.8), (0, -2), (0, -2.4)])
+_SPRING = np.concatenate([_COIL, _ground(-2.4, 0.7)])
+_ANGLE = np.linspace(0.0, 4.0 * np.pi, 41)
+_SPIRAL = chain((0.25 + 0.15 * _ANGLE / np.pi)[:, None] * np.stack([np.cos(_ANGLE), np.sin(_ANGLE)], axis=1))
 SUPPORTS: dict[tuple[str, ...], tuple[str, Segments]] = {
     ("x", "y", "rotation"): ("clamped", _ground(0.0, 1.0)),
     ("x", "y"): ("pinned", np.concatenate([_TRIANGLE, _ground(-1.0, 0.9)])),
@@ -73,22 +76,24 @@ def _turned(segments: Segments, held: tuple[str, ...], away: Array) -> Segments:
     return np.asarray(segments @ np.array([[up[1], -up[0]], [up[0], up[1]]]))
 
 
-def support_symbol(held: tuple[str, ...], away: Array) -> Segments:
-    """Return the symbol of a support by what it holds, a key of `SUPPORTS`.
+def fixings(kinds: Iterable[int], away: Array) -> Iterator[tuple[tuple[str, ...], Segments]]:
+    """Yield the symbols at an end by their components: of a support that holds those of kind 1, of a spring against each of kind 2.
 
-    The unit vector `away` (2,) points from the support into its beam; the ground is on the other side.
+    The unit vector `away` (2,) points into the beam; the ground is on the other side.
     """
-    return _turned(SUPPORTS[held][1], held, away)
+    named = list(zip(COMPONENTS, kinds, strict=True))
+    held = tuple(name for name, kind in named if kind == 1)
+    if held:
+        yield held, _turned(SUPPORTS[held][1], held, away)
+    for name in (name for name, kind in named if kind == 2):
+        yield (name,), _SPIRAL if name == "rotation" else _turned(_SPRING, (name,), away)
 
 
-def spring_symbol(component: str, away: Array) -> Segments:
-    """Return the symbol of a spring against one of `COMPONENTS`; the unit vector `away` (2,) points from the spring into its beam."""
-    if component == "rotation":
-        angle = np.linspace(0.0, 4.0 * np.pi, 41)
-        return chain(
-            (0.25 + 0.15 * angle / np.pi)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-        )
-    return _turned(np.concatenate([_COIL, _ground(-2.4, 0.7)]), (component,), away)
+def fixed(scene: Scene) -> NDArray[np.int64]:
+    """Return the kinds of `fixings`, shape (n, 3), of everything in `scene.holding`."""
+    kinds = [1] * len(scene.all_supports) + [2] * len(scene.springs)
+    held = [[name in one.held for name in COMPONENTS] for one in scene.holding]
+    return np.asarray(np.array(kinds)[:, None] * np.array(held).reshape(-1, 3))
 
 
 def hinge_symbol() -> Segments:
@@ -119,15 +124,14 @@ def end_symbols(scene: Scene) -> list[Symbol]:
     units = unit_names(scene.units)
     stiff = f"{units['moment']}/rad"
     found: list[tuple[SupportSpec | SpringSpec | HingeSpec, str, Segments]] = []
-    for one in scene.all_supports:
-        held = tuple(name for name in COMPONENTS if name in one.held)
-        found.append((one, SUPPORTS[held][0], support_symbol(held, inward(scene, one))))
-    for spring in scene.springs:
-        for name, stiffness in zip(COMPONENTS, (*spring.stiffness, spring.rotation), strict=True):
-            if name in spring.held:
-                unit = stiff if name == "rotation" else f"{units['force']}/{units['length']}"
-                words = f"spring of {stiffness:.6g} {unit} in {name}"
-                found.append((spring, words, spring_symbol(name, inward(scene, spring))))
+    for one, kinds in zip(scene.holding, fixed(scene), strict=True):
+        for names, segments in fixings(kinds, inward(scene, one)):
+            words = SUPPORTS[names][0]
+            if isinstance(one, SpringSpec):
+                stiffness = dict(zip(COMPONENTS, (*one.stiffness, one.rotation), strict=True))[names[0]]
+                unit = stiff if names == ("rotation",) else f"{units['force']}/{units['length']}"
+                words = f"spring of {stiffness:.6g} {unit} in {names[0]}"
+            found.append((one, words, segments))
     for hinge in scene.hinges:
         words = f"hinge with a spring of {hinge.stiffness:.6g} {stiff}" if hinge.stiffness else "hinge"
         found.append((hinge, words, hinge_symbol()))

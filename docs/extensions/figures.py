@@ -12,8 +12,7 @@ from comparisons.cli import main
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / ".figures"
-COLOURS = 200
-"""Colours of a picture in the repository, which keep it small."""
+COLOURS = 200  # few, which keep a picture small
 COMPARED = ("shapes", "side-by-side", "budget")
 COMMANDS = {
     "check mine.toml --out check.png": {"check.png": "mine-check.png"},
