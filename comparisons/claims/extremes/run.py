@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 from shutil import rmtree
@@ -15,7 +15,7 @@ from comparisons.cases.run import Progress
 from comparisons.cases.run import run as run_cases
 from comparisons.cases.workers import Workers
 from comparisons.claims.claim import Verdict
-from comparisons.claims.extremes.axes import AXES, Axis, matrix
+from comparisons.claims.extremes.axes import AXES, matrix
 from comparisons.claims.extremes.cell import Judgement, judged
 from comparisons.files import write_text
 from comparisons.output import Row, write_numbers, write_rows
@@ -23,18 +23,7 @@ from comparisons.show.pages import Section, page, provenance
 
 MARKS = {Verdict.RIGHT: "", Verdict.STOPPED: "■ ", Verdict.WITHDRAWN: "□ ", Verdict.WRONG: "✗ "}
 """Marks that distinguish the verdicts without colour."""
-STYLE = """
-<style>
-.map { overflow-x: auto; } .map table, .key { border-collapse: separate; border-spacing: 2px; }
-.map thead th { font-weight: 400; text-align: center; font-size: .75rem; white-space: normal; max-width: 7em; }
-.map tbody th { position: sticky; left: 0; background: var(--paper); }
-.map td, .key td { text-align: center; padding: 3px 6px; min-width: 5em; font-size: .75rem; border: 0; print-color-adjust: exact; }
-td.stopped { background: repeating-linear-gradient(45deg, var(--line) 0 6px, transparent 6px 9px) var(--paper); outline: 1px solid var(--line); }
-td.withdrawn { outline: 2px dashed var(--line); }
-td.wrong { background: #d55e00; color: #fff; font-weight: 700; }
-td.none { color: var(--line); } .key td { min-width: 0; }
-</style>
-"""
+STYLE = Path(__file__).with_name("maps.css")
 LEGEND = """A cell shows the largest error of force, arc position, moment and tip over all load parameters reached: of the comparisons that
 must hold, the one that comes nearest to what is allowed. A cell that stopped shows the name of the reason, one that is withdrawn by its own
 checks the error that it would have had. Hover over it to see what it
@@ -44,10 +33,11 @@ SHADES = ((8, 33, 107, 189, 255), (48, 113, 174, 215, 247), (107, 181, 214, 231,
 """Red, green and blue by the error's decimal logarithm: blue for small errors to pale yellow, safe for the colour-blind."""
 
 
-def sections(axes: Iterable[Axis], judgements: Sequence[Judgement]) -> list[Section]:
+def sections(judgements: Sequence[Judgement]) -> list[Section]:
     """Return the key and one map for each axis that has cells."""
-    parts = [Section(title="How to read the maps", html=f"{STYLE}<p>{LEGEND}</p>{_key()}")]
-    for axis in axes:
+    style = STYLE.read_text(encoding="utf-8")
+    parts = [Section(title="How to read the maps", html=f"<style>{style}</style><p>{LEGEND}</p>{_key()}")]
+    for axis in AXES:
         own = [item for item in judgements if item.cell.axis == axis.name]
         if own:
             about = f"<p>{escape(axis.scene)}. {counted(own)}.</p>"
@@ -99,18 +89,12 @@ def _cell(item: Judgement | None) -> str:
 def _details(item: Judgement) -> str:
     own = item.own.response
     found = (
-        f"against {finding.name}: error {_number(finding.error)}, allowed {_number(finding.allowed)} ({finding.why})"
+        f"against {finding.name}: error {_number(finding.error)}, allowed {_number(finding.allowed)} ({finding.why})\n"
         for finding in item.findings
     )
-    return "\n".join(
-        [
-            f"{item.cell.case.label}, {item.cell.column}: {item.verdict}",
-            f"{own.status}: {own.message}",
-            f"reached {item.reached:.4g} of 1",
-            *found,
-            f"{own.iterations} iterations, {own.cutbacks} cut-backs",
-        ]
-    )
+    head = f"{item.cell.case.label}, {item.cell.column}: {item.verdict}\n{own.status}: {own.message}\n"
+    tail = f"{own.iterations} iterations, {own.cutbacks} cut-backs"
+    return f"{head}reached {item.reached:.4g} of 1\n{''.join(found)}{tail}"
 
 
 def _number(value: float) -> str:
@@ -171,7 +155,7 @@ def write(folder: Path, judgements: Sequence[Judgement], *, quick: bool) -> tupl
     numbers = {"quick": quick, "verdicts": counts(judgements), "cells": rows}
     tables = (write_rows(folder / "extremes.csv", rows), write_numbers(folder / "extremes.json", numbers))
     part = ", a part of the matrix (quick)" if quick else ""
-    whole = [*sections(AXES, judgements), *provenance((), tables, folder)[1:]]
+    whole = [*sections(judgements), *provenance((), tables, folder)[1:]]
     write_text(html, page("Where it holds, where it stops", f"{counted(judgements)}{part}.", whole))
     return html, *tables
 

@@ -1,16 +1,18 @@
 """The answers of a model to a problem: what is read from them, and the lines that they add to the problem's picture."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from comparisons.claims.claim import StoppedError
-from comparisons.claims.manual.problem import Problem, Trial, varied
+from comparisons.claims.manual.problem import Problem, Reading, Trial, varied
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.response import Array, Response
 from comparisons.response.axis import STATIONS, axes_at_stations
+from comparisons.response.table import table
 from comparisons.scene import Scene
 
 ANSWER = "exact answer"
@@ -68,39 +70,41 @@ def readings(problem: Problem, answers: Answers) -> list[float]:
         key = repr(reading.changes)
         if key not in found:
             found[key] = answers.solved(varied(answers.scene, reading.changes))
-        values.append(reading.times * value(found[key], reading.words, reading.at))
+        values.append(reading.times * _read(found[key], reading))
     return values
+
+
+def _read(response: Response, reading: Reading) -> float:
+    found = value(response, reading.words, reading.at)
+    if reading.since is not None:
+        found -= value(response, reading.words, reading.since)
+    return found / _read(response, reading.over) if reading.over else found
 
 
 def value(response: Response, words: str, at: float) -> float:
     """Return a number of a response at a load parameter of its scene; nan for an event that it does not have.
 
-    The words are ``force PAIR``, ``arc PAIR``, ``dissipated PAIR``, ``moment NODE``, ``reaction NODE x``, ``tip BEAM x``, ``axis BEAM .5 x``
-    at half the length, with ``x``, ``y`` or ``size``; ``slip-off PAIR``, and ``event KIND PAIR 0``, the load parameter of the first one.
+    The words are a name of `comparisons.response.table`, of a vector without ``_x`` for its size; ``axis BEAM .5 x``, a place of the axis at
+    half the length; ``slip-off PAIR``, and ``event KIND PAIR 0``, the load parameter of the first one.
     """
-    what, name, *more = words.split()
+    what, *more = words.split()
     if what == "slip-off":
-        return response.contacts[name].slip_off
+        return response.contacts[more[0]].slip_off
     if what == "event":
-        pair, number = more
+        kind, pair, number = more
         located = [
-            one.load_parameter for one in response.events or () if (one.kind, one.pair) == (name, pair)
+            one.load_parameter for one in response.events or () if (one.kind, one.pair) == (kind, pair)
         ]
         return float(next(iter(located[int(number) :]), np.nan))
     k = step(response, at)
-    if what in ("force", "arc", "dissipated"):
-        contact = response.contacts[name]
-        spent = None if contact.friction is None else contact.friction.dissipated
-        values = {"force": contact.force, "arc": contact.arc_position, "dissipated": spent}[what]
-        assert values is not None, "all state their friction"
-        return float(values[k])
-    if what == "moment":
-        return float(response.supports[name].moment[k])
     if what == "axis":
-        vector = axes_at_stations(response, name, [k])[0, round(float(more[0]) * (len(STATIONS) - 1))]
-    else:
-        vector = (response.supports[name].force if what == "reaction" else response.tips[name])[k]
-    return float({"x": vector[0], "y": vector[1], "size": np.hypot(*vector)}[more[-1]])
+        beam, part, direction = more
+        station = round(float(part) * (len(STATIONS) - 1))
+        return float(axes_at_stations(response, beam, [k])[0, station, "xy".index(direction)])
+    columns = table(replace(response, definition=None))
+    if what in columns:
+        return float(columns[what][k])
+    return float(np.hypot(columns[f"{what}_x"][k], columns[f"{what}_y"][k]))
 
 
 def step(response: Response, load_parameter: float) -> int:

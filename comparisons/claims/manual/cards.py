@@ -39,12 +39,13 @@ def card(problem: Problem) -> dict[str, Any]:
     {'name': 'x/L of the tip, a quarter of a circle', 'value': 0.6366197723675814, 'digits': 14, 'uncertainty': 6.366197723675814e-15}
     """
     texts = {name: getattr(problem, name) for name in ("name", "title", "purpose", "statement", "source")}
+    beams = problem.scene.beams
     return {
         "$schema": "card.schema.json",
         **texts,
         "scene": to_tables(problem.scene),
         "stiffness": {
-            beam.name: {"EA": beam.EA, "GA": beam.GA, "EI": beam.EI} for beam in problem.scene.beams
+            beam.name: {name: getattr(beam, name) for name in ("EA", "GA", "EI")} for beam in beams
         },
         "quantities": [_quantity(one, problem.uncertainty) for one in problem.quantities],
         "symbols": SYMBOLS,
@@ -72,35 +73,16 @@ def card_schema() -> dict[str, Any]:
 
 
 def write_cards(folder: Path, report: Report, stated: Sequence[Path]) -> tuple[Path, ...]:
-    """Write the cards of problems, ``NAME.json``, and their schema, ``card.schema.json``.
+    """Write the cards of problems, ``NAME.json``, and their schema, ``card.schema.json``, the last of the files that are returned.
 
-    Parameters
-    ----------
-    folder : Path
-        Made if it is not there.
-    report : callable
-        Takes a line for each card.
-    stated : sequence of Path
-        The problems, of `comparisons.claims.manual.problem.problems`.
-
-    Returns
-    -------
-    tuple of Path
-        The files, the schema last.
-
-    Raises
-    ------
-    OutputError
-        If the folder cannot be written in.
+    Raises `OutputError` if the folder, which is made if it is not there, cannot be written in.
     """
     writable_folder(folder)
-    files = []
+    written = {}
     for problem in map(read_problem, stated):
-        files.append(_written(folder / f"{problem.name}.json", card(problem)))
+        written[folder / f"{problem.name}.json"] = card(problem)
         report(f"{problem.name}: {len(problem.quantities)} quantities")
-    return (*files, _written(folder / "card.schema.json", card_schema()))
-
-
-def _written(path: Path, data: dict[str, Any]) -> Path:
-    write_text(path, json_text(data))
-    return path
+    written[folder / "card.schema.json"] = card_schema()
+    for path, data in written.items():
+        write_text(path, json_text(data))
+    return tuple(written)

@@ -83,19 +83,6 @@ def summit(x: Array, y: Array) -> tuple[float, float]:
     return float(fit(place)), float(place + x[k])
 
 
-def hysteresis(_: Problem, answers: Answers) -> Sequence[float]:
-    """Compare the second cycle of a pin that goes to and fro with the first one, and the work with the energy dissipated."""
-    response = answers.solved()
-    (contact,) = response.contacts.values()
-    assert contact.friction is not None, "the beams state their friction"
-    assert response.work is not None, "the beams state their work"
-    legs = np.array([3, 7, 11, 15, 19])
-    force, spent, work = (x[legs] for x in (contact.force, contact.friction.dissipated, response.work))
-    lost = spent[4] - spent[2]
-    ratios = force[3] / force[1], force[4] / force[2], (work[4] - work[2]) / lost
-    return list(map(float, (*force[3:], *contact.arc_position[legs[3:]], lost, *ratios)))
-
-
 def sleeve(problem: Problem, answers: Answers) -> Sequence[float]:
     """Material force at the clamp over M^2/EI for several distances of two opposed pins."""
     scene, beam = answers.scene, answers.scene.beams[0]
@@ -221,7 +208,7 @@ Measure = Callable[[Problem, Answers], Sequence[float]]
 MEASURES: dict[str, Measure] = {
     measure.__name__: measure
     for measure in (
-        readings, critical_load, identity, greatest_load, hysteresis, sleeve, limit_points, power_law,
+        readings, critical_load, identity, greatest_load, sleeve, limit_points, power_law,
         in_plane_strain, work_over_energy, invariance,
     )
 }  # fmt: skip

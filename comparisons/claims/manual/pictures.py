@@ -32,14 +32,12 @@ def draw_problem(problem: Problem, curves: Iterable[Curve], *paths: Path) -> Non
     """Draw curves as the picture of a problem to `paths`, in the formats of their suffixes."""
     picture, length = problem.picture, problem.scene.units.split(",")[1].strip()
     x, y = picture.axes or (f"x [{length}]", f"y [{length}]")
-    settings = {"xlabel": x, "ylabel": y}
-    if picture.shape:
-        settings |= {"aspect": "equal", "adjustable": "datalim"}
-    if picture.logarithmic:
-        settings |= {"xscale": "log", "yscale": "log"}
+    scales = {"xscale": "log", "yscale": "log"} if picture.guide else {}
+    shape = {} if picture.axes else {"aspect": "equal", "adjustable": "datalim"}
+    settings = {"xlabel": x, "ylabel": y, **scales, **shape}
     order, lines = list(STYLES), list[Line]()
     for curve in sorted(curves, key=lambda one: order.index(one.style)):
-        found = picture.logarithmic and curve.style != GUIDE
+        found = picture.guide and curve.style != GUIDE
         marks = {"marker": "o", "markersize": 10, "linewidth": 1.5} if found else {}
         lines.append((*curve.points.T, {**STYLES[curve.style], **marks, "label": curve.style}))
     draw([Panel(title=problem.title, lines=lines, settings=settings)], *paths, tall=3.6, columns=1)

@@ -28,25 +28,28 @@ Changes = Mapping[str, Any]
 class Picture:
     """The picture of a problem: labels of the axes, by default places; load parameters whose axes are drawn; a model whose answer is the exact one.
 
-    `guide` is the order of a line for the eye and its first value; `shape` says that both axes are lengths.
+    `guide` is the order of a line for the eye and its first value, where both axes are logarithmic.
     """
 
     axes: Sequence[str] = ()
     shown: Sequence[float] = (1.0,)
     exact: str = ""
     guide: Sequence[float] = ()
-    logarithmic: bool = False
-    shape: bool = True
 
 
 @dataclass(frozen=True, kw_only=True)
 class Reading:
-    """Where an answer has a quantity: its words, as `answers.value` takes them, a load parameter, a factor, and changes of the scene."""
+    """Where an answer has a quantity: its words, as `answers.value` takes them, a load parameter, a factor, and changes of the scene.
+
+    What it is at the load parameter `since` is taken away, and it is divided by what is `over` which it stands.
+    """
 
     words: str = ""
     at: float = 1.0
     times: float = 1.0
     changes: Changes = field(default_factory=dict)
+    since: float | None = None
+    over: "Reading | None" = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,11 +165,16 @@ def read_problem(path: Path) -> Problem:
             Quantity(name=row.pop("name"), exact=row.pop("exact"), scale=row.pop("scale", None))
             for row in rows
         ),
-        readings=tuple(Reading(words=row.pop("read", ""), **row) for row in rows),
+        readings=tuple(map(_reading, rows)),
         trials=tuple(_trial(row, scene, path) for row in trials),
         picture=Picture(**table.pop("picture", {})),
         **table,
     )
+
+
+def _reading(row: dict[str, Any]) -> Reading:
+    over = _reading(row.pop("over")) if "over" in row else None
+    return Reading(words=row.pop("read", ""), over=over, **row)
 
 
 def _scene(stated: str, changes: Changes, path: Path) -> Scene:

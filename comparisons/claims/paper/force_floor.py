@@ -93,22 +93,18 @@ def force_floor(
     Raises
     ------
     ValueError
-        If `element` or `end` is not known, `ratio` does not lie in [0, 1], another number is not positive, and where the
-        platform has no floating-point type beyond double precision.
+        If the element has no closed form, the ratio does not lie in [0, 1], or the platform has no floating-point type beyond double
+        precision.
     """
-    known = (*CLOSED_FORM, turned_frame.NAME)
-    for name, value, valid, rule in (
-        ("element", element, element in known, f"one of {', '.join(known)}"),
-        ("end", end, end in {"start", "end"}, '"start" or "end"'),
-        ("ratio", ratio, 0 <= ratio <= 1, "in [0, 1]"),
-        *((name, value, value > 0, "positive") for name, value in (("Psi", Psi), ("elements", elements), ("samples", samples))),
-        ("numpy.longdouble", _Extended, np.finfo(_Extended).eps < 1e-3 * np.finfo(float).eps, "wider than double precision"),
-    ):  # fmt: skip
-        if not valid:
-            raise ValueError(f"{name} = {value!r}: must be {rule}")
+    kind = CLOSED_FORM.get(element)
+    if (kind is None and element != turned_frame.NAME) or not 0 <= ratio <= 1:
+        raise ValueError(
+            f"element = {element!r}, ratio = {ratio!r}: no element with a closed form and part of its length"
+        )
+    if np.finfo(_Extended).eps > 1e-3 * np.finfo(float).eps:
+        raise ValueError("numpy.longdouble: this platform's is no wider than double precision")
     rng = np.random.default_rng(0)
     xi = _Extended(ratio) if end == "start" else 1 - _Extended(ratio)
-    kind = CLOSED_FORM.get(element)
     return float(np.median([_sample(kind, xi, Psi, elements, rng) for _ in range(samples)]))
 
 

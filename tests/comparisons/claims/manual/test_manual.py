@@ -204,7 +204,7 @@ source = "ks-axis"
 uncertainty = 1e-11
 scene = "ks-cantilever"
 changes = { "scene.load_parameters" = 2 }
-quantities = [{ name = "F [N]", exact = 0.0013049919842595134, read = "force pin->cantilever", at = 0.5 }]
+quantities = [{ name = "F [N]", exact = 0.0013049919842595134, read = "pin->cantilever.force", at = 0.5 }]
 trials = [{ model = "tsm exact", allowed = 1e-9, why = "no mesh" }, { model = "tsm mixed", elements = 2, allowed = 1e-9, why = "wrong" }]
 """
 
