@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from comparisons.quantities import KEPT, QUANTITIES, SCOPES, Columns, Pair, Scales, Steps, scales
+from comparisons.quantities import KEPT, QUANTITIES, SCOPES, Columns, Pair, Scales, scales
 from comparisons.response import Array, Response
 from comparisons.scene import Scene
 
@@ -63,12 +63,10 @@ def difference(response: Response, reference: Response, scene: Scene, quantity: 
     Forces and moments are relative to the largest value of the reference at these load parameters. The error is infinite if the
     responses share no load parameter. It is nan if neither response has the quantity: a scene without contact has no arc position.
     """
-    _, _, steps = _shared(response, reference)
-    if not len(steps):
-        return np.inf
-    scale = scales(reference, steps)
+    shared, pair = _pair(response, reference, scene)
+    scale = scales(reference, pair.reference_steps)
     _, found = error_histories(response, reference, scene, scale=scale, quantities=[quantity])
-    return largest(found[quantity])
+    return largest(found[quantity]) if len(shared) else np.inf
 
 
 def worst_place(response: Response, reference: Response, scene: Scene, quantity: str) -> str:
@@ -81,7 +79,7 @@ def worst_place(response: Response, reference: Response, scene: Scene, quantity:
     name = max(worst, key=lambda name: np.nan_to_num(worst[name]), default="")
     if not name or not worst[name] > 0.0:
         return ""
-    shared, _, _ = _shared(response, reference)
+    shared, _ = _pair(response, reference, scene)
     return f"{name} at load parameter {shared[int(np.nanargmax(columns[name]))]:.6g}"
 
 
@@ -94,8 +92,7 @@ def error_histories(
     quantities: Iterable[str] = KEPT,
 ) -> tuple[Array, dict[str, Array]]:
     """Return the n load parameters that both responses have, and the errors there, shape (n,) by quantity."""
-    shared, own, true = _shared(response, reference)
-    pair = Pair(response, reference, own, true, scene, scale or scales(reference))
+    shared, pair = _pair(response, reference, scene, scale)
     none = np.full(len(shared), np.nan)
     return shared, {
         name: np.asarray(np.fmax.reduce([none, *QUANTITIES[name].columns(pair).values()]))
@@ -105,12 +102,16 @@ def error_histories(
 
 def error_columns(response: Response, reference: Response, scene: Scene, quantity: str) -> Columns:
     """Return the errors of every pair, support or beam, shape (n,), at the n load parameters that both responses have."""
-    _, own, true = _shared(response, reference)
-    return QUANTITIES[quantity].columns(Pair(response, reference, own, true, scene, scales(reference)))
+    _, pair = _pair(response, reference, scene)
+    return QUANTITIES[quantity].columns(pair)
 
 
-def _shared(response: Response, reference: Response) -> tuple[Array, Steps, Steps]:
-    return np.intersect1d(response.load_parameter, reference.load_parameter, return_indices=True)
+def _pair(
+    response: Response, reference: Response, scene: Scene, scale: Scales | None = None
+) -> tuple[Array, Pair]:
+    """Return the load parameters that both responses have, and the responses there."""
+    shared, own, true = np.intersect1d(response.load_parameter, reference.load_parameter, return_indices=True)
+    return shared, Pair(response, reference, own, true, scene, scale or scales(reference))
 
 
 def largest(values: Array) -> float:

@@ -114,7 +114,7 @@ def solve_to(
     else:
         tried = trials.exact(loaded, accuracy, quantity, alone=element is not None)
     for trial in tried:
-        said += trial.said
+        said += tuple(trial.said)
         if trial.estimate <= accuracy:
             break
     response = trial.response or solve(trial.scene, chosen.name, trial.options)

@@ -1,8 +1,9 @@
 """The settings that are tried for an accuracy, from the cheapest on: tolerances of exact elements, graded elements, solid meshes."""
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -35,15 +36,14 @@ ORDER = 2
 """Order of the solid's error."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Trial:
+class Trial(NamedTuple):
     """A setting, the error that it is estimated to leave, infinite without an estimate, and what is said of it."""
 
     scene: Scene
     options: Options
     words: str
     estimate: float
-    said: tuple[str, ...]
+    said: Sequence[str]
     response: Response | None = None
 
 
@@ -65,14 +65,8 @@ def exact(scene: Scene, accuracy: float, quantity: str, *, alone: bool) -> Itera
         replaced = response.status == "INACCURATE" and not alone
         if replaced:
             said.append(f"{EXACT.name} stopped: INACCURATE; {MIXED.name} instead")
-        yield Trial(
-            scene=scene,
-            options=options,
-            words="exact elements, one a beam",
-            estimate=estimate if response.completed else math.inf,
-            said=tuple(said),
-            response=response,
-        )
+        left = estimate if response.completed else math.inf
+        yield Trial(scene, options, "exact elements, one a beam", left, said, response)
         sharper = max(SHARPEST * 1.01, accuracy * size / 4)
         if replaced:
             yield from graded(scene, accuracy, quantity, MIXED)
@@ -122,7 +116,7 @@ def graded(scene: Scene, accuracy: float, quantity: str, kind: ClosedForm) -> It
         if hopeless:
             said.append(f"{element}: its strain measures leave {stuck:.1e}, whatever the elements")
         words = f"{element} elements, {' + '.join(map(str, counts))}, graded"
-        yield Trial(scene=mesh, options=options, words=words, estimate=estimate, said=tuple(said))
+        yield Trial(mesh, options, words, estimate, said)
         if hopeless or total >= MOST:
             return
         growth = (estimate / (accuracy - stuck)) ** (1 / order) if np.isfinite(estimate) else 2.0
@@ -203,7 +197,7 @@ def solid(scene: Scene, accuracy: float, quantity: str) -> Iterator[Trial]:
             said.append(f"{name}: {response.status}")
         shown = " + ".join("x".join(map(str, beam.mesh)) for beam in meshed.beams)
         words = f"{scene.beams[0].solid_element} elements, {shown}"
-        yield Trial(scene=meshed, options=Options(), words=words, estimate=estimate, said=tuple(said))
+        yield Trial(meshed, Options(), words, estimate, said)
         before = response
 
 

@@ -74,22 +74,18 @@ def _unbalanced(response: Response, scene: Scene) -> Iterator[str]:
     return iter(()) if response.outside else balance_failures(response, scene)
 
 
-def _deformed(response: Response, failed: Callable[[Deformation], Mask], sentence: str) -> Iterator[str]:
-    """Yield a sentence if elements are deformed too much up to the last load parameter of the answer."""
-    at = response.deformation
-    claimed = None if at is None else at.load_parameter <= max(response.load_parameter, default=0.0)
-    if at is not None and claimed is not None and (claimed & failed(at)).any():
-        yield sentence.format(at.turn[claimed].max(), at.bearable) + _first(claimed & failed(at), at)
+def _deformed(sentence: str, failed: Callable[[Deformation], Mask]) -> Check:
+    """Return the check that no element fails up to the last load parameter; the sentence has the largest turn and the bearable one."""
 
+    def check(response: Response, _: Scene) -> Iterator[str]:
+        at = response.deformation
+        if at is not None:
+            claimed = at.load_parameter <= max(response.load_parameter, default=0.0)
+            found = claimed & failed(at)
+            if found.any():
+                yield f"{sentence.format(at.turn[claimed].max(), at.bearable)} {_first(found, at)}"
 
-def _bent(response: Response, _: Scene) -> Iterator[str]:
-    sentence = "too few elements: one bends by {:.2g} rad, more than {:g} "
-    return _deformed(response, lambda at: at.turn > at.bearable, sentence)
-
-
-def _strained(response: Response, _: Scene) -> Iterator[str]:
-    sentence = f"forces exceed {STRAIN:g} EA or GA, beyond elements of small strain, "
-    return _deformed(response, lambda at: at.strain > STRAIN, sentence)
+    return check
 
 
 def _motionless(_: Response, scene: Scene) -> Iterator[str]:
@@ -118,23 +114,11 @@ def _contacts(
     return check
 
 
-def _pulling(contact: ContactHistory, _: ContactSpec, beam: BeamSpec, __: Response) -> Mask:
-    return contact.force < -PULL * beam.EI / beam.length**2
-
-
 def _ajar(contact: ContactHistory, spec: ContactSpec, beam: BeamSpec, response: Response) -> Mask:
     pressing = contact.force if contact.friction is None else contact.friction.normal
     allowed = max(CLOSED, spec.penetration or 0.0) if response.continuum else CLOSED
     apart = np.abs(contact.gap + contact.compliance * pressing) > allowed * beam.length
     return (contact.force > 0.0) & apart
-
-
-def _deep(contact: ContactHistory, _: ContactSpec, beam: BeamSpec, __: Response) -> Mask:
-    return (contact.force > 0.0) & (contact.gap < -PENETRATION * beam.length)
-
-
-def _dropped(contact: ContactHistory, spec: ContactSpec, _: BeamSpec, __: Response) -> Mask:
-    return spec.keep & np.isnan(contact.arc_position) & np.logical_or.accumulate(contact.force > 0.0)
 
 
 def _inside(response: Response, scene: Scene) -> Iterator[str]:
@@ -219,16 +203,31 @@ def penetration(response: Response, scene: Scene, spec: ContactSpec, kink: float
 CHECKS: dict[str, Check] = {
     "load parameters": _unreached,
     "finite numbers": _infinite,
-    "pushing contacts": _contacts("the contact force of {} pulls", _pulling),
+    "pushing contacts": _contacts(
+        "the contact force of {} pulls",
+        lambda contact, _, beam, __: contact.force < -PULL * beam.EI / beam.length**2,
+    ),
     "closed gaps": _contacts("{} carries a force with an open gap", _ajar),
-    "small penetration": _contacts(f"the penetration of {{}} exceeds {PENETRATION:.0%} of the length", _deep),
-    "contacts that persist": _contacts("{} must persist and is open", _dropped),
+    "small penetration": _contacts(
+        f"the penetration of {{}} exceeds {PENETRATION:.0%} of the length",
+        lambda contact, _, beam, __: (contact.force > 0.0) & (contact.gap < -PENETRATION * beam.length),
+    ),
+    "contacts that persist": _contacts(
+        "{} must persist and is open",
+        lambda contact, spec, _, __: (
+            spec.keep & np.isnan(contact.arc_position) & np.logical_or.accumulate(contact.force > 0.0)
+        ),
+    ),
     "round pins outside": _inside,
     "clear ends": _overlapping,
     "sides of beams": passages,
     "balance": _unbalanced,
-    "bend of elements": _bent,
-    "strain of elements": _strained,
+    "bend of elements": _deformed(
+        "too few elements: one bends by {:.2g} rad, more than {:g}", lambda at: at.turn > at.bearable
+    ),
+    "strain of elements": _deformed(
+        f"forces exceed {STRAIN:g} EA or GA, beyond elements of small strain,", lambda at: at.strain > STRAIN
+    ),
     "motion of pins": _motionless,
 }
 """The checks of a response, in their order. Each yields a sentence for what is wrong, nothing for a right answer.

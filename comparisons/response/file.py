@@ -5,7 +5,6 @@ number may be missing, which is null in the file and nan here. Such a number is 
 """
 
 import json
-import re
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -187,12 +186,6 @@ def _table(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
         raise FieldError(key or "file", value, "must be a table, as `crossval solve --out` writes it")
     prefix = f"{key}." if key else ""
     if "properties" not in field:
-        for name in value if "propertyNames" in field else ():
-            if not re.match(field["propertyNames"]["pattern"], name):
-                old = "versions up to 0.5 wrote the beam: solve again"
-                raise FieldError(
-                    prefix + name, MISSING, f"must be by the supported end, as {name}.start; {old}"
-                )
         return {
             name: _read(field["additionalProperties"], one, prefix + name, sizes)
             for name, one in value.items()

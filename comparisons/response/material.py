@@ -7,6 +7,12 @@ Along a uniform Reissner rod without distributed load
 with the natural curvature k_0 is constant between contacts. A contact force F on the axis changes it by ``H_- - H_+ = F . (r'_- + r'_+)/2``, the tangential force times
 a factor that differs from 1 by a strain. At a free end H = 0. At the clamp of a beam with one free end H is therefore the sum of the
 tangential contact forces, positive away from the clamp: physical friction or, without friction, an error of the contact's direction.
+With the mean g of the tangents at the contact of a beam and the cosine c of the angle from the free tail to the contact force F, which has
+neither stretch nor shear,
+
+    F . g = F c + F^2 (c^2/EA + (1 - c^2)/GA)/2 = T |g|,   H = T |g| + (T e)^2/2EI
+
+give c and the tangential force T, of lever e, without further approximation.
 """
 
 import math
@@ -21,6 +27,8 @@ from comparisons.scene.keys import MATERIAL, unstated
 
 UNDEFINED = "no touched beam is held by one clamp alone and loaded by contacts alone"
 """Reason why a scene has no material force."""
+ROUNDS = 30
+"""Iterations for the length of g; each one reduces its error by a strain."""
 
 
 class Deferred(Mapping[str, Array]):
@@ -100,38 +108,6 @@ def frictions(response: Response) -> dict[str, Array]:
     return found
 
 
-def friction_coefficient(force: Array, material_force: Array, beam: BeamSpec, *, lever: float = 0.0) -> Array:
-    """Return the tangential force of a beam's only contact over its normal force, positive away from the clamp, shape (s,).
-
-    Let g be the mean ``(r'_- + r'_+)/2`` of the tangents at the contact, and c the cosine of the angle from the free tail to the contact
-    force F. The free tail has neither stretch nor shear, hence
-
-        F . g = F c + F^2 (c^2/EA + (1 - c^2)/GA)/2 = T |g|,   H = T |g| + (T e)^2/2EI
-
-    with the tangential force T and its lever e. The equations give c and T without further approximation.
-
-    Parameters
-    ----------
-    force : ndarray, shape (s,)
-        Magnitude of the whole contact force; the coefficient is nan where it is zero.
-    material_force : ndarray, shape (s,)
-        H at the clamp.
-    beam : BeamSpec
-        The beam.
-    lever : float
-        Distance of the contact from the axis [length]: zero on the axis, half the height on a face.
-    """
-    F = np.where(force > 0.0, force, np.nan)
-    stretch, shear, curl = F / beam.EA, F / beam.GA, lever**2 / (2.0 * beam.EI)
-    size = np.ones_like(F)
-    for _ in range(_ROUNDS):
-        T = 2.0 * material_force / (size + np.sqrt(size**2 + 4.0 * curl * material_force))
-        rest, unequal = T * size / F - shear / 2.0, stretch - shear
-        c = 2.0 * rest / (1.0 + np.sqrt(1.0 + 2.0 * unequal * rest))
-        size = np.hypot(1.0 + stretch * c / 2.0, shear / 2.0 * np.sqrt(np.maximum(1.0 - c**2, 0.0)))
-    return np.asarray(T / np.sqrt(F**2 - T**2))
-
-
 def rubbing(scene: Scene) -> dict[str, ContactSpec]:
     """Return the contacts with friction whose coefficient the reaction of a clamp shows, by beam.
 
@@ -153,14 +129,19 @@ def frictions_found(response: Response, scene: Scene) -> dict[str, Array]:
     found = {}
     for name, contact in rubbing(scene).items():
         if name in response.material_force:
-            force, lever = (
-                response.contacts[contact.pair].force,
-                scene.offset(contact) - scene.radius(contact),
-            )
-            given = response.material_force[name]
-            found[name] = friction_coefficient(force, given, scene.beam(name), lever=lever)
+            lever, H = scene.offset(contact) - scene.radius(contact), response.material_force[name]
+            found[name] = _coefficient(response.contacts[contact.pair].force, H, scene.beam(name), lever)
     return found
 
 
-_ROUNDS = 30
-"""Iterations for the length of g; each one reduces its error by a strain."""
+def _coefficient(force: Array, H: Array, beam: BeamSpec, lever: float) -> Array:
+    """Return T over the normal force, shape (s,); nan where the contact force (s,) is zero."""
+    F = np.where(force > 0.0, force, np.nan)
+    stretch, shear, curl = F / beam.EA, F / beam.GA, lever**2 / (2.0 * beam.EI)
+    size = np.ones_like(F)
+    for _ in range(ROUNDS):
+        T = 2.0 * H / (size + np.sqrt(size**2 + 4.0 * curl * H))
+        rest, unequal = T * size / F - shear / 2.0, stretch - shear
+        c = 2.0 * rest / (1.0 + np.sqrt(1.0 + 2.0 * unequal * rest))
+        size = np.hypot(1.0 + stretch * c / 2.0, shear / 2.0 * np.sqrt(np.maximum(1.0 - c**2, 0.0)))
+    return np.asarray(T / np.sqrt(F**2 - T**2))

@@ -6,7 +6,6 @@ Numbers have six significant digits, fewer where the last ones are round-off; a 
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -43,14 +42,6 @@ class Block:
     title: str = ""
     columns: Sequence[str] = ()
     rows: Sequence[Sequence[str]]
-
-
-class ContactForce(NamedTuple):
-    """A contact force, with its load parameter and arc position."""
-
-    force: float
-    load_parameter: float
-    arc_position: float
 
 
 def text(response: Response, more: Sequence[tuple[str, str]] = (), rule: str = "") -> str:
@@ -196,18 +187,14 @@ class _Page:
         if np.isfinite(contact.slip_off):
             return f"slipped off at {contact.slip_off:.6g}"
         forces = self._forces(pair)
-        return f"open after {forces[-1].load_parameter:.6g}" if forces else "never touched"
+        return f"open after {forces[-1][0]:.6g}" if forces else "never touched"
 
-    def _forces(self, pair: str) -> list[ContactForce]:
-        """Return the forces of a contact at the load parameters and before the events, without those that do not push."""
+    def _forces(self, pair: str) -> list[tuple[float, float, float]]:
+        """Return load parameter, force and arc position of a contact where it pushes: at the load parameters and before the events."""
         contact, events = self.response.contacts[pair], self.response.events or ()
-        found = [
-            ContactForce(event.force, event.load_parameter, event.arc_position)
-            for event in events
-            if event.pair == pair
-        ]
-        found += map(ContactForce, contact.force, self.response.load_parameter, contact.arc_position)
-        return sorted((one for one in found if one.force > 0.0), key=lambda one: one.load_parameter)
+        found = [(one.load_parameter, one.force, one.arc_position) for one in events if one.pair == pair]
+        found += zip(self.response.load_parameter, contact.force, contact.arc_position, strict=True)
+        return sorted((one for one in found if one[1] > 0.0), key=lambda one: one[0])
 
     def tips(self) -> Block:
         rows, columns = list[Row](), {"tip": "", "x": "length", "y": "length"}
@@ -230,15 +217,14 @@ class _Page:
         forces = self._forces(pair)
         if not forces:
             return
-        least = (1.0 - FIRST) * max(one.force for one in forces)
-        found = {"largest": next(one for one in forces if one.force >= least)}
+        least = (1.0 - FIRST) * max(force for _, force, _ in forces)
+        found = {"largest": next(one for one in forces if one[1] >= least)}
         if self.response.contacts[pair].force[-1] == 0.0:
             same = found["largest"] == forces[-1]
             found = {"largest and last": forces[-1]} if same else {**found, "last": forces[-1]}
-        for which, here in found.items():
-            arc = f"arc position {self.with_unit(here.arc_position, 'length')}"
-            force = self.with_unit(here.force, "force")
-            yield f"contact force {pair}, {which}", force, f"{here.load_parameter:.6g}", arc
+        for which, (t, force, arc) in found.items():
+            place = f"arc position {self.with_unit(arc, 'length')}"
+            yield f"contact force {pair}, {which}", self.with_unit(force, "force"), f"{t:.6g}", place
 
     def _along(self) -> Iterator[Row]:
         along = {} if self.scene is None else extremes_along(self.response, self.scene)

@@ -1,26 +1,14 @@
 """The histories of an answer as columns of equal length, for data frames and CSV files.
 
-``load_parameter``, ``stage``, ``newton_iterations``, ``index``
-    Load parameter, stage, Newton iterations since the previous load parameter, index.
-``PAIR.force``, ``.force_x``, ``.force_y``
-    Contact force, and its components on the beam.
-``PAIR.arc_position``, ``.gap``
-    Where the contact is, and its gap.
-``PAIR.tangential``, ``.normal``, ``.slip``, ``.dissipated``
-    With friction: components of the force, sign of the slip rate, dissipated energy.
-``BEAM.start.force_x``, ``.force_y``, ``.moment``
-    Reactions of the support at the start of the beam.
-``BEAM.start.spring_force_x``, ``.spring_force_y``, ``.spring_moment``
-    Forces of the springs to the ground at the start of the beam.
-``BEAM.tip_x``, ``.tip_y``
-    Position of the tip.
-``BEAM.bending_moment``, ``.bending_moment_at`` and so on
-    The extreme along the beam and its arc position: ``axial_force``, ``shear_force``, ``bending_moment``, ``tensile_stress``,
-    ``compressive_stress``, ``displacement``.
-``BEAM.material_force``
-    Material force.
-``work``
-    Work of pins, supports and loads.
+``load_parameter``, ``stage``, ``newton_iterations``, ``index``, ``work``
+    Load parameter, stage, Newton iterations since the previous load parameter, index, work of pins, supports and loads.
+``PAIR.force``, ``.force_x``, ``.force_y``, ``.arc_position``, ``.gap``; with friction ``.tangential``, ``.normal``, ``.slip``, ``.dissipated``
+    Contact force and its components on the beam, where the contact is, gap; components along and across the beam, sign of the slip rate,
+    dissipated energy.
+``BEAM.start.force_x``, ``.force_y``, ``.moment``; ``.spring_force_x``, ``.spring_force_y``, ``.spring_moment``
+    Reactions of the support at the start of the beam; forces of the springs to the ground there.
+``BEAM.tip_x``, ``.tip_y``, ``.material_force``; ``.bending_moment``, ``.bending_moment_at`` and so on
+    Position of the tip, material force; the extreme along the beam and its arc position, by `comparisons.response.along.ALONG`.
 """
 
 from collections.abc import Iterator

@@ -100,6 +100,7 @@ BAD = {
     "ks-cantilever two-pins --element mixed": "--element: is no option of several scenes",
     "ks-cantilever --junit a.xml": "--junit: is no option of a single scene",
     "tip-load --max-error arc=1": "arc: the scene has none",
+    "two-pins --max-error friction=1": "friction: no touched beam is held by one clamp alone",
 }
 
 

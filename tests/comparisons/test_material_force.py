@@ -6,11 +6,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from comparisons.accuracy import solve_to
-from comparisons.claims.gate import gate
 from comparisons.errors import difference
 from comparisons.models import certified, solve
-from comparisons.models.options import ModelError, Options
+from comparisons.models.options import Options
 from comparisons.response import Response
 
 # the coefficient of friction that a clamp shows is in no answer
@@ -88,26 +86,6 @@ def test_where_there_is_no_material_force(kind):
     scene = load_scene("double-beam") if kind == "own end touches" else replace(KS, **OTHERS[kind])
     few = solve(replace(scene, load_parameters=2), "tsm", Options(elements=4))
     assert set(few.material_force) == ({"lower"} if kind == "own end touches" else set())
-
-
-def test_the_error_of_the_friction():
-    """Against the exact rod it is the friction; a response without a material force has an infinite one."""
-    rod, response = answer("rod"), answer("tsm", Options(element="timoshenko", elements=10))
-    assert difference(response, rod, KS, "friction") == pytest.approx(friction(response), rel=1e-9)
-    assert difference(replace(response, material_force={}), rod, KS, "friction") == np.inf
-    assert difference(response, replace(rod, material_force={}), KS, "friction") == np.inf
-
-
-def test_a_bound_on_a_friction_that_is_not_there_is_refused():
-    scene = load_scene("two-pins")
-    with pytest.raises(ModelError, match="one clamp alone"):
-        gate(scene, "tsm", Options(), {"friction": 1e-3})
-    with pytest.raises(ModelError, match="one clamp alone"):
-        solve_to(scene, 1e-3, "friction")
-    assert [gate(KS, "tsm", Options(elements=10), {"friction": bound}).held for bound in (1e-5, 1e-6)] == [
-        True,
-        False,
-    ]
 
 
 def test_a_certificate_does_not_replace_the_material_force():

@@ -41,28 +41,11 @@ def _reason(data: dict[str, Any]) -> str:
 
 
 def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
-    """Return the response that a program wrote.
+    """Return the response that a program wrote, JSON by `comparisons.response.file.SCHEMA`; it took `seconds` if it states no time itself.
 
     The program states its status, and may leave out what follows from the rest: names of model and scene, message, tips, numbers of
-    iterations, wall time. An answer that is not COMPLETED may leave out all histories.
-
-    Parameters
-    ----------
-    output : bytes
-        Standard output of the program, JSON by ``comparisons/response/response.schema.json``.
-    scene : Scene
-        The scene that was solved.
-    model : str
-        Name of the program.
-    seconds : float
-        Wall time of the process, where the program does not state the time of its solution [s].
-
-    Raises
-    ------
-    ModelError
-        If the program states that it cannot state the scene.
-    ProgramError
-        If the output is no response to the scene.
+    iterations, wall time. An answer that is not COMPLETED may leave out all histories. A scene that the program refuses is a `ModelError`,
+    an output that is no response to the scene a `ProgramError`.
     """
     data = _parsed(output)
     status = data.get("status")

@@ -218,11 +218,12 @@ def test_beam_theorys_own_error(height):
         ({"quantity": "weight"}, "quantity = weight: must be one of force, arc"),
         ({"model": "solid", "element": "mixed"}, "solid: element = mixed: not an option"),
         ({"element": "cubic"}, "element = cubic: must be one of"),
+        ({"scene": load_scene("two-pins"), "quantity": "friction"}, "quantity = friction: no touched beam"),
     ],
 )
 def test_what_cannot_be_asked(asked, sentence):
     with pytest.raises(ModelError, match=sentence):
-        solve_to(KS, 1e-3, **asked)
+        solve_to(**{"scene": KS, "accuracy": 1e-3, **asked})
 
 
 @pytest.mark.slow_at("mixed")
