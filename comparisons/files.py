@@ -119,35 +119,6 @@ def move(aside: Path, folder: Path, names: Iterable[str]) -> None:
 
 
 @contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """Yield a temporary name in the folder of `path`; rename it to `path` once the block has written it.
-
-    The temporary name keeps the suffix, and it is removed if the block fails.
-
-    Raises
-    ------
-    OutputError
-        If a file is there that this program did not write, the disk is full or the system refuses to write the file.
-    """
-    check_free(path.parent, path.name)
-    temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
-    try:
-        yield temporary
-        _list(path.parent, [_entry(temporary, path.name)])
-        temporary.replace(path)
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {error.strerror or error}") from error
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write `text` to `path` atomically."""
-    with replacing(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
-
-
-@contextmanager
 def alone_in(folder: Path) -> Iterator[None]:
     """Hold the lock of `folder`: other runs that write a set of files there wait, so that two sets never mix.
 
@@ -181,15 +152,13 @@ def interrupts_held() -> Iterator[None]:
 
 
 @contextmanager
-def staging(folder: Path) -> Iterator[Path]:
-    """Yield a new hidden folder in `folder`, for files that are moved out when they are finished.
-
-    The hidden folder is removed at the end, with all files still in it.
+def staging(folder: Path, named: Path | None = None) -> Iterator[Path]:
+    """Yield a new hidden folder in `folder`, for files that are moved out when they are finished; it is removed at the end.
 
     Raises
     ------
     OutputError
-        If the disk is full or the system refuses to write.
+        If the disk is full or the system refuses to write; the message names `named`, else the folder.
     """
     try:
         # an interrupt within its making or its removal would leave it; at any other point its finalizer removes it
@@ -204,7 +173,28 @@ def staging(folder: Path) -> Iterator[Path]:
         # the message names the final path of a file, not its temporary one
         raise OutputError(str(error).replace(f"{aside.name}{os.sep}", f"{folder}{os.sep}")) from error
     except OSError as error:
-        raise OutputError(f"{folder}: cannot be written: {error.strerror or error}") from error
+        raise OutputError(f"{named or folder}: cannot be written: {error.strerror or error}") from error
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Yield a temporary place for a file of this name; move it to `path` once the block has written it.
+
+    Raises
+    ------
+    OutputError
+        If a file is there that this program did not write, the disk is full or the system refuses to write the file.
+    """
+    check_free(path.parent, path.name)
+    with staging(path.parent, path) as aside:
+        yield aside / path.name
+        move(aside, path.parent, [path.name])
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write `text` to `path` atomically."""
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
 
 
 def writable_folder(folder: Path, *names: str) -> Path:
