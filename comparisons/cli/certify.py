@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.cli.options import STANDARD, Command, outputs, write
 from comparisons.cli.outcome import DONE, STOPPED, WRONG
+from comparisons.cli.progress import watching
 from comparisons.files import OutputError
 from comparisons.models import TSM, certified, restored, solve
 from comparisons.models.options import ModelError
@@ -35,7 +36,8 @@ def run(given: Namespace) -> int:
         raise ModelError("--scene: belongs to a response in JSON")
     else:
         scene = load_scene(given.answer)
-        response = solve(scene, TSM.name)
+        with watching(TSM.name) as watch:
+            response = solve(scene, TSM.name, watch=watch)
     status = response.status
     response = certified(response, scene, "all", allowance=given.allowance)
     found = response.certificate or certify(response, scene)

@@ -58,7 +58,9 @@ def main(arguments: list[str] | None = None) -> int:
         for word in (word for word in words if word in GONE):
             kind = "an option" if word.startswith("-") else "a command"
             return _told(f"{word}: is no longer {kind}, see {GONE[word]}", BAD_INPUT)
-        return _run(arguments) if there else BAD_INPUT
+        if not there:
+            return BAD_INPUT
+        return _version() if words == ("--version",) else _run(arguments)
 
 
 @contextmanager
@@ -131,18 +133,16 @@ class _Parser(argparse.ArgumentParser):
         super().error(printable(message))
 
 
-class _Version(argparse.Action):
-    """The version and what this machine has, looked up where it is asked for: that imports more than the rest of the command."""
+def _version() -> int:
+    """Print the version and what this machine has."""
+    from comparisons.cli.machine import examined
+    from comparisons.version import release
 
-    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        from comparisons.cli.machine import examined
-        from comparisons.version import release
-
-        print(f"crossval {release()}")
-        findings = list(examined())
-        for mark, what, state in findings:
-            print(f"{mark:8s}{what:14s} {state}")
-        parser.exit(WRONG if any(mark == "MISSING" for mark, *_ in findings) else DONE)
+    print(f"crossval {release()}")
+    findings = list(examined())
+    for mark, what, state in findings:
+        print(f"{mark:8s}{what:14s} {state}")
+    return WRONG if any(mark == "MISSING" for mark, *_ in findings) else DONE
 
 
 def _drop_output() -> None:
@@ -158,12 +158,8 @@ def command_parser() -> argparse.ArgumentParser:
         description="Contact of beams: tangent stiffness method, 2D solid elements and exact answers on one scene.",
         epilog=EPILOG,
     )
-    parser.add_argument(
-        "--version",
-        action=_Version,
-        nargs=0,
-        help="print the version, and which libraries and programs are here",
-    )
+    looked_up = "print the version, and which libraries and programs are here"
+    parser.add_argument("--version", action="store_true", help=looked_up)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for command in COMMANDS:
         command.add_to(commands)

@@ -1,6 +1,7 @@
 """``crossval scenes``, ``new`` and ``check``: scene files before anything is solved."""
 
 import json
+import re
 import sys
 from argparse import Namespace
 from pathlib import Path
@@ -20,7 +21,8 @@ def run_scenes(given: Namespace) -> int:
     """Print the names of the built-in scenes and what they are, or the schema."""
     if not given.schema:
         for scene, text in built_in_scenes().items():
-            print(f"{scene:26s}", text.splitlines()[0].removeprefix("# "))
+            said = re.split(r"(?<!al)[:.]\s", text)[0].replace("\n# ", " ").removeprefix("# ")
+            print(f"{scene:26s} {said}")
         return DONE
     from comparisons.scene.toml import json_schema
 

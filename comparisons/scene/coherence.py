@@ -32,10 +32,11 @@ def scene_rules(scene: "Scene") -> Mistakes:
         names.repeated,
         _contacts(scene, names),
         _distinct(_listed(scene, "contacts"), "contact", "pair", "node"),
-        *(_named_beams(records, place, names) for place, records in on_beams.items()),
+        *(_named(records, place, names) for place, records in on_beams.items()),
         *(_distinct(records, place, "node", "end") for place, records in placed.items()),
         _distinct(_listed(scene, "stages"), "stage", "name", "name"),
-        *(_moved_pins(stage, names, f"{key}pin") for key, stage in stages),
+        *(_named(_listed(stage, "pin"), f"{key}pin", names, "pin", "name") for key, stage in stages),
+        *(_distinct(_listed(stage, "pin"), f"{key}pin", "name", "name") for key, stage in stages),
         *(_moved_supports(scene, stage, f"{key}support") for key, stage in stages),
         joint_rules(scene, names),
         _weight(scene),
@@ -119,13 +120,15 @@ def _distinct(records: Iterable[Record], place: str, attribute: str, key: str) -
             seen |= {value} - {None}
 
 
-def _named_beams(records: Iterable[Any], place: str, names: Names) -> Mistakes:
-    """Yield the records whose beam is none."""
+def _named(
+    records: Iterable[Any], place: str, names: Names, kind: str = "beam", key: str = "beam"
+) -> Mistakes:
+    """Yield the records whose `key` names none of a kind."""
     for i, record in enumerate(records):
         with suppress(Unjudged):
-            if not names.is_beam(record.beam):
-                rule = f"must name a beam: {_list(names.of('beam'))}"
-                yield FieldError(f"{place}[{i}].beam", record.beam, rule)
+            name = getattr(record, key)
+            if not names.is_beam(name, kind):
+                yield FieldError(f"{place}[{i}].{key}", name, f"must name a {kind}: {_list(names.of(kind))}")
 
 
 def _idle_pins(scene: "Scene", names: Names) -> Mistakes:
@@ -158,7 +161,7 @@ def _weight(scene: "Scene") -> Mistakes:
 
 
 def _contacts(scene: "Scene", names: Names) -> Mistakes:
-    yield from _named_beams(scene.contacts, "contact", names)
+    yield from _named(scene.contacts, "contact", names)
     for i, contact in enumerate(scene.contacts):
         with suppress(Unjudged):
             yield from _contact(contact, names, f"contact[{i}]")
@@ -202,16 +205,6 @@ def _position(contact: ContactSpec, beam: BeamSpec, names: Names) -> Mistakes:
         if over > 1e-12 * beam.length:
             where = f'the {tip.name} of beam "{beam.name}"'
             yield FieldError(key, position, f"must lie clear of {where}, overlap {over:.6g}")
-
-
-def _moved_pins(stage: StageSpec, names: Names, place: str) -> Mistakes:
-    for j, move in enumerate(stage.pin):
-        with suppress(Unjudged):
-            if not names.is_beam(move.name, "pin"):
-                yield FieldError(
-                    f"{place}[{j}].name", move.name, f"must name a pin: {_list(names.of('pin'))}"
-                )
-    yield from _distinct(stage.pin, place, "name", "name")
 
 
 def _moved_supports(scene: "Scene", stage: StageSpec, key: str) -> Mistakes:

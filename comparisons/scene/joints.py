@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter, defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from itertools import islice
 from typing import TYPE_CHECKING
@@ -53,23 +53,15 @@ def _held(scene: "Scene", names: "Names") -> Mistakes:
             yield from _stiff(scene, structure, own, key)
 
 
-def _structures(scene: "Scene") -> list[list[BeamSpec]]:
-    """Return the beams, grouped by what is joined together."""
-    meeting = _meeting(scene.beams)
-    groups: list[list[BeamSpec]] = []
-    grouped: set[str] = set()
-    for beam in scene.beams:
-        if beam.name in grouped:
-            continue
-        grouped.add(beam.name)
-        group = [beam]
+def _structures(scene: "Scene") -> Iterator[list[BeamSpec]]:
+    """Yield the beams, grouped by what is joined together."""
+    meeting, free = _meeting(scene.beams), {beam.name: beam for beam in scene.beams}
+    while free:
+        group = [free.pop(next(iter(free)))]
         for member in group:  # grows on the way
-            for other in (other for place in (member.start, member.end) for other in meeting.pop(place, ())):
-                if other.name not in grouped:
-                    grouped.add(other.name)
-                    group.append(other)
-        groups.append(group)
-    return groups
+            for place in (member.start, member.end):
+                group += (free.pop(other.name) for other in meeting.pop(place, ()) if other.name in free)
+        yield group
 
 
 def _meeting(beams: Sequence[BeamSpec]) -> dict[Point, list[BeamSpec]]:

@@ -1,48 +1,42 @@
 """Keys that not every model, check and study knows, and the sentence that refuses a scene which uses one of them."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Final
 
 from comparisons.scene.scene import Scene
 
-SPECIAL: Final = {
-    "turn": "a natural curvature (turn)",
-    "taper": "a section that tapers (height or width of two values)",
-    "density": "a weight (density)",
-    "force_per_length": "a load along a beam (force_per_length)",
-    "at": "a load inside a beam (at)",
-    "hinge": "a hinge ([[hinge]])",
-    "spring": "a spring ([[spring]])",
-    "stage": "a stage after the first one ([[stage]])",
+_SPECIAL: Final[dict[str, tuple[str, Callable[[Scene], object]]]] = {
+    "turn": ("a natural curvature (turn)", lambda scene: any(beam.turn for beam in scene.beams)),
+    "taper": (
+        "a section that tapers (height or width of two values)",
+        lambda scene: any(beam.tapers for beam in scene.beams),
+    ),
+    "density": ("a weight (density)", lambda scene: scene.gravity),
+    "force_per_length": (
+        "a load along a beam (force_per_length)",
+        lambda scene: any(item.load.force_per_length for item in scene.load_histories),
+    ),
+    "at": (
+        "a load inside a beam (at)",
+        lambda scene: any(item.load.at for item in scene.load_histories),
+    ),
+    "hinge": ("a hinge ([[hinge]])", lambda scene: scene.hinges),
+    "spring": ("a spring ([[spring]])", lambda scene: scene.springs),
+    "stage": ("a stage after the first one ([[stage]])", lambda scene: scene.stages),
 }
+SPECIAL: Final = {key: sentence for key, (sentence, _) in _SPECIAL.items()}
 """The keys and what each states, in the order in which they are refused."""
-
-BEAMS: Final = frozenset(SPECIAL)
-STRIPS: Final = frozenset(SPECIAL)
-REFEREE: Final[frozenset[str]] = frozenset(SPECIAL)
-RODS: Final = REFEREE & BEAMS
-"""Keys that beams, solids, the referee, and the exact rods state, which the referee solves along the path of exact elements."""
-ONE_ROD: Final[frozenset[str]] = frozenset()
-PROGRAMS: Final[frozenset[str]] = frozenset()
-"""Keys that the exact answers under one pin state, and the resolved scene that programs of others read."""
+BEAMS = STRIPS = REFEREE = RODS = frozenset(SPECIAL)
+"""Keys that beams, solids, the referee, and the exact rods state."""
+ONE_ROD = PROGRAMS = frozenset[str]()
+"""Keys that the exact answers by quadrature state, and the resolved scene that programs of others read."""
 MATERIAL: Final = frozenset({"turn"})
 """Keys under which the material force is defined."""
 
 
 def special_keys(scene: Scene) -> Iterator[str]:
     """Yield the keys of `SPECIAL` that `scene` uses."""
-    loads = [history.load for history in scene.load_histories]
-    used = {
-        "turn": any(beam.turn for beam in scene.beams),
-        "taper": any(beam.tapers for beam in scene.beams),
-        "density": scene.gravity,
-        "force_per_length": any(load.force_per_length for load in loads),
-        "at": any(load.at for load in loads),
-        "hinge": scene.hinges,
-        "spring": scene.springs,
-        "stage": scene.stages,
-    }
-    yield from (key for key in SPECIAL if used[key])
+    yield from (key for key, (_, used) in _SPECIAL.items() if used(scene))
 
 
 def unstated(scene: Scene, who: str, known: Iterable[str] = ()) -> str | None:

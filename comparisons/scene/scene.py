@@ -11,7 +11,7 @@ from comparisons.scene.conditions import HingeSpec, LoadSpec, SpringSpec, Suppor
 from comparisons.scene.contact import ContactSpec, PinSpec
 from comparisons.scene.record import Record, Unjudged, copied, key, optional
 from comparisons.scene.rules import Point
-from comparisons.scene.stages import LoadHistory, PinMove, PrescribedMotion, StageSpec, amount, load_histories
+from comparisons.scene.stages import LoadHistory, PinMove, PrescribedMotion, StageSpec, amount
 
 
 class Named(dict[str, Any]):
@@ -134,23 +134,21 @@ class Scene(Record):
 
     @cached_property
     def load_histories(self) -> tuple[LoadHistory, ...]:
-        """The dead loads through all stages."""
-        return load_histories(self.stage_loads)
+        """The dead loads through all stages, place by place in the order of the file."""
+        stages = [{load.node: load for load in loads} for loads in self.stage_loads]
+        first = {node: load for loads in reversed(stages) for node, load in loads.items()}
+        return tuple(
+            LoadHistory(
+                first[node],
+                tuple(loads[node].amount if node in loads else (0.0, 0.0, 0.0) for loads in stages),
+            )
+            for node in dict.fromkeys(node for loads in stages for node in loads)
+        )
 
     def gravity_at(self, load_parameter: float) -> Point:
         """Return the acceleration of gravity at `load_parameter`."""
         x, y = amount(self.stage_gravities, load_parameter)
         return x, y
-
-    @cached_property
-    def _supports_of(self) -> dict[str, tuple[SupportSpec, ...]]:
-        own: dict[str, list[SupportSpec]] = {beam.name: [] for beam in self.beams}
-        for support in self.all_supports:
-            own[support.beam].append(support)
-        return {
-            beam: tuple(sorted(all_own, key=lambda support: (-len(support.held), support.end == "end")))
-            for beam, all_own in own.items()
-        }
 
     def place(self, node: str) -> Point:
         """Return the undeformed position of a beam's end, ``upper.end``."""
@@ -160,7 +158,8 @@ class Scene(Record):
 
     def supports_of(self, beam: str) -> tuple[SupportSpec, ...]:
         """Return the supports of a beam by falling number of held components; at equality the support at the start is first."""
-        return self._supports_of[beam]
+        own = (support for support in self.all_supports if support.beam == beam)
+        return tuple(sorted(own, key=lambda support: (-len(support.held), support.end == "end")))
 
     def tip(self, beam: str) -> str:
         """Return the end of a beam with fewer held components, "end" at equality."""

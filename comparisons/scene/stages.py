@@ -128,15 +128,3 @@ class LoadHistory(NamedTuple):
     def at(self, load_parameter: float) -> tuple[float, ...]:
         """Return force x, y and moment, or the force per length and zero, at `load_parameter`."""
         return amount(self.increments, load_parameter)
-
-
-def load_histories(stages: tuple[tuple[LoadSpec, ...], ...]) -> tuple[LoadHistory, ...]:
-    """Return the loads of all stages, place by place in the order of the file."""
-    first: dict[str, LoadSpec] = {}
-    for load in (load for loads in stages for load in loads):
-        first.setdefault(load.node, load)
-    amounts = [{load.node: load.amount for load in loads} for loads in stages]
-    return tuple(
-        LoadHistory(load, tuple(given.get(node, (0.0, 0.0, 0.0)) for given in amounts))
-        for node, load in first.items()
-    )

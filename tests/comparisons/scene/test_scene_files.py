@@ -12,7 +12,6 @@ from typing import Any
 
 import pytest
 from jsonschema import Draft202012Validator
-from matplotlib.image import imread
 
 from comparisons.cli import main
 from comparisons.scene import SceneError, built_in_scenes, load_scene, read_scene, to_toml
@@ -50,16 +49,6 @@ def test_the_template_names_every_key_and_every_line_can_be_read():
         for line in lines:
             tomllib.loads(line.removeprefix("# "))
     assert named == KEYS
-
-
-def test_a_new_scene_can_be_checked_and_solved(capsys):
-    assert main(["new", "strip"]) == 0
-    assert Path("strip.toml").read_text() == TEMPLATE.replace('"NAME"', '"strip"')
-    assert main(["check", "strip.toml", "--out", "strip.png"]) == 0
-    assert capsys.readouterr().out.count(": yes") == 3
-    assert imread("strip.png").shape[2] == 4
-    assert main(["solve", "strip.toml", "--model", "tsm"]) == 0
-    assert "COMPLETED" in capsys.readouterr().out
 
 
 def test_a_new_scene_is_like_a_built_in_one():
@@ -132,16 +121,11 @@ def test_what_the_schema_refuses_the_reader_refuses(every):
 
 @pytest.mark.parametrize(
     ("command", "case"),
-    [("check", case) for case in ("missing", "directory", "latin-1", "null", "/dev/zero", "pipe", "large")]
-    + [("solve", "pipe"), ("run", "missing")],
+    [*product(["check"], ["null", "/dev/zero", "pipe", "large"]), ("solve", "pipe"), ("run", "missing")],
 )
 def test_a_file_that_cannot_be_read_is_named_in_one_line(case, command, capsys):
     path = Path("my.toml")
-    if case == "directory":
-        path.mkdir()
-    elif case == "latin-1":
-        path.write_bytes(KS.encode() + b"# \xe9\n")
-    elif case == "pipe":
+    if case == "pipe":
         os.mkfifo(path)
     elif case == "large":
         with path.open("wb") as sparse:
