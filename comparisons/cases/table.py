@@ -29,7 +29,7 @@ def result_rows(results: Results) -> list[Row]:
     return [
         {
             "scene": case.scene.name,
-            "model": case.model_name,
+            "model": case.found.name,
             "label": case.label,
             **{name: _text(stated[case].get(name)) for name in names},
             "status": results[case].response.status,

@@ -12,7 +12,7 @@ from comparisons.cli.options import (
     add_workers,
     argument,
     chosen,
-    workers,
+    running,
 )
 from comparisons.cli.outcome import DONE, STOPPED, WRONG, exit_status, report
 from comparisons.cli.progress import staging, watching
@@ -166,17 +166,12 @@ def _held(scene: Scene, given: argparse.Namespace) -> int:
 
 def _league(scenes: list[Scene], given: argparse.Namespace) -> int:
     """Measure every program on every scene, print the summary and name the files."""
-    written = (*(f"league.{kind}" for kind in ("csv", "json", "svg", "png")), "report.html")
-    folder = writable_folder(given.out or Path("out/league"), *written)
-    from comparisons.cases.progress import shown
-    from comparisons.league.entries import measure_league
-    from comparisons.league.page import summary, write_league
+    from comparisons.league import FILES, measure_league, summary, write_league
     from comparisons.output import tabulated
 
-    with shown(quiet=given.quiet) as progress:
-        league = measure_league(
-            scenes, given.others, folder / "results", workers(given, 1), quick=given.quick, progress=progress
-        )
+    folder = writable_folder(given.out or Path("out/league"), *FILES)
+    with running(given, folder / "results", number=1, process=True) as run_cases:
+        league = measure_league(scenes, given.others, run_cases, quick=given.quick)
     print(tabulated(summary(league)))
     for name, program, reason in league.left_out:
         print(f"{name}: {program}: left out, {reason}")

@@ -7,24 +7,27 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparisons.cases import Case, measure
+from comparisons.cases import Case, Row, measure
 
 # not public: the least of known seconds and the order of known errors, which no measured time can show
 from comparisons.cases.measure import unmeasured
 from comparisons.cli import main
-from comparisons.cost.cases import limit_cases, load_steps, refined, sweep_cases
-from comparisons.cost.fits import convergence, pareto, power_law
-from comparisons.cost.limit import end_state, extrapolated
-from comparisons.cost.orders import orders
-from comparisons.cost.points import TARGETS, Point, Trade, cheapest, front
-from comparisons.cost.references import NoReferenceError, Reference, best_reference, reference_cases
-from comparisons.errors import errors, scales
 from comparisons.models import MODELS
 from comparisons.models.options import Options
 from comparisons.quantities import KEPT, SCOPES
 from comparisons.response import ContactHistory, SupportHistory
 from comparisons.response.axis import STATIONS, SampledAxes
 from comparisons.scene import built_in_scenes, load_scene
+from comparisons.trade.fits import convergence, pareto, power_law
+from comparisons.trade.reference import (
+    NoReferenceError,
+    Reference,
+    best_reference,
+    extrapolated,
+    reference_cases,
+)
+from comparisons.trade.settings import limit_cases, load_steps, refined, sweep_cases
+from comparisons.trade.trade import TARGETS, Trade, cheapest, front, orders
 from tests.comparisons.show.pages.markup import check_alone
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)
@@ -105,13 +108,21 @@ def test_the_limit_of_a_series_of_any_order(order):
     assert np.array_equal(rest.contacts[PAIR].force, response_of(0.1).contacts[PAIR].force)
     # errors are measured at the last load parameter with a force, and relative to the reference and the length
     for force, end in ((np.where(TIMES > 0.7, 0.0, TIMES), 0.6), (np.zeros(5), 1.0)):
-        assert end_state(replace(exact, contacts={PAIR: replace(exact.contacts[PAIR], force=force)})) == end
-    table, off = errors(response_of(0.1), exact, KS, end=end_state(exact)), 0.01
+        assert known(replace(exact, contacts={PAIR: replace(exact.contacts[PAIR], force=force)})).end == end
+    table, off = known(exact).errors(response_of(0.1)), 0.01
     assert table["path"] == pytest.approx(
         {"force": off, "arc": 5 * off, "friction": off / 1.01, "moment": off / 5, "tip": 5 * off}
         | {"shape": off * np.sqrt(2.0), "shape_mean": off * np.sqrt(0.5)}
     )
     assert table["end"] == pytest.approx(table["path"])
+
+
+def table_of(value):
+    return {scope: dict.fromkeys(KEPT, value) for scope in SCOPES}
+
+
+def known(response, to=0.0):
+    return Reference(response=response, scene=KS, uncertainty=table_of(to), sentence="")
 
 
 def test_the_cases_of_a_sweep_are_complete_and_once():
@@ -135,24 +146,16 @@ def test_the_cases_of_a_sweep_are_complete_and_once():
 
 def point(case, seconds, error, own, status="COMPLETED"):
     """A case with known seconds, unknowns and errors."""
-    own_errors, tables = ({scope: dict.fromkeys(KEPT, value) for scope in SCOPES} for value in (own, error))
     made = unmeasured(status, "")
     response = replace(made.response, completed=status == "COMPLETED", unknowns=round(100 * seconds))
     measured = replace(made, response=response, seconds=seconds)
-    return Point(case=case, measured=measured, errors=tables, own_errors=own_errors)
+    return Row(case=case, measured=measured, errors=table_of(error), own_errors=table_of(own))
 
 
 def traded(points):
     """A trade-off whose reference is known to round-off, the solid's limit to 1e-4."""
     one = response_of(0.0)
-
-    def known(to):
-        table = {scope: dict.fromkeys(KEPT, to) for scope in SCOPES}
-        return Reference(
-            response=one, scene=KS, scale=scales(one), end=1.0, uncertainty=table, name="", sentence=""
-        )
-
-    return Trade(scene=KS, points=points, reference=known(1e-15), limit=known(1e-4))
+    return Trade(scene=KS, rows=points, reference=known(one, 1e-15), limit=known(one, 1e-4))
 
 
 def test_the_cheapest_settings_their_ratio_and_the_front():
@@ -166,11 +169,11 @@ def test_the_cheapest_settings_their_ratio_and_the_front():
     path = [cheapest(made, "path", "force", target) for target in TARGETS]
     assert [one.tsm and one.tsm.measured.seconds for one in path] == [1.0, 1.0, 2.0, 2.0, None]
     assert [one.solid and one.solid.measured.seconds for one in path] == [10.0, 30.0, 30.0, 90.0, None]
-    assert [one.ratio for one in path[:4]] == [10.0, 30.0, 15.0, 45.0]
+    assert [one.ratio() for one in path[:4]] == [10.0, 30.0, 15.0, 45.0]
     assert [one.untold for one in path] == [False, False, False, False, True]
     against = [one.solid_against_reference for one in path]
     assert [one and one.measured.seconds for one in against] == [10.0, None, None, None, None]
-    assert cheapest(made, "end", "force", 1e-3).ratio == 2.5
+    assert cheapest(made, "end", "force", 1e-3).ratio() == 2.5
     assert cheapest(replace(made, limit=None), "path", "force", 1e-2).untold
     found = front(made, "tsm", "path", "force", "seconds")
     assert [(one.cost, one.error) for one in found] == [(1.0, 1e-2), (2.0, 1e-4)]
@@ -188,7 +191,7 @@ def test_orders_and_exponents_of_families_and_no_reference_where_the_rods_stop()
     assert (row["order"], row["cost_exponent"]) == pytest.approx((4.0, 1.0), rel=1e-9)
     few = replace(KS, load_parameters=2)
     reference = best_reference(few, {case: measure(case, repeats=1) for case in reference_cases(few)})
-    assert (reference.name, reference.end) == ("exact rod", 1.0)
+    assert reference.end == 1.0
     assert reference.uncertainty["path"]["force"] < 1e-10
     scene = load_scene("double-beam")
     with pytest.raises(NoReferenceError, match="double-beam: the exact rods stopped: gone"):
