@@ -17,9 +17,9 @@ from comparisons.models.outside.programs import used
 from comparisons.output import write_numbers, write_rows
 from comparisons.scene import Scene
 from comparisons.show import palette
-from comparisons.show.pages import Section, folded, picture, provenance, write_page
+from comparisons.show.pages import folded, picture
 from comparisons.show.plot import WIDTH, figure, save
-from comparisons.show.work import draw_legend, logarithmic, rows_table
+from comparisons.show.work import draw_legend, logarithmic, rows_table, write_report
 
 MOST = 5
 """Largest number of resolutions of a program."""
@@ -239,27 +239,25 @@ def _line(row: Row) -> dict[str, str]:
 
 
 def _write_page(league: League, files: Sequence[Path], folder: Path) -> Path:
-    sections = [
-        Section(title="Programs", html=rows_table("How the runs of each program ended", summary(league))),
-        Section(title="Work and precision", html=picture(folder / "league.svg", DIAGRAM)),
-    ]
+    sections = {
+        "Programs": [rows_table("How the runs of each program ended", summary(league))],
+        "Work and precision": [picture(folder / "league.svg", DIAGRAM)],
+    }
     for scene in league.scenes:
-        parts = []
-        if scene.name in league.stopped:
-            end = f"The exact rods end here: {league.stopped[scene.name]}"
-            parts.append(f"<p>{end}. Errors are measured as far as they came.</p>")
         lines = [_line(row) for program in league.programs for row in league.of(scene.name, program)]
-        parts.append(folded("all runs", rows_table(CAPTION, lines)))
         reasons = [
             {"program": who, "reason": why} for name, who, why in league.left_out if name == scene.name
         ]
+        parts = [folded("all runs", rows_table(CAPTION, lines))]
+        if scene.name in league.stopped:
+            end = f"The exact rods end here: {league.stopped[scene.name]}"
+            parts.insert(0, f"<p>{end}. Errors are measured as far as they came.</p>")
         if reasons:
             parts.append(folded("who cannot state it", rows_table("Reasons", reasons)))
-        sections.append(Section(title=scene.name, html="\n".join(parts)))
-    sections += provenance(list(league.scenes), files, folder)
+        sections[scene.name] = parts
     others = ", ".join(model.label for model in used())
     lead = (
         f"{len(league.rows)} runs of {len(league.programs)} programs on {len(league.scenes)} scenes, each against the exact rods"
         f"{f'; programs of others: {others}' if others else ''}. Seconds belong to the machine named below. There is no single score."
     )
-    return write_page(folder, "League", lead, sections)
+    return write_report(folder, "League", lead, sections, league.scenes, files)

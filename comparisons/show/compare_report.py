@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from comparisons.budget import PARTS, Budget, budget_rows
+from comparisons.cases import Row
 from comparisons.models import ROD
 from comparisons.models.options import Options
 from comparisons.scene import Scene
@@ -19,7 +20,7 @@ from comparisons.show.pages import (
     tracks,
     write_page,
 )
-from comparisons.show.table import HEADER, Row, cells
+from comparisons.show.table import HEADER, cells
 
 EXACT = ROD.run_label(Options())
 """Label of the run of the exact rod, to which all others are compared."""

@@ -7,10 +7,10 @@ from math import inf, isfinite, log
 import numpy as np
 
 from comparisons.budget import TIMES, Budget
+from comparisons.cases import Row
 from comparisons.models import find
 from comparisons.referee import Verdict
 from comparisons.scene import Scene
-from comparisons.show.table import Row
 
 BUDGET = "error budget"
 """Key of the error budget among what is left out."""

@@ -1,40 +1,11 @@
 """The table of a comparison: one row per run."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from comparisons.errors import Errors
+from comparisons.cases import Row
 from comparisons.output import aligned, csv_text
 from comparisons.quantities import KEPT, PATH, SCOPES
 from comparisons.response import Response
-
-
-@dataclass(frozen=True, kw_only=True)
-class Row:
-    """One run and its errors.
-
-    Attributes
-    ----------
-    label, response : str, Response
-        Label of the run, and its response.
-    errors : Errors or None
-        Its errors; the reference itself has none.
-    family : str
-        What the runs that differ in resolution only share.
-    resolution : float
-        Number of elements along a beam; nan without a mesh, or where the scene gives the number.
-    cause : str
-        The largest part of the error that theory allows the model; empty where theory has no estimate for the scene.
-    """
-
-    label: str
-    response: Response
-    errors: Errors | None
-    family: str = ""
-    resolution: float = np.nan
-    cause: str = ""
-
 
 HEADER = (
     "model",
@@ -65,7 +36,7 @@ def table_text(rows: list[Row], reference: str) -> str:
 def cells(row: Row) -> tuple[str, ...]:
     """Return a run as text under `HEADER`."""
     # a dash where the run or the scene does not have the quantity
-    errors = [np.nan if row.errors is None else row.errors["path"][name] for name in SHOWN]
+    errors = [row.error("path", name) for name in SHOWN]
     shown = ["-" if np.isnan(value) else f"{value:.1e}" for value in errors]
     response = row.response
     label = row.label if response.completed else f"{row.label} ({response.status})"

@@ -1,9 +1,11 @@
-"""What the pages and diagrams of work and precision share: rows as a table, logarithmic panels, one legend."""
+"""What the pages and diagrams of work and precision share: sections of rows, logarithmic panels, one legend."""
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
-from comparisons.show.pages import table
+from comparisons.scene import Scene
+from comparisons.show.pages import Section, provenance, table, write_page
 
 
 def rows_table(caption: str, rows: Sequence[Mapping[str, object]]) -> str:
@@ -25,3 +27,16 @@ def draw_legend(fig: Any, panels: Sequence[Any], place: str) -> None:
             if label not in entries or entries[label].get_markerfacecolor() == "none":
                 entries[label] = handle
     fig.legend(list(entries.values()), list(entries), loc=place, ncols=3, fontsize="small", frameon=False)
+
+
+def write_report(
+    folder: Path,
+    title: str,
+    lead: str,
+    parts: Mapping[str, Sequence[str]],
+    scenes: Sequence[Scene],
+    files: Sequence[Path],
+) -> Path:
+    """Write a page of sections, the markup of each in parts, with its scenes and files below; return its path."""
+    sections = [Section(title=name, html="\n".join(markup)) for name, markup in parts.items()]
+    return write_page(folder, title, lead, [*sections, *provenance(scenes, files, folder)])

@@ -11,7 +11,7 @@ from comparisons.show import palette
 from comparisons.show.plot import WIDTH, figure, save
 from comparisons.show.work import draw_legend, logarithmic
 from comparisons.trade.tables import SHOWN, short
-from comparisons.trade.trade import MESHED, OnFront, Trade, front
+from comparisons.trade.trade import MESHED, Line, Trade, front
 
 AXES = {
     "seconds": "processor seconds of one thread, scene to checked answer",
@@ -83,35 +83,35 @@ def _mark_uncertainty(axes: Any, doubt: float) -> None:
         )  # fmt: skip
 
 
-def _draw_front(axes: Any, points: Sequence[OnFront], model: str) -> None:
+def _draw_front(axes: Any, points: Sequence[Line], model: str) -> None:
     """Draw a front, and name its points: to their left, or at the right-hand edge where others of the model are around."""
     axes.plot(
-        [one.cost for one in points], [one.error for one in points],
+        [one["spent"] for one in points], [one["own_error"] for one in points],
         color=MODELS[model].colour, linewidth=1.6, drawstyle="steps-post", zorder=1,
     )  # fmt: skip
     low, high = np.log(axes.get_ylim())
     last = -np.inf
     for one in reversed(_distinct(points)):
-        height = float((np.log(one.error) - low) / (high - low))
-        place, words = (one.cost, one.error), {"va": "center", "fontsize": "small"}
+        height = float((np.log(one["own_error"]) - low) / (high - low))
+        place, words = (one["spent"], one["own_error"]), {"va": "center", "fontsize": "small"}
         if MODELS[model].continuum:
             last = max(height, last + APART)
             line = {"arrowstyle": "-", "color": "0.7", "linewidth": 0.6, "shrinkB": 4, "relpos": (0.0, 0.5)}
             axes.annotate(
-                short(one.row), place, (1.03, last), textcoords="axes fraction", arrowprops=line, **words
+                short(one), place, (1.03, last), textcoords="axes fraction", arrowprops=line, **words
             )
         elif height > last + APART:
             last = height
             ground = {"facecolor": "white", "alpha": 0.7, "linewidth": 0.0, "pad": 0.5}
             axes.annotate(
-                short(one.row), place, (-7, 0), textcoords="offset points", ha="right", bbox=ground, **words
+                short(one), place, (-7, 0), textcoords="offset points", ha="right", bbox=ground, **words
             )
 
 
-def _distinct(points: Sequence[OnFront]) -> list[OnFront]:
+def _distinct(points: Sequence[Line]) -> list[Line]:
     """Return the points of a front without those that are hardly better than a cheaper one."""
-    kept: list[OnFront] = []
+    kept: list[Line] = []
     for one in points:
-        if not kept or ALIKE * one.error < kept[-1].error:
+        if not kept or ALIKE * one["own_error"] < kept[-1]["own_error"]:
             kept.append(one)
     return kept

@@ -1,26 +1,22 @@
 """The tables of a trade-off: every setting, the cheapest for an accuracy, the fronts, the orders; for files and for people."""
 
-from collections.abc import Mapping
 from math import isfinite
-from typing import Any
 
 from comparisons.cases import Row
-from comparisons.models import SOLID, TSM
 from comparisons.output import tabulated
 from comparisons.quantities import KEPT, SCOPES
-from comparisons.trade.trade import COSTS, MESHED, TARGETS, Cheapest, Trade, cheapest, front, orders
+from comparisons.trade.trade import TARGETS, Line, Trade, cheapest, orders
 
-Table = list[dict[str, Any]]
 SHOWN = "force"
 """The quantity of the diagrams, and of the tables for people; the files have all."""
 
 
-def setting_rows(trade: Trade) -> Table:
+def setting_rows(trade: Trade) -> list[Line]:
     """Return a row for every setting, those that stopped too: what it is, what it cost, all its errors."""
     return [_setting(row) for row in trade.rows]
 
 
-def _setting(row: Row) -> dict[str, Any]:
+def _setting(row: Row) -> Line:
     case, response = row.case, row.response
     contact = case.scene.contacts[0] if case.scene.contacts and case.found.continuum else None
     return {
@@ -46,10 +42,10 @@ def _setting(row: Row) -> dict[str, Any]:
     }
 
 
-def cheapest_rows(trade: Trade) -> Table:
+def cheapest_rows(trade: Trade) -> list[Line]:
     """Return the cheapest settings for every scope, quantity and target that the reference can tell."""
     return [
-        _cheapest(trade, scope, quantity, cheapest(trade, scope, quantity, target))
+        cheapest(trade, scope, quantity, target)
         for scope in SCOPES
         for quantity in KEPT
         if isfinite(trade.reference.uncertainty[scope][quantity])
@@ -57,55 +53,7 @@ def cheapest_rows(trade: Trade) -> Table:
     ]
 
 
-def _cheapest(trade: Trade, scope: str, quantity: str, one: Cheapest) -> dict[str, Any]:
-    return {
-        "scope": scope,
-        "quantity": quantity,
-        "target": one.target,
-        **_named(TSM.name, one.tsm),
-        **_named(SOLID.name, one.solid),
-        "ratio": one.ratio(),
-        "limit_uncertainty": trade.uncertainty(SOLID.name, scope, quantity),
-        **_named("solid_against_reference", one.solid_against_reference),
-        "ratio_against_reference": one.ratio(reference=True),
-    }
-
-
-def _named(name: str, row: Row | None) -> dict[str, Any]:
-    return {
-        name: row and row.label,
-        f"{name}_load_steps": row and row.case.scene.load_parameters,
-        f"{name}_seconds": row and row.measured.seconds,
-    }
-
-
-def order_rows(trade: Trade) -> Table:
-    """Return the orders of all quantities."""
-    return [{"quantity": name, **row} for name in KEPT for row in orders(trade, name)]
-
-
-def front_rows(trade: Trade) -> Table:
-    """Return the points of the Pareto fronts."""
-    return [
-        {
-            "model": model,
-            "scope": scope,
-            "quantity": quantity,
-            "cost": cost,
-            "label": one.row.label,
-            "load_steps": one.row.case.scene.load_parameters,
-            "spent": one.cost,
-            "own_error": one.error,
-        }
-        for model in MESHED
-        for scope in SCOPES
-        for quantity in KEPT
-        for cost in COSTS
-        for one in front(trade, model, scope, quantity, cost)
-    ]
-
-
-def cheapest_lines(trade: Trade, scope: str) -> tuple[str, Table]:
+def cheapest_lines(trade: Trade, scope: str) -> tuple[str, list[Line]]:
     """Return a title, and the cheapest settings of one scope as rows for people."""
     titles = {
         "end": f"at the load parameter {trade.reference.end:g}, any number of load steps",
@@ -115,23 +63,31 @@ def cheapest_lines(trade: Trade, scope: str) -> tuple[str, Table]:
     return title, [_line(cheapest(trade, scope, SHOWN, target)) for target in TARGETS]
 
 
-def _line(one: Cheapest) -> dict[str, Any]:
-    ratios = (one.ratio(), one.ratio(reference=True))
-    ratio, ratio_there = (value if isfinite(value) else None for value in ratios)
+def _line(row: Line) -> Line:
+    told = row["limit_uncertainty"] <= row["target"]
     return {
-        "error": one.target,
-        "TSM": one.tsm and short(one.tsm),
-        "seconds": one.tsm and one.tsm.measured.seconds,
-        "solid, its own limit": "not told" if one.untold else one.solid and short(one.solid),
-        "its seconds": one.solid and one.solid.measured.seconds,
-        "ratio": ratio,
-        "solid, the reference": one.solid_against_reference and short(one.solid_against_reference),
-        "and its seconds": one.solid_against_reference and one.solid_against_reference.measured.seconds,
-        "ratio there": ratio_there,
+        "error": row["target"],
+        "TSM": short(row, "tsm"),
+        "seconds": row["tsm_seconds"],
+        "solid, its own limit": short(row, "solid") if told else "not told",
+        "its seconds": row["solid_seconds"],
+        "ratio": row["ratio"],
+        "solid, the reference": short(row, "solid_against_reference"),
+        "and its seconds": row["solid_against_reference_seconds"],
+        "ratio there": row["ratio_against_reference"],
     }
 
 
-def order_lines(trade: Trade) -> Table:
+def short(row: Line, name: str = "") -> str | None:
+    """Return a setting of a row in a few words, its load steps in brackets; None if there is none."""
+    label, steps = (row[f"{name}_{key}".strip("_")] for key in ("" if name else "label", "load_steps"))
+    if label is None:
+        return None
+    setting = label.partition(" ")[2] or label
+    return f"{setting.replace('tolerance', 'tol')} [{steps}]"
+
+
+def order_lines(trade: Trade) -> list[Line]:
     """Return the orders and cost exponents with what they are fitted to as rows for people."""
     return [
         {
@@ -147,7 +103,7 @@ def order_lines(trade: Trade) -> Table:
     ]
 
 
-def _range(row: Mapping[str, Any], name: str) -> str | None:
+def _range(row: Line, name: str) -> str | None:
     return None if row[name] is None else f"{row[f'{name}_from']:g} to {row[f'{name}_to']:g}"
 
 
@@ -185,9 +141,3 @@ seconds: processor time of one thread from the scene to the checked answer, medi
             ),
         ]
     )
-
-
-def short(row: Row) -> str:
-    """Return a setting in a few words, its load steps in brackets."""
-    _, _, label = row.label.partition(" ")
-    return f"{(label or row.label).replace('tolerance', 'tol')} [{row.case.scene.load_parameters}]"

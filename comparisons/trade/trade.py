@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import isfinite, nan
-from typing import NamedTuple
+from typing import Any
 
 from comparisons.cases import Case, Row
 from comparisons.models import MODELS, SOLID, TSM
@@ -18,6 +18,8 @@ from comparisons.trade.reference import (
 )
 from comparisons.trade.settings import refined, sweep_cases
 
+Line = dict[str, Any]
+"""A row of a table by its columns."""
 TARGETS = (5e-2, 1e-2, 1e-3, 1e-4, 1e-5)
 COSTS = ("seconds", "iterations", "unknowns")
 MESHED = tuple(model.name for model in MODELS.values() if model.meshed)
@@ -97,27 +99,12 @@ def measure_trade(scene: Scene, run: Callable[[list[Case]], Measured], *, quick:
     return Trade(scene=scene, rows=rows, reference=reference, limit=limit)
 
 
-class Cheapest(NamedTuple):
-    """The settings with the least seconds for an accuracy; None if no setting reaches it.
+def cheapest(trade: Trade, scope: str, quantity: str, target: float) -> Line:
+    """Return the settings of TSM and of the solid with the least seconds for an error of at most `target`, as a row.
 
-    The error of `solid` is measured against the solid's limit, that of `solid_against_reference` against the reference; `untold` says
-    that the solid's limit is known less well than the target.
+    The error of the solid is measured against its own limit, and once more against the reference. Where the limit is known less well
+    than the target, the solid has no setting. A ratio is that of the seconds of the solid over those of TSM.
     """
-
-    target: float
-    tsm: Row | None
-    solid: Row | None
-    solid_against_reference: Row | None
-    untold: bool
-
-    def ratio(self, *, reference: bool = False) -> float:
-        """Return the seconds of the solid over those of the beams, with errors against each model's limit, or both against the reference."""
-        slow = self.solid_against_reference if reference else self.solid
-        return nan if slow is None or self.tsm is None else slow.measured.seconds / self.tsm.measured.seconds
-
-
-def cheapest(trade: Trade, scope: str, quantity: str, target: float) -> Cheapest:
-    """Return the cheapest settings of TSM and of the solid with an error of at most `target`."""
 
     def least(model: str, error: Callable[[Row], float]) -> Row | None:
         good = (row for row in trade.of_model(model, scope) if error(row) <= target)
@@ -133,36 +120,58 @@ def cheapest(trade: Trade, scope: str, quantity: str, target: float) -> Cheapest
         # on a coarse mesh, discretisation and model error may cancel
         return max((error for error in (against(row), own(row)) if isfinite(error)), default=nan)
 
-    untold = not trade.uncertainty(SOLID.name, scope, quantity) <= target
-    return Cheapest(
-        target,
-        least(TSM.name, against),
-        None if untold else least(SOLID.name, own),
-        least(SOLID.name, by_no_chance),
-        untold,
-    )
+    doubt = trade.uncertainty(SOLID.name, scope, quantity)
+    beams, there = least(TSM.name, against), least(SOLID.name, by_no_chance)
+    solid = least(SOLID.name, own) if doubt <= target else None
+    return {
+        "scope": scope,
+        "quantity": quantity,
+        "target": target,
+        **_named(TSM.name, beams),
+        **_named(SOLID.name, solid),
+        "ratio": _ratio(solid, beams),
+        "limit_uncertainty": doubt,
+        **_named("solid_against_reference", there),
+        "ratio_against_reference": _ratio(there, beams),
+    }
 
 
-class OnFront(NamedTuple):
-    """A setting that no other of its model beats in both cost and error."""
+def _named(name: str, row: Row | None) -> Line:
+    return {
+        name: row and row.label,
+        f"{name}_load_steps": row and row.case.scene.load_parameters,
+        f"{name}_seconds": row and row.measured.seconds,
+    }
 
-    row: Row
-    cost: float
-    error: float
+
+def _ratio(slow: Row | None, fast: Row | None) -> float | None:
+    return slow.measured.seconds / fast.measured.seconds if slow and fast else None
 
 
-def front(trade: Trade, model: str, scope: str, quantity: str, cost: str) -> list[OnFront]:
-    """Return the Pareto front of a model by rising cost, with errors against the model's limit.
+def front(trade: Trade, model: str, scope: str, quantity: str, cost: str) -> list[Line]:
+    """Return the Pareto front of a model by rising cost as rows, with errors against the model's limit.
 
     Errors below the uncertainty of the limit count as equal.
     """
     rows, doubt = trade.of_model(model, scope), trade.uncertainty(model, scope, quantity)
     costs = [row.spent(cost) for row in rows]
     errors = [max(row.error(scope, quantity, own=True), doubt) for row in rows]
-    return [OnFront(rows[k], costs[k], errors[k]) for k in pareto(costs, errors)]
+    return [
+        {
+            "model": model,
+            "scope": scope,
+            "quantity": quantity,
+            "cost": cost,
+            "label": rows[k].label,
+            "load_steps": rows[k].case.scene.load_parameters,
+            "spent": costs[k],
+            "own_error": errors[k],
+        }
+        for k in pareto(costs, errors)
+    ]
 
 
-def orders(trade: Trade, quantity: str) -> Iterator[dict[str, object]]:
+def orders(trade: Trade, quantity: str) -> Iterator[Line]:
     """Yield a row for every family with all load steps: ``error ~ n^-order`` over the path, ``seconds ~ unknowns^cost_exponent``.
 
     An exponent is None where its asymptotic range has fewer than three points.
@@ -176,27 +185,24 @@ def orders(trade: Trade, quantity: str) -> Iterator[dict[str, object]]:
             yield _order(trade, [rows[member] for member in members], quantity)
 
 
-def _order(trade: Trade, chain: Sequence[Row], quantity: str) -> dict[str, object]:
+def _order(trade: Trade, chain: Sequence[Row], quantity: str) -> Line:
     case = chain[0].case
     doubt = trade.uncertainty(case.model, "path", quantity)
     sizes = [row.resolution for row in chain]
     errors = [row.error("path", quantity, own=True) for row in chain]
     order = convergence(sizes, errors, ABOVE * doubt) if isfinite(doubt) else None
-    last = chain[-LARGEST:]
+    given = [contact for contact in case.scene.contacts if contact.penetration is not None]
+    costs = ([row.spent(cost) for row in chain[-LARGEST:]] for cost in ("unknowns", "seconds"))
     given = [contact for contact in case.scene.contacts if contact.penetration is not None]
     return {
         "family": case.family + (f", penetration {given[0].penetration:g}" if given else ""),
         "settings": len(chain),
         **_stated("order", order, -1.0),
-        **_stated(
-            "cost_exponent",
-            power_law(*([row.spent(cost) for row in last] for cost in ("unknowns", "seconds"))),
-            1.0,
-        ),
+        **_stated("cost_exponent", power_law(*costs), 1.0),
     }
 
 
-def _stated(name: str, fit: Fit | None, sign: float) -> dict[str, object]:
+def _stated(name: str, fit: Fit | None, sign: float) -> Line:
     return {
         name: fit and sign * fit.exponent,
         f"{name}_points": fit.points if fit else 0,

@@ -167,18 +167,17 @@ def test_the_cheapest_settings_their_ratio_and_the_front():
     stopped = point(beam, 0.5, 0.0, 0.0, "LEFT_OUT")
     made = traded([*beams, *(point(solid, *one) for one in solids), once, stopped])
     path = [cheapest(made, "path", "force", target) for target in TARGETS]
-    assert [one.tsm and one.tsm.measured.seconds for one in path] == [1.0, 1.0, 2.0, 2.0, None]
-    assert [one.solid and one.solid.measured.seconds for one in path] == [10.0, 30.0, 30.0, 90.0, None]
-    assert [one.ratio() for one in path[:4]] == [10.0, 30.0, 15.0, 45.0]
-    assert [one.untold for one in path] == [False, False, False, False, True]
-    against = [one.solid_against_reference for one in path]
-    assert [one and one.measured.seconds for one in against] == [10.0, None, None, None, None]
-    assert cheapest(made, "end", "force", 1e-3).ratio() == 2.5
-    assert cheapest(replace(made, limit=None), "path", "force", 1e-2).untold
+    assert [row["tsm_seconds"] for row in path] == [1.0, 1.0, 2.0, 2.0, None]
+    assert [row["solid_seconds"] for row in path] == [10.0, 30.0, 30.0, 90.0, None]
+    assert [row["ratio"] for row in path] == [10.0, 30.0, 15.0, 45.0, None]
+    against = [row["solid_against_reference_seconds"] for row in path]
+    assert against == [10.0, None, None, None, None]
+    assert cheapest(made, "end", "force", 1e-3)["ratio"] == 2.5
+    assert cheapest(replace(made, limit=None), "path", "force", 1e-2)["solid"] is None
     found = front(made, "tsm", "path", "force", "seconds")
-    assert [(one.cost, one.error) for one in found] == [(1.0, 1e-2), (2.0, 1e-4)]
-    assert [one.cost for one in front(made, "solid", "path", "force", "unknowns")] == [1000, 3000, 9000]
-    assert front(made, "solid", "path", "force", "seconds")[-1].error == 1e-4
+    assert [(row["spent"], row["own_error"]) for row in found] == [(1.0, 1e-2), (2.0, 1e-4)]
+    assert [row["spent"] for row in front(made, "solid", "path", "force", "unknowns")] == [1000, 3000, 9000]
+    assert front(made, "solid", "path", "force", "seconds")[-1]["own_error"] == 1e-4
 
 
 def test_orders_and_exponents_of_families_and_no_reference_where_the_rods_stop():
