@@ -1,7 +1,7 @@
 """The league: every program at several of its resolutions on several scenes, as a table, a diagram and a page."""
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from math import ceil
 from pathlib import Path
@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.cases import Case, Measurement, Row
+from comparisons.cases import Case, Row
+from comparisons.cases.progress import Runner
 from comparisons.cases.rows import reached_errors
 from comparisons.models import MODELS, ROD, Model, find
 from comparisons.models.options import Options
@@ -76,7 +77,7 @@ class League:
 def measure_league(
     scenes: Sequence[Scene],
     programs: Sequence[str],
-    run: Callable[[list[Case]], Mapping[Case, Measurement]],
+    run: Runner,
     *,
     quick: bool = False,
 ) -> League:

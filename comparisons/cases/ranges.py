@@ -30,11 +30,9 @@ def values(key: str, given: object) -> tuple[object, ...]:
             return _range(given)
         except FieldError as error:
             raise error.within(f"{key}.") from None
-    if isinstance(given, list):
-        if not given:
-            raise FieldError(key, given, "must not be empty")
-        return tuple(given)
-    return (given,)
+    if given == []:
+        raise FieldError(key, given, "must not be empty")
+    return tuple(given) if isinstance(given, list) else (given,)
 
 
 def _range(given: dict[str, Any]) -> tuple[float, ...]:
@@ -47,14 +45,13 @@ def _range(given: dict[str, Any]) -> tuple[float, ...]:
         raise FieldError("count", count, "must be at least 2, a range has two ends")
     if first == last:
         raise FieldError("to", last, "must differ from the range's start")
-    if logarithmic and min(first, last) <= 0:
-        name = "from" if first <= 0 else "to"
-        raise FieldError(name, given[name], 'must be positive in a range of spacing = "log"')
-    inner = (_between(first, last, k / (count - 1), logarithmic) for k in range(1, count - 1))
-    return (first, *inner, last)
+    for name in ("from", "to"):
+        if logarithmic and given[name] <= 0:
+            raise FieldError(name, given[name], 'must be positive in a range of spacing = "log"')
 
+    def between(part: float) -> float:
+        value: float = first * (last / first) ** part if logarithmic else first + (last - first) * part
+        whole = isinstance(first, int) and isinstance(last, int)
+        return round(value) if whole and math.isclose(value, round(value), rel_tol=1e-12) else value
 
-def _between(first: float, last: float, part: float, logarithmic: bool) -> float:
-    value = first * (last / first) ** part if logarithmic else first + (last - first) * part
-    whole = isinstance(first, int) and isinstance(last, int)
-    return round(value) if whole and math.isclose(value, round(value), rel_tol=1e-12) else value
+    return (first, *(between(k / (count - 1)) for k in range(1, count - 1)), last)

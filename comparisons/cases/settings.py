@@ -13,6 +13,8 @@ from comparisons.scene.rules import FieldError, RecordError
 
 Path = tuple[str, ...]
 """Where a setting stands: ``("scene", "load_parameters")``, ``("beam", "height")`` for every beam, ``("beam", "upper", "height")``."""
+Changes = Mapping[Path, object]
+"""New values of settings."""
 
 OWN = {item.name for item in fields(Scene)} - {f"{kind}s" for kind in LISTS}
 """The keys of the table ``[scene]``."""
@@ -39,7 +41,7 @@ def stated(record: Any) -> dict[str, Any]:
     return {item.name: getattr(record, item.name) for item in fields(record)}
 
 
-def changed(scene: Scene, changes: Mapping[Path, object]) -> Scene:
+def changed(scene: Scene, changes: Changes) -> Scene:
     """Return `scene` with changed settings. A change for a named record takes precedence over a change for all records of its kind.
 
     All rules that are broken are raised as one `FieldError`; their keys are the settings'.

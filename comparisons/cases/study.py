@@ -29,6 +29,8 @@ from comparisons.scene.tables import (
 
 Axes = dict[settings.Path, tuple[object, ...]]
 """The values of every setting that a run varies, by its place."""
+Tree = dict[str, "Tree | None"]
+"""The keys of a table, each with those of the table that it is, or None."""
 
 LARGEST = 100_000
 """Cases of a study."""
@@ -100,45 +102,36 @@ def _cases(scene: Scene, runs: list[dict[str, Any]], folder: Path, mistakes: lis
 
 def _axes(scene: Scene, run: dict[str, Any], mistakes: list[FieldError]) -> Axes:
     """Return what a run varies: the values of every setting by its place."""
-    mistakes += check_keys(run, RUN_KEYS, required=("model",))
+    known: Tree = dict.fromkeys(("model", *OPTION_RULES)) | {"scene": dict.fromkeys(settings.OWN)}
+    for kind, record in LISTS.items():
+        keys: Tree = dict.fromkeys(item.name for item in fields(record))
+        records = getattr(scene, f"{kind}s")
+        named = settings.record_names(kind, map(settings.stated, records))
+        known[kind] = {**dict.fromkeys(named, keys), **keys} if records else {}
     axes: Axes = {}
-    for key in (key for key in run if key in RUN_KEYS):
-        records = key in LISTS or key == "scene"
-        places = _places(scene, key, run[key], mistakes) if records else {(key,): run[key]}
-        for place, value in places.items():
-            with _noting(mistakes):
-                axes[place] = values(".".join(place), value)
+    for place, value in _places((), run, known, mistakes):
+        with _noting(mistakes):
+            axes[place] = values(".".join(place), value)
     return axes
 
 
 def _places(
-    scene: Scene, kind: str, given: object, mistakes: list[FieldError]
-) -> dict[settings.Path, object]:
-    """Return what a run states for the records of one kind: for all of them, or for one by its name."""
-    known, named = settings.OWN, set[str]()
-    if kind != "scene":
-        known = {item.name for item in fields(LISTS[kind])}
-        named = set(settings.record_names(kind, map(settings.stated, getattr(scene, f"{kind}s"))))
-        if isinstance(given, dict) and not named:
-            mistakes.append(FieldError(kind, given, f"the scene has no {kind}"))
-            return {}
-    stated = _keyed((kind,), given, known | named, mistakes)
-    places = {place: value for place, value in stated.items() if place[1] in known}
-    for place in [place for place in stated if place not in places]:
-        places |= _keyed(place, stated[place], known, mistakes)
-    return places
-
-
-def _keyed(
-    place: settings.Path, given: object, known: set[str], mistakes: list[FieldError]
-) -> dict[settings.Path, object]:
-    """Return the values of the table at a place by their places; keys that are not `known` are mistakes."""
+    place: settings.Path, given: object, known: Tree, mistakes: list[FieldError]
+) -> Iterator[tuple[settings.Path, object]]:
+    """Yield the values of the table at a place and of the tables in it by their places; keys that are not `known` are mistakes."""
     name = ".".join(place)
     if not isinstance(given, dict):
         mistakes.append(FieldError(name, given, f"must be followed by a key, {name}.KEY"))
-        return {}
-    mistakes += (mistake.within(f"{name}.") for mistake in check_keys(given, known))
-    return {(*place, key): value for key, value in given.items() if key in known}
+    elif not known:
+        mistakes.append(FieldError(name, given, f"the scene has no {name}"))
+    else:
+        required = () if place else ("model",)
+        mistakes += (item.within(f"{name}.".lstrip(".")) for item in check_keys(given, known, required))
+        for key in (key for key in given if key in known):
+            if (below := known[key]) is None:
+                yield (*place, key), given[key]
+            else:
+                yield from _places((*place, key), given[key], below, mistakes)
 
 
 def _model(value: object, folder: Path) -> str:
@@ -172,16 +165,13 @@ assert OPTION_RULES.keys() == {item.name for item in fields(Options)}
 
 HEAD_RULES: dict[str, Rule] = {"name": rules.name, "scene": rules.text, "repeats": rules.whole_number}
 """The keys of the table ``[study]`` with the rules of their values."""
-RUN_KEYS = ("model", *OPTION_RULES, "scene", *LISTS)
-"""The keys of a table ``[[run]]``."""
 
 
 def _case(scene: Scene, chosen: dict[settings.Path, object], folder: Path) -> Case:
     """Return the case of the chosen settings; raise all mistakes in them."""
-    mistakes: list[FieldError] = []
     given = {place[0]: value for place, value in chosen.items() if len(place) == 1}
-    rules_of = {"model": lambda value: _model(value, folder), **OPTION_RULES}
-    own, wrong = table_values(given, rules_of, ())
+    own, wrong = table_values(given, {"model": lambda value: _model(value, folder), **OPTION_RULES}, ())
+    mistakes: list[FieldError] = []
     if "model" in own:
         model = find(own["model"])
         none = f'is no option of model = "{model.name}"'

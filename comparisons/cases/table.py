@@ -1,14 +1,15 @@
-"""The results of a sweep as a table."""
+"""The results of a study as a table."""
 
 from collections.abc import Collection, Mapping
+from typing import Any
 
 import numpy as np
 
-from comparisons.cases.measure import Measurement
+from comparisons.cases.rows import Row
 from comparisons.cases.run import COMPLETED, Results
 from comparisons.cases.settings import settings
-from comparisons.output import Row, tabulated
-from comparisons.response import Array, Response
+from comparisons.output import tabulated
+from comparisons.response import Response
 from comparisons.version import version
 
 DETAILS = ("moment:", "tip_x:", "tip_y:")
@@ -17,45 +18,44 @@ HIDDEN = {"label", "load_parameter", "cutbacks", "seconds", "repeats", "peak_mem
 """Columns that a table for a reader leaves out; without times it is the same in every run."""
 
 
-def result_rows(results: Results) -> list[Row]:
+def result_rows(results: Results) -> list[dict[str, Any]]:
     """Return a row for each result, with settings that differ, status, last state reached and cost.
 
     The columns of answers are ``force:PAIR``, ``arc_position:PAIR``, ``moment:BEAM``, ``tip_x:BEAM`` and ``tip_y:BEAM``.
     """
-    stated = {case: settings(case) for case in results}
-    names = _varied(stated.values())
-    answers = {case: _answers(found.response) for case, found in results.items()}
-    columns = list(dict.fromkeys(name for answer in answers.values() for name in answer))
+    rows = [Row(case=case, measured=found) for case, found in results.items()]
+    stated = [settings(row.case) for row in rows]
+    answers = [_answers(row.response) for row in rows]
+    varied = _varied(stated)
+    columns = list(dict.fromkeys(name for answer in answers for name in answer))
     return [
         {
-            "scene": case.scene.name,
-            "model": case.found.name,
-            "label": case.label,
-            **{name: _text(stated[case].get(name)) for name in names},
-            "status": results[case].response.status,
-            "verdict": results[case].verdict,
-            **{name: answers[case].get(name) for name in columns},
-            **_cost(results[case]),
+            "scene": row.case.scene.name,
+            "model": row.case.found.name,
+            "label": row.label,
+            **{name: _text(own.get(name)) for name in varied},
+            "status": row.response.status,
+            "verdict": row.measured.verdict,
+            **{name: answer.get(name) for name in columns},
+            **row.cost(),
             "version": version(),
-            "message": results[case].response.message,
+            "message": row.response.message,
         }
-        for case in results
+        for row, own, answer in zip(rows, stated, answers, strict=True)
     ]
 
 
-def result_table(rows: list[Row]) -> str:
+def result_table(rows: list[dict[str, Any]]) -> str:
     """Return `result_rows` as a table for a reader, with the reasons of the stopped cases below it."""
     hidden = HIDDEN | ({"scene"} if len({row["scene"] for row in rows}) == 1 else set())
-    shown = [
-        {name: row[name] for name in row if name not in hidden and not name.startswith(DETAILS)}
-        for row in rows
-    ]
+    names = [name for name in rows[0] if name not in hidden and not name.startswith(DETAILS)]
+    shown = tabulated([{name: row[name] for name in names} for row in rows])
     stopped = [
         f"{row['scene']}, {row['label']}: {row['status']}: {row['message']}"
         for row in rows
         if row["status"] != COMPLETED
     ]
-    return "\n".join([tabulated(shown), f"\nversion {version()}", *([""] if stopped else []), *stopped])
+    return "\n".join([shown, f"\nversion {version()}", *([""] if stopped else []), *stopped])
 
 
 def _varied(tables: Collection[Mapping[str, object]]) -> list[str]:
@@ -65,26 +65,20 @@ def _varied(tables: Collection[Mapping[str, object]]) -> list[str]:
     return sorted(differ, key=lambda name: ("." in name, name))
 
 
-def _cost(found: Measurement) -> Row:
-    own = {name: getattr(found.response, name) for name in ("iterations", "cutbacks", "unknowns")}
-    return own | {name: getattr(found, name) for name in ("seconds", "repeats", "peak_memory")}
-
-
 def _answers(response: Response) -> dict[str, float]:
     """Return the last state reached."""
     if not len(response.load_parameter):
         return {}
-    tables: dict[str, dict[str, Array]] = {
-        "force": {pair: contact.force for pair, contact in response.contacts.items()},
-        "arc_position": {pair: contact.arc_position for pair, contact in response.contacts.items()},
-        "moment": {node: support.moment for node, support in response.supports.items()},
-        "tip_x": {beam: tip[:, 0] for beam, tip in response.tips.items()},
-        "tip_y": {beam: tip[:, 1] for beam, tip in response.tips.items()},
+    contacts, tips = response.contacts.items(), response.tips.items()
+    last = {
+        "load_parameter": response.load_parameter[-1],
+        **{f"force:{pair}": one.force[-1] for pair, one in contacts},
+        **{f"arc_position:{pair}": one.arc_position[-1] for pair, one in contacts},
+        **{f"moment:{node}": one.moment[-1] for node, one in response.supports.items()},
+        **{f"tip_x:{beam}": tip[-1, 0] for beam, tip in tips},
+        **{f"tip_y:{beam}": tip[-1, 1] for beam, tip in tips},
     }
-    last = {f"{name}:{of}": values[-1] for name, table in tables.items() for of, values in table.items()}
-    return {"load_parameter": float(response.load_parameter[-1])} | {
-        name: float(value) for name, value in last.items() if np.isfinite(value)
-    }
+    return {name: float(value) for name, value in last.items() if np.isfinite(value)}
 
 
 def _text(value: object) -> object:

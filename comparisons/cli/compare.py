@@ -12,7 +12,7 @@ from comparisons.cli.options import (
     add_workers,
     argument,
     chosen,
-    running,
+    workers,
 )
 from comparisons.cli.outcome import DONE, STOPPED, WRONG, exit_status, report
 from comparisons.cli.progress import staging, watching
@@ -166,11 +166,13 @@ def _held(scene: Scene, given: argparse.Namespace) -> int:
 
 def _league(scenes: list[Scene], given: argparse.Namespace) -> int:
     """Measure every program on every scene, print the summary and name the files."""
+    from comparisons.cases.progress import running
     from comparisons.league import FILES, measure_league, summary, write_league
     from comparisons.output import tabulated
 
     folder = writable_folder(given.out or Path("out/league"), *FILES)
-    with running(given, folder / "results", number=1, process=True) as run_cases:
+    where = workers(given, 1)
+    with running(folder / "results", where, quiet=given.quiet, process=True) as run_cases:
         league = measure_league(scenes, given.others, run_cases, quick=given.quick)
     print(tabulated(summary(league)))
     for name, program, reason in league.left_out:

@@ -1,10 +1,7 @@
 """The options of the models as arguments of commands."""
 
 import argparse
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from functools import partial
-from pathlib import Path
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from comparisons.cli import values
@@ -13,8 +10,6 @@ from comparisons.models.options import BRANCHES, Options
 from comparisons.models.outside.programs import ADAPTERS, known
 
 if TYPE_CHECKING:
-    from comparisons.cases import Case
-    from comparisons.cases.run import Results
     from comparisons.cases.workers import Workers
 
 ARGUMENTS: dict[str, tuple[dict[str, Any], str]] = {
@@ -88,18 +83,6 @@ def workers(given: argparse.Namespace, number: int | None = None) -> "Workers":
     from comparisons.cases.workers import cluster, local
 
     return local(given.workers or number) if given.cluster is None else cluster(given.cluster)
-
-
-@contextmanager
-def running(
-    given: argparse.Namespace, folder: Path, number: int | None = None, **how: Any
-) -> "Iterator[Callable[[list[Case]], Results]]":
-    """Give what runs cases on `workers` with a progress, and keeps their results in `folder`."""
-    from comparisons.cases.progress import shown
-    from comparisons.cases.run import run
-
-    with shown(quiet=given.quiet) as progress:
-        yield partial(run, folder=folder, workers=workers(given, number), progress=progress, **how)
 
 
 def chosen(given: argparse.Namespace) -> Options:

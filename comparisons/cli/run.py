@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from comparisons.claims.paper.figures import FIGURES
 from comparisons.claims.solid.questions import QUESTIONS
-from comparisons.cli.options import add_workers, running, workers
+from comparisons.cli.options import add_workers, workers
 from comparisons.cli.outcome import DONE, STOPPED, WRONG, report
 from comparisons.files import result_file, writable_folder, write_text
 from comparisons.scene import InputError, load_scene
@@ -134,13 +134,14 @@ def _trade(given: "argparse.Namespace") -> int:
     scene = load_scene(given.scene)
     folder = given.out or Path("out/trade") / scene.name
     writable_folder(folder, "report.html", "trade.csv", "trade.json")
+    from comparisons.cases.progress import running
     from comparisons.trade.page import write_trade
     from comparisons.trade.reference import NoReferenceError
     from comparisons.trade.tables import summary
     from comparisons.trade.trade import measure_trade
 
     try:
-        with running(given, folder / "results", number=1) as run_cases:
+        with running(folder / "results", workers(given, 1), quiet=given.quiet) as run_cases:
             trade = measure_trade(scene, run_cases, quick=given.quick)
     except NoReferenceError as error:
         report(f"crossval: {error}")
@@ -163,6 +164,7 @@ def _question(given: "argparse.Namespace") -> int:
 
 
 def _study(given: "argparse.Namespace") -> int:
+    from comparisons.cases.progress import running
     from comparisons.cases.run import UNSETTLED
     from comparisons.cases.study import read_study
     from comparisons.cases.table import result_rows, result_table
@@ -171,8 +173,8 @@ def _study(given: "argparse.Namespace") -> int:
     study = read_study(Path(given.suite))
     table = f"{study.name}.csv"
     folder = writable_folder(given.out or Path("out/study"), table)
-    with running(given, folder / study.name, repeats=study.repeats) as run_cases:
-        rows = result_rows(run_cases(list(study.cases)))
+    with running(folder / study.name, workers(given), quiet=given.quiet, repeats=study.repeats) as run_cases:
+        rows = result_rows(run_cases(study.cases))
     ends = Counter(row["status"] for row in rows)
     print(result_table(rows))
     print(f"\n{study.name}: {len(rows)} cases: {', '.join(f'{name} {ends[name]}' for name in sorted(ends))}")

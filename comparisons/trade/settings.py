@@ -5,7 +5,7 @@ from dataclasses import replace
 from math import log
 
 from comparisons.cases import Case
-from comparisons.cases.settings import changed
+from comparisons.cases.settings import Changes, changed
 from comparisons.models import MODELS, SOLID, TSM, Model
 from comparisons.models.options import Options
 from comparisons.models.solid import REFINED
@@ -91,7 +91,7 @@ def solid(
 ) -> Case:
     """Return the solid with elements of an order, and with another penalty or penetration of every contact if one is given."""
     given = {"penalty": None, "penetration": None, **contact} if contact else {}
-    changes: dict[tuple[str, ...], object] = {("contact", key): value for key, value in given.items()}
+    changes: Changes = {("contact", key): value for key, value in given.items()}
     scene = changed(scene, {("beam", "solid_element"): order, **changes})
     return Case(scene=scene, model=SOLID.name, options=Options(mesh=mesh))
 

@@ -6,11 +6,11 @@ from math import isfinite, nan
 from typing import Any
 
 from comparisons.cases import Case, Row
+from comparisons.cases.progress import Runner
 from comparisons.models import MODELS, SOLID, TSM
 from comparisons.scene import Scene
 from comparisons.trade.fits import Fit, convergence, pareto, power_law
 from comparisons.trade.reference import (
-    Measured,
     Reference,
     best_reference,
     reference_cases,
@@ -72,7 +72,7 @@ class Trade:
         ]
 
 
-def measure_trade(scene: Scene, run: Callable[[list[Case]], Measured], *, quick: bool = False) -> Trade:
+def measure_trade(scene: Scene, run: Runner, *, quick: bool = False) -> Trade:
     """Measure every setting of `scene` with `run` and state its errors.
 
     Raises
