@@ -18,10 +18,8 @@ from comparisons.models import Model, certified, find, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Count, Watch, uncounted, unwatched
 from comparisons.models.theory import bending
-from comparisons.models.verify import CHECK_FAILED
 from comparisons.output import Report, json_text
 from comparisons.quantities import KEPT, PATH
-from comparisons.referee import Verdict
 from comparisons.response import Response
 from comparisons.response.to_json import as_dict
 from comparisons.scene import Scene, to_toml
@@ -123,9 +121,11 @@ class Comparison:
     @property
     def wrong(self) -> list[Row]:
         """The runs whose answers were refused by the checks or the referee, and the reference if it stopped."""
-        refused = {CHECK_FAILED, *Verdict.__members__}
-        stopped = (row for row in self.rows if not row.response.completed)
-        return [row for row in stopped if row.response.status in refused or row.label == ROD.label]
+        return [
+            row
+            for row in self.rows
+            if row.measured.wrong or (row.label == ROD.label and not row.response.completed)
+        ]
 
 
 def compare(
@@ -136,22 +136,10 @@ def compare(
     staging: Staging = lambda _: nullcontext(uncounted),
     more: Sequence[Run] = (),
 ) -> Comparison:
-    """Solve `scene` with every model that can state it and write the results to `folder`.
+    """Solve `scene` with every model that can state it, and with `more` runs, and write the results to `folder`.
 
-    Parameters
-    ----------
-    scene : Scene
-        Any scene; the exact rods are the reference of the comparison.
-    folder : Path
-        Output folder; it is created if it does not exist.
-    report : callable
-        Receives lines about the progress.
-    watching : callable
-        ``watching(label)`` gives a context with the `Watch` of a run.
-    staging : callable
-        ``staging(label)`` gives a context with the `Count` of a stage of the work after the runs.
-    more : sequence of Run
-        Runs beside those of every comparison, such as programs of others.
+    Errors are measured against the exact rods. `report` receives lines about the progress. ``watching(label)`` gives a context with the
+    `Watch` of a run, ``staging(label)`` one with the `Count` of a stage of the work after the runs.
 
     Raises
     ------
@@ -204,7 +192,7 @@ def _row(scene: Scene, run: Run, response: Response, reference: Response) -> Row
     case = run.case(scene)
     known = None if response is reference else reached_errors(response, reference, scene, (*KEPT, *PATH))
     cause = _cause(case, reference)
-    return Row(case=case, measured=Measurement(response=response), errors=known, name=run.label, cause=cause)
+    return Row(case=case, measured=Measurement.of(response), errors=known, name=run.label, cause=cause)
 
 
 def _cause(case: Case, reference: Response) -> str:

@@ -44,19 +44,10 @@ DIAGRAM = (
 
 @dataclass(frozen=True, kw_only=True)
 class League:
-    """The rows of all scenes, and what was left out.
+    """The rows of all scenes, in the order of scenes, programs and resolutions; the program is the family of a row, as ``TSM mixed``.
 
-    Attributes
-    ----------
-    scenes : tuple of Scene
-        The scenes.
-    rows : list of Row
-        In the order of scenes, programs and resolutions. The program is the family of a row, such as ``TSM mixed``. Errors are the largest
-        ones against the exact rods over the load parameters that both reached.
-    left_out : list of (str, str, str)
-        Scene, program, and the reason why the program cannot state the scene.
-    stopped : dict of str
-        Reason why the exact rods did not complete, by scene; errors are then measured as far as they came.
+    Errors are the largest ones against the exact rods over the load parameters that both reached. `left_out` has scene, program, and the
+    reason why the program cannot state the scene; `stopped` has the reason why the exact rods did not complete, by scene.
     """
 
     scenes: tuple[Scene, ...]
@@ -81,15 +72,10 @@ def measure_league(
     *,
     quick: bool = False,
 ) -> League:
-    """Measure every program on every scene that it can state, with `run`.
+    """Measure every program on every scene that it can state.
 
-    `programs` are names for `comparisons.models.find` of models beside those of this package. If quick, every program has at most two
-    resolutions.
-
-    Raises
-    ------
-    ModelError
-        If there is no such program.
+    `programs` are names of models beside those of this package; if there is none, it is a `ModelError`. If quick, every program has at
+    most two resolutions.
     """
     models = [(name, find(name)) for name in (*MODELS, *programs) if name != ROD.name]
     references = {scene.name: Case(scene=scene, model=ROD.name) for scene in scenes}

@@ -13,20 +13,11 @@ from comparisons.scene import Scene
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Row:
-    """A case with what it measured.
+    """A case with its answer, its cost and its errors by scope and quantity.
 
-    Attributes
-    ----------
-    case, measured : Case, Measurement
-        What was run, its answer and its cost.
-    errors : Errors or None
-        Errors against the reference, by scope and quantity; the reference itself has none.
-    own_errors : Errors or None
-        Errors against what the model converges to; None where that is not known.
-    name : str
-        Label of the run; by default that of the case.
-    cause : str
-        The largest part of the error that theory allows the model; empty where theory has no estimate for the scene.
+    `errors` are against the reference, which itself has none; `own_errors` are against what the model converges to, where that is known.
+    `name` is the label of the run, by default that of the case. `cause` is the largest part of the error that theory allows the model,
+    empty where theory has no estimate for the scene.
     """
 
     case: Case

@@ -17,16 +17,9 @@ from comparisons.scene import Scene
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Gate:
-    """A run against its bounds.
+    """A run, what it is measured against, and its errors with their bounds by name of the quantity, in the order asked for.
 
-    Attributes
-    ----------
-    scene : Scene
-        What is solved.
-    response, reference : Response
-        The run and what it is measured against.
-    bounds : tuple of Finding
-        The errors and their bounds by name of the quantity, in the order asked for; an error is infinite where a solution stopped.
+    An error is infinite where a solution stopped.
     """
 
     scene: Scene

@@ -1,7 +1,7 @@
 """``crossval compare``: one scene by every model, one model against bounds, or several scenes by every program."""
 
 import argparse
-from contextlib import AbstractContextManager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,7 +19,6 @@ from comparisons.cli.progress import staging, watching
 from comparisons.files import result_file, writable_folder, write_text
 from comparisons.models import TSM
 from comparisons.models.options import ModelError
-from comparisons.models.progress import Count, Watch
 from comparisons.quantities import COMPARED
 from comparisons.scene import Scene, built_in_scenes, load_scene
 
@@ -117,21 +116,13 @@ def _compare(scene: Scene, given: argparse.Namespace) -> int:
     from comparisons.models import find
     from comparisons.show.table import table_text
 
-    def tell(line: str) -> None:
-        if not given.quiet:
-            report(line)
-
-    def watch(label: str) -> AbstractContextManager[Watch]:
-        return watching(label, quiet=given.quiet)
-
-    def stage(label: str) -> AbstractContextManager[Count]:
-        return staging(label, quiet=given.quiet)
-
+    tell = (lambda _: None) if given.quiet else report
     more = [run_of(model, options) for model in map(find, given.others) for options in model.compared()]
     if any(getattr(given, option) is not None for option in MODEL):
         model, options = find(given.model or TSM.name), chosen(given)
         label = f"{model.label} {model.setting(scene, options)}".rstrip()
         more.append(Run(label=label, model=model.name, options=options))
+    watch, stage = partial(watching, quiet=given.quiet), partial(staging, quiet=given.quiet)
     found = compare(scene, given.out or Path("out") / scene.name, tell, watch, stage, more)
     print(table_text(found.rows, ROD.label))
     if found.other_events:

@@ -30,13 +30,12 @@ def pareto(cost: ArrayLike, error: ArrayLike) -> list[int]:
 
 
 class Fit(NamedTuple):
-    """A power law ``y = factor x^exponent`` by least squares on the logarithms.
+    """A power law ``y ~ x^exponent`` by least squares on the logarithms.
 
     It is fitted to `points` points from x = `first` to `last`; `scatter` is the largest ``|ln y - ln y_fit|``.
     """
 
     exponent: float
-    factor: float
     first: float
     last: float
     points: int
@@ -50,7 +49,7 @@ def power_law(x: Sequence[float], y: Sequence[float]) -> Fit | None:
     lx, ly = np.log(x), np.log(y)
     exponent, constant = np.polyfit(lx, ly, 1)
     scatter = float(np.abs(ly - exponent * lx - constant).max())
-    return Fit(float(exponent), float(np.exp(constant)), float(min(x)), float(max(x)), len(x), scatter)
+    return Fit(float(exponent), float(min(x)), float(max(x)), len(x), scatter)
 
 
 def convergence(resolution: Sequence[float], error: Sequence[float], floor: float) -> Fit | None:

@@ -1,6 +1,6 @@
 """The settings that are swept: model, element, resolution, order, penalty and load steps, each a complete case."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from math import log
 
@@ -23,16 +23,9 @@ PENETRATION = 1e-10
 def sweep_cases(scene: Scene, *, quick: bool = False) -> list[Case]:
     """Return the cases of the sweep, each once: the settings of every model, whether or not it can state the scene.
 
-    Parameters
-    ----------
-    scene : Scene
-        Gives the load parameters; fewer load steps hit a part of them.
-    quick : bool
-        Half of the settings, without those that take longest.
+    Fewer load steps hit a part of the scene's load parameters. If quick, the settings that take longest are left out.
     """
-    steps = load_steps(scene)
-    some = (steps[0], *steps[-2:]) if quick else steps
-    every = (case for model in MODELS.values() for case in _settings(model, scene, some, quick=quick))
+    every = (case for model in MODELS.values() for case in _settings(model, scene, quick=quick))
     return list(dict.fromkeys(every))
 
 
@@ -48,14 +41,14 @@ def limit_cases(scene: Scene, *, quick: bool = False) -> list[Case]:
     return [solid(scene, mesh, penetration=PENETRATION) for mesh in (QUICK_LIMIT if quick else LIMIT)]
 
 
-def _settings(model: Model, scene: Scene, steps: Sequence[int], *, quick: bool) -> Iterator[Case]:
+def _settings(model: Model, scene: Scene, *, quick: bool) -> Iterator[Case]:
     """Yield the resolutions of a model with several numbers of load steps, and variants of one resolution with all of them."""
     if not model.meshed:
         if model.reference is None:  # the exact rod is among the references
             yield Case(scene=scene, model=model.name)
         return
-    plain = solid(scene).scene if model.continuum else scene
-    for count in steps:
+    plain, steps = solid(scene).scene if model.continuum else scene, load_steps(scene)
+    for count in (steps[0], *steps[-2:]) if quick else steps:
         stepped = replace(plain, load_parameters=count)
         for options in model.resolutions(quick=quick):
             yield Case(scene=stepped, model=model.name, options=options)
@@ -64,20 +57,15 @@ def _settings(model: Model, scene: Scene, steps: Sequence[int], *, quick: bool) 
         yield from (beams(scene, kind, n) for kind in (*PAPER[1:], MIXED_NO_BOW) for n in (5, 10, 20, 40))
     if model is SOLID:
         yield from limit_cases(scene, quick=quick)
-        yield from _solid_variants(scene, quick=quick)
-
-
-def _solid_variants(scene: Scene, *, quick: bool) -> Iterator[Case]:
-    """Other orders, penalties and meshes with all load steps."""
-    if not quick:
-        yield solid(scene, REFINED[3])
-    for order in ("Q1", "Q2-full"):
-        yield from (solid(scene, mesh, order) for mesh in REFINED[: 2 if quick else 4])
-    beam = scene.beams[0]
-    stiffness = float(f"{beam.youngs_modulus * beam.cross_section[0] / beam.rectangle_height:.2g}")
-    for factor in PENALTIES[:2] if quick else PENALTIES:
-        yield solid(scene, (25, 2), penalty=factor * stiffness)
-    yield solid(scene, (25, 2), penetration=PENETRATION)
+        if not quick:
+            yield solid(scene, REFINED[3])
+        for order in ("Q1", "Q2-full"):
+            yield from (solid(scene, mesh, order) for mesh in REFINED[: 2 if quick else 4])
+        beam = scene.beams[0]
+        stiffness = float(f"{beam.youngs_modulus * beam.cross_section[0] / beam.rectangle_height:.2g}")
+        for factor in PENALTIES[:2] if quick else PENALTIES:
+            yield solid(scene, (25, 2), penalty=factor * stiffness)
+        yield solid(scene, (25, 2), penetration=PENETRATION)
 
 
 def beams(scene: Scene, kind: ElementType, elements: int, tolerance: float | None = None) -> Case:
@@ -96,12 +84,11 @@ def solid(
     return Case(scene=scene, model=SOLID.name, options=Options(mesh=mesh))
 
 
-def refined(case: Case, cases: Iterable[Case]) -> list[Case]:
-    """Return the members of `cases` that differ from `case` in resolution only; a solid must be refined alike in both directions."""
-
-    def alike(other: Case) -> bool:
-        mesh = other.options.mesh
-        own = replace(other.options, elements=case.options.elements, mesh=case.options.mesh)
-        return (mesh is None or mesh in REFINED) and replace(other, options=own) == case
-
-    return sorted(filter(alike, cases), key=lambda other: other.resolution)
+def chains(cases: Iterable[Case]) -> Iterator[list[Case]]:
+    """Yield the cases that differ in resolution only, three or more, coarse to fine; solids are refined alike in both directions."""
+    found: dict[Case, list[Case]] = {}
+    for case in cases:
+        if case.options.mesh in (None, *REFINED):
+            alike = replace(case, options=replace(case.options, elements=None, mesh=None))
+            found.setdefault(alike, []).append(case)
+    return (sorted(chain, key=lambda case: case.resolution) for chain in found.values() if len(chain) > 2)

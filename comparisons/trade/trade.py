@@ -1,11 +1,11 @@
 """The trade-off of a scene: every setting with its cost and errors, the cheapest for an accuracy, fronts and orders."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
-from math import isfinite, nan
+from math import inf, isfinite, nan
 from typing import Any
 
-from comparisons.cases import Case, Row
+from comparisons.cases import Row
 from comparisons.cases.progress import Runner
 from comparisons.models import MODELS, SOLID, TSM
 from comparisons.scene import Scene
@@ -16,7 +16,7 @@ from comparisons.trade.reference import (
     reference_cases,
     solid_limit,
 )
-from comparisons.trade.settings import refined, sweep_cases
+from comparisons.trade.settings import chains, sweep_cases
 
 Line = dict[str, Any]
 """A row of a table by its columns."""
@@ -32,18 +32,9 @@ ABOVE = 3.0
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Trade:
-    """The whole sweep.
+    """The whole sweep: a row for every case, with errors against the reference and against what its model converges to.
 
-    Attributes
-    ----------
-    scene : Scene
-        The scene.
-    rows : list of Row
-        All cases, those that stopped too. The solid has a limit of its own, that of all other models is the reference.
-    reference : Reference
-        What errors are against.
-    limit : Reference or None
-        The solid's own limit, None if it is not known.
+    The solid converges to a limit of its own, None if it is not known; the limit of all other models is the reference.
     """
 
     scene: Scene
@@ -73,29 +64,16 @@ class Trade:
 
 
 def measure_trade(scene: Scene, run: Runner, *, quick: bool = False) -> Trade:
-    """Measure every setting of `scene` with `run` and state its errors.
-
-    Raises
-    ------
-    NoReferenceError
-        If there is nothing to measure errors against.
-    """
+    """Measure every setting of `scene` and state its errors; nothing to measure them against is a `NoReferenceError`."""
     cases = list(dict.fromkeys([*reference_cases(scene), *sweep_cases(scene, quick=quick)]))
     measured = run(cases)
     reference = best_reference(scene, measured)
     limit = solid_limit(scene, measured, quick=quick)
     rows = []
     for case in cases:
-        response = measured[case].response
-        own = limit if case.found.continuum else reference
-        rows.append(
-            Row(
-                case=case,
-                measured=measured[case],
-                errors=reference.errors(response),
-                own_errors=None if own is None else own.errors(response),
-            )
-        )
+        response, own = measured[case].response, limit if case.found.continuum else reference
+        errors, own_errors = (None if one is None else one.errors(response) for one in (reference, own))
+        rows.append(Row(case=case, measured=measured[case], errors=errors, own_errors=own_errors))
     return Trade(scene=scene, rows=rows, reference=reference, limit=limit)
 
 
@@ -106,23 +84,19 @@ def cheapest(trade: Trade, scope: str, quantity: str, target: float) -> Line:
     than the target, the solid has no setting. A ratio is that of the seconds of the solid over those of TSM.
     """
 
-    def least(model: str, error: Callable[[Row], float]) -> Row | None:
+    def least(model: str, *own: bool) -> Row | None:
+        """The larger error counts: on a coarse mesh, discretisation and model error may cancel."""
+
+        def error(row: Row) -> float:
+            errors = (row.error(scope, quantity, own=one) for one in own)
+            return max(filter(isfinite, errors), default=inf)
+
         good = (row for row in trade.of_model(model, scope) if error(row) <= target)
         return min(good, key=lambda row: row.measured.seconds, default=None)
 
-    def against(row: Row) -> float:
-        return row.error(scope, quantity)
-
-    def own(row: Row) -> float:
-        return row.error(scope, quantity, own=True)
-
-    def by_no_chance(row: Row) -> float:
-        # on a coarse mesh, discretisation and model error may cancel
-        return max((error for error in (against(row), own(row)) if isfinite(error)), default=nan)
-
     doubt = trade.uncertainty(SOLID.name, scope, quantity)
-    beams, there = least(TSM.name, against), least(SOLID.name, by_no_chance)
-    solid = least(SOLID.name, own) if doubt <= target else None
+    beams, there = least(TSM.name, False), least(SOLID.name, False, True)
+    solid = least(SOLID.name, True) if doubt <= target else None
     return {
         "scope": scope,
         "quantity": quantity,
@@ -177,29 +151,20 @@ def orders(trade: Trade, quantity: str) -> Iterator[Line]:
     An exponent is None where its asymptotic range has fewer than three points.
     """
     rows = {row.case: row for model in MESHED for row in trade.of_model(model, "path")}
-    seen: set[Case] = set()
-    for case in rows:
-        members = refined(case, rows)
-        if case in members and case not in seen and len(members) > 2:
-            seen.update(members)
-            yield _order(trade, [rows[member] for member in members], quantity)
-
-
-def _order(trade: Trade, chain: Sequence[Row], quantity: str) -> Line:
-    case = chain[0].case
-    doubt = trade.uncertainty(case.model, "path", quantity)
-    sizes = [row.resolution for row in chain]
-    errors = [row.error("path", quantity, own=True) for row in chain]
-    order = convergence(sizes, errors, ABOVE * doubt) if isfinite(doubt) else None
-    given = [contact for contact in case.scene.contacts if contact.penetration is not None]
-    costs = ([row.spent(cost) for row in chain[-LARGEST:]] for cost in ("unknowns", "seconds"))
-    given = [contact for contact in case.scene.contacts if contact.penetration is not None]
-    return {
-        "family": case.family + (f", penetration {given[0].penetration:g}" if given else ""),
-        "settings": len(chain),
-        **_stated("order", order, -1.0),
-        **_stated("cost_exponent", power_law(*costs), 1.0),
-    }
+    for chain in chains(rows):
+        case, known = chain[0], [rows[one] for one in chain]
+        doubt = trade.uncertainty(case.model, "path", quantity)
+        errors = [row.error("path", quantity, own=True) for row in known]
+        sizes = [row.resolution for row in known]
+        order = convergence(sizes, errors, ABOVE * doubt) if isfinite(doubt) else None
+        costs = ([row.spent(cost) for row in known[-LARGEST:]] for cost in ("unknowns", "seconds"))
+        given = [contact for contact in case.scene.contacts if contact.penetration is not None]
+        yield {
+            "family": case.family + (f", penetration {given[0].penetration:g}" if given else ""),
+            "settings": len(chain),
+            **_stated("order", order, -1.0),
+            **_stated("cost_exponent", power_law(*costs), 1.0),
+        }
 
 
 def _stated(name: str, fit: Fit | None, sign: float) -> Line:
