@@ -135,9 +135,8 @@ def _trade(given: "argparse.Namespace") -> int:
     folder = given.out or Path("out/trade") / scene.name
     writable_folder(folder, "report.html", "trade.csv", "trade.json")
     from comparisons.cases.progress import running
-    from comparisons.trade.page import write_trade
     from comparisons.trade.reference import NoReferenceError
-    from comparisons.trade.tables import summary
+    from comparisons.trade.report import summary, write_trade
     from comparisons.trade.trade import measure_trade
 
     try:
@@ -165,9 +164,9 @@ def _question(given: "argparse.Namespace") -> int:
 
 def _study(given: "argparse.Namespace") -> int:
     from comparisons.cases.progress import running
+    from comparisons.cases.rows import result_rows, result_table
     from comparisons.cases.run import UNSETTLED
     from comparisons.cases.study import read_study
-    from comparisons.cases.table import result_rows, result_table
     from comparisons.output import write_rows
 
     study = read_study(Path(given.suite))

@@ -34,13 +34,13 @@ def cells(row: Row) -> dict[str, str]:
         "model": row.label if response.completed else f"{row.label} ({response.status})",
         "unknowns": str(response.unknowns),
         **{name.replace("arc", "arc position"): text for name, text in shown.items()},
-        "stable": _stable(response),
+        "stable": stable(response),
         "iterations": str(response.iterations),
         "seconds": f"{response.wall_seconds:.3f}",
     }
 
 
-def _stable(response: Response) -> str:
+def stable(response: Response) -> str:
     """Return yes, no, a dash where the model states no index, or that it states one at a part of the load parameters."""
     if response.index is None or not np.any(response.index >= 0):
         return "-"
@@ -63,7 +63,7 @@ def table_csv(rows: Sequence[Row]) -> str:
                     for scope in SCOPES
                     for name in (*KEPT, *PATH)
                 },
-                "stable": _stable(row.response),
+                "stable": stable(row.response),
                 "newton_iterations": row.response.iterations,
                 "cutbacks": row.response.cutbacks,
                 "wall_seconds": row.response.wall_seconds,

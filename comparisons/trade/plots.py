@@ -10,9 +10,10 @@ from comparisons.models import MODELS, ROD, SOLID
 from comparisons.show import palette
 from comparisons.show.plot import WIDTH, figure, save
 from comparisons.show.work import draw_legend, logarithmic
-from comparisons.trade.tables import SHOWN, short
 from comparisons.trade.trade import MESHED, Line, Trade, front
 
+SHOWN = "force"
+"""The quantity of the diagrams, and of the tables for people; the files have all."""
 AXES = {
     "seconds": "processor seconds of one thread, scene to checked answer",
     "iterations": "Newton iterations of the whole path",
@@ -115,3 +116,12 @@ def _distinct(points: Sequence[Line]) -> list[Line]:
         if not kept or ALIKE * one["own_error"] < kept[-1]["own_error"]:
             kept.append(one)
     return kept
+
+
+def short(row: Line, name: str = "") -> str | None:
+    """Return a setting of a row in a few words, its load steps in brackets; None if there is none."""
+    label, steps = (row[f"{name}_{key}".strip("_")] for key in ("" if name else "label", "load_steps"))
+    if label is None:
+        return None
+    setting = label.partition(" ")[2] or label
+    return f"{setting.replace('tolerance', 'tol')} [{steps}]"

@@ -37,24 +37,13 @@ TIMES = np.array([0.2, 0.4, 0.6, 0.8, 1.0])
 N = np.array([5.0, 10.0, 20.0, 40.0, 80.0])
 
 
-def test_a_front_is_what_nothing_beats():
-    points = np.random.default_rng(0).random((60, 2)).round(1)
-    kept = pareto(*points.T)
-    beaten = [any((other <= point).all() and (other < point).any() for other in points) for point in points]
-    assert {tuple(points[k]) for k in kept} == {
-        tuple(point) for point, is_beaten in zip(points, beaten, strict=True) if not is_beaten
-    }
-    assert list(points[kept, 0]) == sorted(set(points[kept, 0]))
-    assert pareto([np.nan, 1.0, 2.0], [0.0, np.nan, 0.5]) == [2]
-    assert pareto([], []) == []
-
-
-def test_exponents_and_orders():
+def test_fronts_and_orders():
     """An order is that of the finest four above the floor: not from a coarse mesh that is right by chance, nor from round-off."""
-    fit = power_law(list(N), list(3.0 * N**1.5))
-    assert fit.exponent == pytest.approx(1.5, rel=1e-12)
-    assert (fit.first, fit.last, fit.points) == (5.0, 80.0, 5)
-    assert fit.scatter < 1e-12
+    points = np.random.default_rng(0).random((60, 2)).round(1)
+    beaten = [any((other <= point).all() and (other < point).any() for other in points) for point in points]
+    best = sorted({tuple(point) for point, worse in zip(points, beaten, strict=True) if not worse})
+    assert [tuple(points[k]) for k in pareto(*points.T)] == best
+    assert pareto([np.nan, 1.0, 2.0], [0.0, np.nan, 0.5]) == [2]
     for y in ([1.0, 2.0], [1.0, 0.0, 2.0]):
         assert power_law([1.0, 2.0, 4.0][: len(y)], y) is None
     spoilt = N**-4.0
@@ -62,7 +51,7 @@ def test_exponents_and_orders():
     cases = [(order, 7.0 * N**-order, (10.0, 80.0, 4)) for order in (1.0, 2.0, 4.0)]
     for order, error, where in (*cases, (4.0, spoilt, (10.0, 40.0, 3))):
         fit = convergence(list(N), list(error), 0.0)
-        assert -fit.exponent == pytest.approx(order, rel=1e-12)
+        assert (-fit.exponent, fit.scatter) == pytest.approx((order, 0.0), rel=1e-12, abs=1e-12)
         assert (fit.first, fit.last, fit.points) == where
     unknown = [0.1, 0.01, np.nan, np.nan, np.nan]
     for error, uncertainty in ((N**-4.0, 1e-4), (N**1.0, 0.0), (unknown, 0.0)):
@@ -106,15 +95,9 @@ def test_the_limit_of_a_series_of_any_order(order):
         assert read(held) == pytest.approx(read(replace(exact, contacts={})), abs=1e-12)
     rest = extrapolated([response_of(h) for h in (0.05, 0.06, 0.1)])
     assert np.array_equal(rest.contacts[PAIR].force, response_of(0.1).contacts[PAIR].force)
-    # errors are measured at the last load parameter with a force, and relative to the reference and the length
+    # errors at the end are those at the last load parameter with a force
     for force, end in ((np.where(TIMES > 0.7, 0.0, TIMES), 0.6), (np.zeros(5), 1.0)):
         assert known(replace(exact, contacts={PAIR: replace(exact.contacts[PAIR], force=force)})).end == end
-    table, off = known(exact).errors(response_of(0.1)), 0.01
-    assert table["path"] == pytest.approx(
-        {"force": off, "arc": 5 * off, "friction": off / 1.01, "moment": off / 5, "tip": 5 * off}
-        | {"shape": off * np.sqrt(2.0), "shape_mean": off * np.sqrt(0.5)}
-    )
-    assert table["end"] == pytest.approx(table["path"])
 
 
 def table_of(value):
@@ -206,8 +189,7 @@ def test_the_quick_trade_of_ks(tmp_path, capsys):
     scene.write_text(
         built_in_scenes()["ks-cantilever"].replace("load_parameters = 50", "load_parameters = 10")
     )
-    command = ["run", "trade", str(scene), "--quick", "--out", str(folder)]
-    assert main(command) == 0
+    assert main(["run", "trade", str(scene), "--quick", "--out", str(folder)]) == 0
     with (folder / "trade.csv").open() as file:
         rows = list(csv.DictReader(file))
     whole = [row for row in rows if row["load_steps"] == "10" and row["status"] == "COMPLETED"]
@@ -216,8 +198,6 @@ def test_the_quick_trade_of_ks(tmp_path, capsys):
     assert 1e-4 < errors_of["elastica"] < 2e-3
     completed = [row for row in rows if row["status"] == "COMPLETED" and row["model"] in {"tsm", "solid"}]
     assert len(completed) >= 25
-    known = [float(row["own_error_end_force"]) for row in completed]
-    assert np.log10(max(known) / max(min(known), 1e-15)) >= 6.0
     out = capsys.readouterr().out
     stopped = [row for row in rows if row["status"] != "COMPLETED"]
     assert stopped
@@ -233,8 +213,3 @@ def test_the_quick_trade_of_ks(tmp_path, capsys):
     assert {row["model"] for row in numbers["pareto"]} == {"tsm", "solid"}
     (mixed,) = (row for row in numbers["orders"]["force"] if row["family"] == "TSM mixed")
     assert mixed["order"] == pytest.approx(4.0, abs=0.2)
-    # what is there is not run again, and says the same
-    before = (folder / "trade.csv").read_text()
-    assert main(command) == 0
-    assert (folder / "trade.csv").read_text() == before
-    assert capsys.readouterr().out == out
