@@ -1,13 +1,12 @@
 """The settings of a case by the names of a study file: ``elements``, ``scene.load_parameters``, ``beam.upper.height``."""
 
-import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, replace
 from typing import Any
 
 from comparisons.cases.case import Case
 from comparisons.output import plain
-from comparisons.scene import LoadSpec, Scene, to_toml
+from comparisons.scene import LoadSpec, Scene, to_tables
 from comparisons.scene.read import LISTS
 from comparisons.scene.rules import FieldError, RecordError
 
@@ -72,7 +71,7 @@ def changed(scene: Scene, changes: Changes) -> Scene:
 
 def settings(case: Case) -> dict[str, object]:
     """Return the settings of a case by key; the key omits the record's name if the scene has only one of its kind."""
-    tables = tomllib.loads(to_toml(case.scene))
+    tables = plain(to_tables(case.scene))
     found = {name: plain(value) for name, value in vars(case.options).items() if value is not None}
     found |= {f"scene.{key}": value for key, value in tables["scene"].items() if key != "name"}
     for kind in LISTS:
