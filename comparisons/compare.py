@@ -251,7 +251,7 @@ def _write_all(
 def _write_picture(scene: Scene, responses: dict[str, Response], folder: Path, report: Report) -> list[Path]:
     """Write the side-by-side picture of the beams and the solid at load parameters that both reached."""
     both = [responses[run.label] for run in (MIXED, SOLID) if run.label in responses]
-    reached = min(len(response.load_parameter) for response in both)
+    reached = min((len(response.load_parameter) for response in both), default=0)
     if len(both) < 2 or reached == 0:
         report("side-by-side.png: left out, it takes beams and solid")
         return []

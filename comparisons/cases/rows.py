@@ -1,6 +1,6 @@
 """Rows: cases with their answers, their costs, and their errors against a reference; and the table of a study."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from math import nan
 from typing import Any
@@ -12,6 +12,7 @@ from comparisons.cases.measure import Measurement
 from comparisons.cases.settings import settings
 from comparisons.errors import Errors, error_histories, largest
 from comparisons.output import tabulated
+from comparisons.quantities import SCOPES
 from comparisons.response import Response
 from comparisons.scene import Scene
 from comparisons.version import version
@@ -49,16 +50,6 @@ class Row:
         return self.name or self.case.label
 
     @property
-    def family(self) -> str:
-        """What the runs that differ in resolution only share."""
-        return self.case.family
-
-    @property
-    def resolution(self) -> float:
-        """Number of elements along a beam; nan without a mesh, or where the scene gives the number."""
-        return self.case.resolution
-
-    @property
     def outcome(self) -> str:
         """``certified``, ``wrong`` for a refused answer that the program reported as a success, or the status of a stop."""
         if self.measured.wrong:
@@ -83,14 +74,15 @@ class Row:
 
 
 def reached_errors(
-    response: Response, reference: Response, scene: Scene, quantities: Iterable[str]
+    response: Response, reference: Response, scene: Scene, quantities: Sequence[str]
 ) -> Errors:
-    """Return the errors as far as both responses came; those at the reference's end are nan for a response that does not reach it."""
+    """Return the errors as far as both responses came, nan where there are none; those of ``end`` are at the reference's last state."""
+    if not np.isin(response.load_parameter, reference.load_parameter).any():
+        return {scope: dict.fromkeys(quantities, nan) for scope in SCOPES}
     shared, found = error_histories(response, reference, scene, quantities=quantities)
-    at_end = shared == reference.load_parameter[-1:]
+    ends = {"end": shared == reference.load_parameter[-1], "path": slice(None)}
     return {
-        "end": {name: largest(values[at_end]) for name, values in found.items()},
-        "path": {name: largest(values) for name, values in found.items()},
+        scope: {name: largest(values[at]) for name, values in found.items()} for scope, at in ends.items()
     }
 
 

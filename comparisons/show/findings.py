@@ -31,7 +31,7 @@ def findings(
     """
     found = [_compared(scene, rows, reference)]
     others = [row for row in rows if row.label != reference]
-    for family, own in groupby(others, key=lambda row: row.family):
+    for family, own in groupby(others, key=lambda row: row.case.family):
         found += _off(family, list(own), scene, budget, reference)
     return [*found, *_stopped(rows), *_left_out(left_out), *_stability(rows), _certified(rows)]
 
@@ -74,8 +74,8 @@ def _stated(rows: Sequence[Row], scene: Scene) -> str:
     for row in rows:
         error, quantity = _worst(row, scene)
         named = "" if quantity == before else f" ({quantity})"
-        many = "" if row.resolution == 1 else "s"
-        resolved = f" with {row.resolution:.0f} element{many}" if isfinite(row.resolution) else ""
+        many = "" if row.case.resolution == 1 else "s"
+        resolved = f" with {row.case.resolution:.0f} element{many}" if isfinite(row.case.resolution) else ""
         words.append(f"{_size(error)}{named}{resolved}")
         before = quantity
     return _listed(words)
@@ -91,11 +91,12 @@ def _worst(row: Row, scene: Scene) -> tuple[float, str]:
 
 def _falling(rows: list[Row], scene: Scene) -> str:
     """Return the measured order of runs with several resolutions."""
-    first, last = (choose(rows, key=lambda row: row.resolution) for choose in (min, max))
+    first, last = (choose(rows, key=lambda row: row.case.resolution) for choose in (min, max))
     coarse, fine = _worst(first, scene)[0], _worst(last, scene)[0]
-    if not last.resolution > first.resolution or fine < AGREES or coarse <= fine:
+    finer = last.case.resolution / first.case.resolution
+    if not finer > 1.0 or fine < AGREES or coarse <= fine:
         return ""
-    order = log(coarse / fine) / log(last.resolution / first.resolution)
+    order = log(coarse / fine) / log(finer)
     return f"; the error falls with the power {order:.1f} of the length of the elements"
 
 
@@ -145,7 +146,7 @@ def _left_out(left_out: Mapping[str, str]) -> Iterable[str]:
 def _stability(rows: Sequence[Row]) -> Iterable[str]:
     found: dict[str, dict[str, None]] = {word: {} for word in ("yes", "-", "in part", "no")}
     for row in rows:
-        found[stable(row.response)][row.family] = None
+        found[stable(row.response)][row.case.family] = None
     silent = [
         family for family in found["-"] if not any(family in found[word] for word in ("yes", "in part", "no"))
     ]

@@ -24,7 +24,10 @@ STATES = {"end": "at the end", "path": "largest over the path"}
 
 def write_trade(trade: Trade, folder: Path) -> list[Path]:
     """Write the tables, the diagrams and the page; return the files, the page first."""
-    settings, cheap = setting_rows(trade), cheapest_rows(trade)
+    settings = [_setting(row) for row in trade.rows]
+    uncertainty = trade.reference.uncertainty
+    told = ((scope, name) for scope, name in product(SCOPES, KEPT) if isfinite(uncertainty[scope][name]))
+    cheap = [cheapest(trade, *of, target) for of in told for target in TARGETS]
     fitted = {quantity: list(orders(trade, quantity)) for quantity in KEPT}
     references = {"error": trade.reference, "own_error of the solid": trade.limit}
     numbers = {
@@ -69,22 +72,18 @@ def _write_page(trade: Trade, settings: list[Line], files: Sequence[Path], folde
             folded("settings without a solution", definitions(stopped(trade))),
         ],
     }
-    lead = f"{len(trade.rows)} settings of beams and solid; {len(trade.stopped)} without a solution."
+    lead = f"{len(trade.rows)} settings of beams and solid; {len(stopped(trade))} without a solution."
     title = f"{trade.scene.name}: what accuracy costs"
     return write_report(folder, title, lead, sections, [trade.scene], files)
 
 
-def setting_rows(trade: Trade) -> list[Line]:
-    """Return a row for every setting, those that stopped too: what it is, what it cost, all its errors."""
-    return [_setting(row) for row in trade.rows]
-
-
 def _setting(row: Row) -> Line:
+    """Return what a setting is, what it cost, and all its errors."""
     case, response = row.case, row.response
     contact = case.scene.contacts[0] if case.scene.contacts and case.found.continuum else None
     return {
         "label": row.label,
-        "family": row.family,
+        "family": row.case.family,
         "model": case.model,
         "elements": case.options.elements,
         "mesh": case.options.mesh and "x".join(map(str, case.options.mesh)),
@@ -103,17 +102,6 @@ def _setting(row: Row) -> Line:
             for quantity in KEPT
         },
     }
-
-
-def cheapest_rows(trade: Trade) -> list[Line]:
-    """Return the cheapest settings for every scope, quantity and target that the reference can tell."""
-    return [
-        cheapest(trade, scope, quantity, target)
-        for scope in SCOPES
-        for quantity in KEPT
-        if isfinite(trade.reference.uncertainty[scope][quantity])
-        for target in TARGETS
-    ]
 
 
 def cheapest_lines(trade: Trade, scope: str) -> tuple[str, list[Line]]:
@@ -165,7 +153,8 @@ def stopped(trade: Trade) -> dict[str, str]:
     """Return the settings without a completed and checked solution, and why."""
     return {
         f"{row.label} [{row.case.scene.load_parameters}]": f"{row.response.status}: {row.response.message}"
-        for row in trade.stopped
+        for row in trade.rows
+        if not row.response.completed
     }
 
 

@@ -47,11 +47,6 @@ class Trade:
         known = self.limit if MODELS[model].continuum else self.reference
         return nan if known is None else known.uncertainty[scope][quantity]
 
-    @property
-    def stopped(self) -> list[Row]:
-        """The cases without a completed and checked solution."""
-        return [row for row in self.rows if not row.response.completed]
-
     def of_model(self, model: str, scope: str) -> list[Row]:
         """Return the completed rows of a model; for the scope ``path`` those with every load parameter of the scene."""
         return [
@@ -155,7 +150,7 @@ def orders(trade: Trade, quantity: str) -> Iterator[Line]:
         case, known = chain[0], [rows[one] for one in chain]
         doubt = trade.uncertainty(case.model, "path", quantity)
         errors = [row.error("path", quantity, own=True) for row in known]
-        sizes = [row.resolution for row in known]
+        sizes = [row.case.resolution for row in known]
         order = convergence(sizes, errors, ABOVE * doubt) if isfinite(doubt) else None
         costs = ([row.spent(cost) for row in known[-LARGEST:]] for cost in ("unknowns", "seconds"))
         given = [contact for contact in case.scene.contacts if contact.penetration is not None]

@@ -12,12 +12,15 @@ import psutil  # noqa: F401 - on Unix it takes `resource` itself, so it is there
 import pytest
 
 # not public: a worker's exception cannot be brought about from outside, nor systems without /proc
-from comparisons.cases import Case, Measurement, measure, memory
+from comparisons.cases import Case, Measurement, Row, measure, memory
 from comparisons.cases import run as run_module
+from comparisons.cases.measure import unmeasured
+from comparisons.cases.rows import reached_errors
 from comparisons.cases.workers import Workers
 from comparisons.files import OutputError
 from comparisons.models import solve
 from comparisons.models.options import Options
+from comparisons.quantities import KEPT, SCOPES
 from comparisons.scene import load_scene
 from comparisons.version import version
 
@@ -121,6 +124,14 @@ def test_a_measurement_is_the_response_and_comes_back_as_it_was(measured):
         assert again.to_json() == one.to_json() == pickle.loads(pickle.dumps(one)).to_json()  # noqa: S301
         types = [[type(value) for value in vars(each.response).values()] for each in (again, one)]
         assert types[0] == types[1]
+
+
+def test_a_case_without_an_answer_has_no_errors():
+    lost, exact = unmeasured("WORKER_LOST", "gone"), solve(KS, "rod")
+    errors = reached_errors(lost.response, exact, KS, KEPT)
+    row = Row(case=CASE, measured=lost, errors=errors)
+    assert np.isnan([row.error(scope, name) for scope in SCOPES for name in KEPT]).all()
+    assert (row.outcome, row.measured.wrong) == ("WORKER_LOST", False)
 
 
 def test_peak_memory_without_proc_and_resource(tmp_path, monkeypatch):
