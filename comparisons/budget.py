@@ -9,12 +9,14 @@ Each part is extrapolated from runs that differ in one setting only. The sum of 
 construction, and the rest is a measured number.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from comparisons.cases import Case
+from comparisons.cases.settings import Changes, changed
 from comparisons.models import ROD, SOLID, TSM, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Count, uncounted
@@ -40,7 +42,6 @@ PARTS = {
     "load steps": "twice as many load parameters",
 }
 """The parts and what each measures."""
-BIOT = "biot-linear"
 Values = Mapping[str, Array]
 """Values at the load parameters `TIMES`, shape (4,), by quantity."""
 
@@ -70,8 +71,30 @@ class Budget:
         return np.asarray((total - explained) / total)
 
 
-SOLUTIONS = 10
-"""Solutions behind a budget."""
+def budget_cases(scene: Scene) -> dict[str, Case]:
+    """Return the solutions behind the budget of a scene, by name; a name ``finer ...`` is that of a mesh twice as fine."""
+    short = replace(scene, load_parameters=STEPS)
+    free: Changes = {("contact", "penalty"): None, ("contact", "penetration"): 1e-12}
+    rod_law: Changes = {("beam", "material"): "biot-linear"}
+    solids = {
+        "solid": short,
+        "linear": changed(short, rod_law),
+        "free": changed(short, free),
+        "like the rod": changed(short, {**rod_law, **free}),
+    }
+    solids |= {f"finer {name}": _refined(solids[name]) for name in ("solid", "like the rod")}
+    solids["careful"] = replace(short, load_parameters=2 * STEPS)
+    return {
+        "rod": Case(scene=short, model=ROD.name),
+        "beams": Case(scene=short, model=TSM.name, options=Options(elements=ELEMENTS)),
+        "finer beams": Case(scene=short, model=TSM.name, options=Options(elements=2 * ELEMENTS)),
+        **{name: Case(scene=one, model=SOLID.name) for name, one in solids.items()},
+    }
+
+
+def _refined(scene: Scene) -> Scene:
+    beams = (replace(beam, mesh=(2 * beam.mesh[0], 2 * beam.mesh[1])) for beam in scene.beams)
+    return replace(scene, beams=tuple(beams))
 
 
 def error_budget(scene: Scene, count: Count = uncounted) -> Budget:
@@ -85,61 +108,49 @@ def error_budget(scene: Scene, count: Count = uncounted) -> Budget:
     ModelError
         If the solid cannot state the scene, a solution behind the budget stops, or no quantity has a value.
     """
-    done = 0
+    found: dict[str, Values] = {}
+    cases = budget_cases(scene)
+    for name, case in cases.items():
+        found[name] = _values(case)
+        count(len(found), len(cases))
+        if not any(np.isfinite(values).any() for values in found["rod"].values()):
+            raise ModelError(
+                "the budget is relative to the exact rods, which have no force at its load parameters"
+            )
 
-    def values(scene: Scene, model: str, options: Options | None = None) -> Values:
-        nonlocal done
-        found = _values(scene, model, options)
-        done += 1
-        count(done, SOLUTIONS)
-        return found
-
-    short = replace(scene, load_parameters=STEPS)
-    rod = values(short, ROD.name)
-    quantities = tuple(name for name, values in rod.items() if np.isfinite(values).any())
-    if not quantities:
-        raise ModelError(
-            "the budget is relative to the exact rods, which have no force at its load parameters"
+    def parts(q: str) -> dict[str, Array]:
+        rod, beams, solid, like_rod = (found[name][q] for name in ("rod", "beams", "solid", "like the rod"))
+        # the limit minus the answer, from that on a mesh twice as fine (Richardson)
+        beam_step, solid_step, like_rod_step = (
+            (found[f"finer {name}"][q] - found[name][q]) / (1.0 - 2.0**-order)
+            for name, order in (("beams", 4), ("solid", 2), ("like the rod", 2))
         )
-    coarse, fine = (values(short, TSM.name, Options(elements=n)) for n in (ELEMENTS, 2 * ELEMENTS))
-    solid, finer = values(short, SOLID.name), values(_refined(short), SOLID.name)
-    augmented = values(_augmented(short), SOLID.name)
-    careful = values(replace(short, load_parameters=2 * STEPS), SOLID.name)
-    biot = replace(short, beams=tuple(replace(beam, material=BIOT) for beam in short.beams))
-    like_rod, finer_like_rod = (values(_augmented(one), SOLID.name) for one in (biot, _refined(biot)))
-    linear = values(biot, SOLID.name)
-    parts: dict[str, Callable[[str], Array]] = {
-        "TSM mesh": lambda q: -_step(coarse, fine, q, order=4),
-        "TSM theory": lambda q: coarse[q] + _step(coarse, fine, q, order=4) - rod[q],
-        "solid beside the rod": lambda q: rod[q] - like_rod[q] - _step(like_rod, finer_like_rod, q, order=2),
-        "material law": lambda q: linear[q] - solid[q],
-        "solid mesh": lambda q: _step(solid, finer, q, order=2),
-        "penalty": lambda q: augmented[q] - solid[q],
-        "load steps": lambda q: careful[q] - solid[q],
-    }
-    assert tuple(parts) == tuple(PARTS), "every part is explained"
-    assert done == SOLUTIONS, "every solution is counted"
+        return {
+            "TSM mesh": -beam_step,
+            "TSM theory": beams + beam_step - rod,
+            "solid beside the rod": rod - like_rod - like_rod_step,
+            "material law": found["linear"][q] - solid,
+            "solid mesh": solid_step,
+            "penalty": found["free"][q] - solid,
+            "load steps": found["careful"][q] - solid,
+        }
+
+    rods = {q: values for q, values in found["rod"].items() if np.isfinite(values).any()}
     return Budget(
         scene=scene.name,
-        total={q: (coarse[q] - solid[q]) / rod[q] for q in quantities},
-        parts={q: {name: part(q) / rod[q] for name, part in parts.items()} for q in quantities},
+        total={q: (found["beams"][q] - found["solid"][q]) / rod for q, rod in rods.items()},
+        parts={q: {name: part / rod for name, part in parts(q).items()} for q, rod in rods.items()},
     )
 
 
-def _step(coarse: Values, fine: Values, quantity: str, *, order: int) -> Array:
-    """Estimate the limit minus the coarse answer, from the answer at half the element length (Richardson)."""
-    step: Array = (fine[quantity] - coarse[quantity]) / (1.0 - 2.0**-order)
-    return step
-
-
-def _values(scene: Scene, model: str, options: Options | None = None) -> Values:
-    """Return the quantities of a model's response; nan where a value is small against the largest of its kind."""
-    response = solve(scene, model, options)
+def _values(case: Case) -> Values:
+    """Return the quantities of a case; nan where a value is small against the largest of its kind."""
+    response = solve(case.scene, case.model, case.options)
     if not response.completed:
-        raise ModelError(f"the budget's {model} stopped: {response.message}")
+        raise ModelError(f"the budget's {case.model} stopped: {response.message}")
     ks = [int(np.argmin(np.abs(response.load_parameter - t))) for t in TIMES]
     found = {}
-    for kind, columns in _kinds(response, scene).items():
+    for kind, columns in _kinds(response, case.scene).items():
         largest = max((float(np.abs(values).max(initial=0.0)) for values in columns.values()), default=0.0)
         for name, values in columns.items():
             seen = np.abs(values[ks]) > LEAST * largest
@@ -158,28 +169,14 @@ def _kinds(response: Response, scene: Scene) -> dict[str, Values]:
     return {"contact_force": acting, "arc_position": arcs, "clamp_moment": turning}
 
 
-def _refined(scene: Scene) -> Scene:
-    return replace(
-        scene,
-        beams=tuple(replace(beam, mesh=(2 * beam.mesh[0], 2 * beam.mesh[1])) for beam in scene.beams),
-    )
-
-
-def _augmented(scene: Scene) -> Scene:
-    contacts = tuple(replace(contact, penalty=None, penetration=1e-12) for contact in scene.contacts)
-    return replace(scene, contacts=contacts)
-
-
 def budget_rows(budget: Budget) -> Iterator[dict[str, Any]]:
     """Yield one row for every quantity and load parameter with a value: total, parts and rest."""
     for quantity, total in budget.total.items():
         rest = budget.rest(quantity)
-        for k, t in enumerate(TIMES):
-            if np.isnan(total[k]):
-                continue
+        for k in np.flatnonzero(~np.isnan(total)):
             yield {
                 "quantity": quantity,
-                "load_parameter": t,
+                "load_parameter": TIMES[k],
                 "total": float(total[k]),
                 "parts": {name: float(values[k]) for name, values in budget.parts[quantity].items()},
                 "rest_over_total": float(rest[k]),

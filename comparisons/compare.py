@@ -10,16 +10,15 @@ import numpy as np
 import tsm
 from comparisons import models
 from comparisons.budget import Budget, error_budget
-from comparisons.errors import Errors, error_histories, errors, largest
+from comparisons.cases import Case, Measurement, Row
+from comparisons.cases.rows import reached_errors
 from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.models import Model, certified, find, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Count, Watch, uncounted, unwatched
 from comparisons.models.theory import bending
-from comparisons.models.verify import CHECK_FAILED
-from comparisons.output import json_text
+from comparisons.output import Report, json_text
 from comparisons.quantities import event_differences, names
-from comparisons.referee import Verdict
 from comparisons.response import Response
 from comparisons.response.file import as_dict
 from comparisons.scene import Scene, to_toml
@@ -31,22 +30,25 @@ from comparisons.show.findings import BUDGET
 from comparisons.show.panel import mises_panel
 from comparisons.show.plot import nearest_steps, plot_shapes
 from comparisons.show.render import render_panels
-from comparisons.show.table import Row, table_csv
+from comparisons.show.table import table_csv
 from comparisons.version import versions
 from tsm.elements import TIMOSHENKO, ElementType
 
-Report = Callable[[str], None]
 Watching = Callable[[str], AbstractContextManager[Watch]]
 Staging = Callable[[str], AbstractContextManager[Count]]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Run:
-    """One model with its options."""
+    """One model with its options, whatever the scene."""
 
     label: str
     model: str
     options: Options
+
+    def case(self, scene: Scene) -> Case:
+        """Return the run of a scene."""
+        return Case(scene=scene, model=self.model, options=self.options)
 
 
 def run_of(model: Model, options: Options) -> Run:
@@ -101,69 +103,42 @@ class Comparison:
     @property
     def apart(self) -> list[Row]:
         """The completed runs on another branch than the reference. The elastica has no stretch and no shear, so it is not judged."""
-        return [
-            row for row in self.rows if row.label != ELASTICA.label and row.response.completed and _apart(row)
-        ]
+        judged = (row for row in self.rows if row.label != ELASTICA.label and row.response.completed)
+        return [row for row in judged if any(row.error("path", name) > APART for name in BRANCH)]
 
     @property
     def other_events(self) -> list[str]:
         """A sentence for each completed run about the first event that it or the reference does not have."""
         found = []
-        for exact in (row.response for row in self.rows if row.label == ROD.label):
-            for row in self.rows:
-                events = event_differences(row.response, exact) if row.response.completed else []
-                missing = [item for item in events if item.apart == np.inf]
-                found += [item.line(row.label, ROD.label) for item in missing[:1]]
+        exact = next(row.response for row in self.rows if row.label == ROD.label)
+        for row in self.rows:
+            events = event_differences(row.response, exact) if row.response.completed else []
+            missing = [item for item in events if item.apart == np.inf]
+            found += [item.line(row.label, ROD.label) for item in missing[:1]]
         return found
 
     @property
     def wrong(self) -> list[Row]:
         """The runs whose answers were refused by the checks or the referee, and the reference if it stopped."""
-        refused = {CHECK_FAILED, *Verdict.__members__}
         return [
             row
             for row in self.rows
-            if not row.response.completed and (row.response.status in refused or row.label == ROD.label)
+            if row.measured.wrong or (row.label == ROD.label and not row.response.completed)
         ]
-
-
-def _apart(row: Row) -> bool:
-    """Whether a run differs from the reference by more than its discretisation can explain."""
-    return row.errors is not None and max(row.errors["path"][name] for name in BRANCH) > APART
-
-
-def _silent(_: str) -> AbstractContextManager[Watch]:
-    return nullcontext(unwatched)
-
-
-def _unsaid(_: str) -> AbstractContextManager[Count]:
-    return nullcontext(uncounted)
 
 
 def compare(
     scene: Scene,
     folder: Path,
     report: Report,
-    watching: Watching = _silent,
-    staging: Staging = _unsaid,
+    watching: Watching = lambda _: nullcontext(unwatched),
+    staging: Staging = lambda _: nullcontext(uncounted),
     more: Sequence[Run] = (),
 ) -> Comparison:
-    """Solve `scene` with every model that can state it and write the results to `folder`.
+    """Solve `scene` with every model that can state it, and with `more` runs, and write the results to `folder`.
 
-    Parameters
-    ----------
-    scene : Scene
-        Any scene; the exact rods are the reference of the comparison.
-    folder : Path
-        Output folder; it is created if it does not exist.
-    report : callable
-        Receives lines about the progress.
-    watching : callable
-        ``watching(label)`` gives a context with the `Watch` of a run.
-    staging : callable
-        ``staging(label)`` gives a context with the `Count` of a stage of the work after the runs.
-    more : sequence of Run
-        Runs beside those of every comparison, such as programs of others.
+    Errors are measured against the exact rods. `report` receives lines about the progress. ``watching(label)`` gives a context with the
+    `Watch` of a run, ``staging(label)`` one with the `Count` of a stage of the work after the runs.
 
     Raises
     ------
@@ -179,101 +154,55 @@ def compare(
     for run in (MIXED, SOLID):
         check_series(folder / run.model, run.model, scene)
     left_out: dict[str, str] = {}
-
-    def leave_out(name: str, reason: str) -> None:
-        left_out[name] = reason
-
+    answers: dict[Run, Response] = {}
     runs = [*more, *(run for run in RUNS if run not in more)]
-    responses = _solve_all(scene, runs, report, watching, leave_out)
-    rows = [_row(run, responses, scene) for run in runs if run.label in responses]
-    with staging("measuring the error budget") as count:
+    for number, run in enumerate(runs, 1):
+        head = f"[{number}/{len(runs)}] {run.label}"
         try:
-            budget = _budget(scene, rows, count)
+            with watching(head) as watch:
+                answers[run] = certified(solve(scene, run.model, run.options, watch), scene)
+            report(f"{head}: {_outcome(answers[run])}")
         except ModelError as error:
-            budget = None
-            leave_out(BUDGET, str(error))
-            report(f"budget.json: left out, {error}")
+            report(f"{head}: left out, {error}")
+            left_out[run.case(scene).family] = str(error).removeprefix(f"{run.model}: ")
+    rows = [_row(scene, run, response, answers[ROD]) for run, response in answers.items()]
+    with staging("measuring the error budget") as count:
+        budget, lack = None, "it takes the solid"
+        if SOLID in answers and answers[SOLID].completed:
+            try:
+                budget = error_budget(scene, count)
+            except ModelError as error:
+                lack = str(error)
+        if budget is None:
+            left_out[BUDGET] = lack
+            report(f"budget.json: left out, {lack}")
     with staging("drawing and writing files") as count, alone_in(folder):
         files = _write_all(scene, rows, budget, left_out, folder, report, count)
     return Comparison(rows=rows, files=files)
 
 
-def _row(run: Run, responses: Mapping[str, Response], scene: Scene) -> Row:
-    """Return the row of a run with its errors and their cause."""
-    model, response, reference = find(run.model), responses[run.label], responses[ROD.label]
-    return Row(
-        label=run.label,
-        response=response,
-        errors=None if response is reference else _errors(response, reference, scene),
-        family=model.family(scene, run.options),
-        resolution=model.resolution(run.options),
-        cause=_cause(model, run.options, scene, reference),
-    )
+def _outcome(response: Response) -> str:
+    stopped = f"{response.status}: {response.message}"
+    return f"{response.wall_seconds:.2f} s" if response.completed else stopped
 
 
-def _cause(model: Model, options: Options, scene: Scene, reference: Response) -> str:
+def _row(scene: Scene, run: Run, response: Response, reference: Response) -> Row:
+    """Return the row of a run with its errors, over the path as far as it came, and their cause."""
+    case = run.case(scene)
+    known = None if response is reference else reached_errors(response, reference, scene, names(mesh=False))
+    cause = _cause(case, reference)
+    return Row(case=case, measured=Measurement.of(response), errors=known, name=run.label, cause=cause)
+
+
+def _cause(case: Case, reference: Response) -> str:
     """Return the largest part of the error that theory allows, without its formula; empty but for a straight, uniform cantilever along x."""
+    scene = case.scene
     (beam, *others), ends = scene.beams, [support.node for support in scene.all_supports]
-    if (
-        others
-        or any(special_keys(scene))
-        or beam.direction != (1.0, 0.0)
-        or ends != [f"{beam.name}.start"]
-        or not len(reference.load_parameter)
-    ):
+    straight = not others and not any(special_keys(scene)) and beam.direction == (1.0, 0.0)
+    if not straight or ends != [f"{beam.name}.start"] or not len(reference.load_parameter):
         return ""
-    parts = model.error_parts(scene, options, bending(beam, reference))
+    parts = case.found.error_parts(scene, case.options, bending(beam, reference))
     return max(parts, key=lambda why: parts[why]).partition(":")[0]
-
-
-def _errors(response: Response, reference: Response, scene: Scene) -> Errors:
-    """Return the errors of a run; over the path as far as the run came."""
-    compared = names(mesh=False)
-    found = errors(response, reference, scene, quantities=compared)
-    if response.completed:
-        return found
-    _, reached = error_histories(response, reference, scene, quantities=compared)
-    return {**found, "path": {name: largest(values) for name, values in reached.items()}}
-
-
-def _solve_all(
-    scene: Scene,
-    runs: Sequence[Run],
-    report: Report,
-    watching: Watching,
-    leave_out: Callable[[str, str], None],
-) -> dict[str, Response]:
-    responses: dict[str, Response] = {}
-    for number, run in enumerate(runs, 1):
-        try:
-            with watching(f"[{number}/{len(runs)}] {run.label}") as watch:
-                response = certified(solve(scene, run.model, run.options, watch), scene)
-        except ModelError as error:
-            report(f"[{number}/{len(runs)}] {run.label}: left out, {error}")
-            leave_out(find(run.model).family(scene, run.options), str(error).removeprefix(f"{run.model}: "))
-            continue
-        responses[run.label] = response
-        outcome = (
-            f"{response.wall_seconds:.2f} s"
-            if response.completed
-            else f"{response.status}: {response.message}"
-        )
-        report(f"[{number}/{len(runs)}] {run.label}: {outcome}")
-    return responses
-
-
-def _budget(scene: Scene, rows: list[Row], count: Count) -> Budget:
-    """Return the error budget.
-
-    Raises
-    ------
-    ModelError
-        If there is no complete answer of the solid, or no budget of the scene.
-    """
-    solid = next((row.response for row in rows if row.label == SOLID.label), None)
-    if solid is None or not solid.completed:
-        raise ModelError("it takes the solid")
-    return error_budget(scene, count)
 
 
 def _write_all(
@@ -286,11 +215,11 @@ def _write_all(
     count: Count,
 ) -> list[Path]:
     responses = {row.label: row.response for row in rows}
-    names = [run.label for run in DRAWN]
-    shapes = [folder / "shapes.png", folder / "shapes.svg"]
-    plot_shapes(scene, {name: responses[name] for name in names if name in responses}, *shapes)
+    drawn = {run.label: responses[run.label] for run in DRAWN if run.label in responses}
+    files = [folder / "shapes.png", folder / "shapes.svg"]
+    plot_shapes(scene, drawn, *files)
     count(1, WRITTEN)
-    files = [*shapes, *_write_picture(scene, responses, folder, report)]
+    files += _write_picture(scene, responses, folder, report)
     count(2, WRITTEN)
     if budget is not None:
         files += [folder / name for name in NAMES[-3:]]
@@ -305,16 +234,23 @@ def _write_all(
     count(4, WRITTEN)
     write_text(folder / "table.csv", table_csv(rows))
     files = [folder / "summary.json", folder / "table.csv", *files, *series.values()]
-    page = write_comparison_page(scene, rows, budget, files, series, folder, left_out)
-    files = [page, *files]
-    write_text(folder / "summary.json", _summary(scene, rows, [path.relative_to(folder) for path in files]))
+    files.insert(0, write_comparison_page(scene, rows, budget, files, series, folder, left_out))
+    summary = {
+        "scene": scene.name,
+        "scene_file": to_toml(scene),
+        "reference": ROD.label,
+        "versions": versions(),
+        "files": [str(path.relative_to(folder)) for path in files],
+        "runs": [{"label": row.label, **as_dict(row.response), "errors": row.errors} for row in rows],
+    }
+    write_text(folder / "summary.json", json_text(summary))
     return files
 
 
 def _write_picture(scene: Scene, responses: dict[str, Response], folder: Path, report: Report) -> list[Path]:
     """Write the side-by-side picture of the beams and the solid at load parameters that both reached."""
     both = [responses[run.label] for run in (MIXED, SOLID) if run.label in responses]
-    reached = min(len(response.load_parameter) for response in both)
+    reached = min((len(response.load_parameter) for response in both), default=0)
     if len(both) < 2 or reached == 0:
         report("side-by-side.png: left out, it takes beams and solid")
         return []
@@ -330,16 +266,3 @@ def _write_picture(scene: Scene, responses: dict[str, Response], folder: Path, r
     if sentence is not None:
         report(f"{path.name}: {sentence}")
     return [path]
-
-
-def _summary(scene: Scene, rows: list[Row], files: list[Path]) -> str:
-    runs = [{"label": row.label, **as_dict(row.response), "errors": row.errors} for row in rows]
-    summary = {
-        "scene": scene.name,
-        "scene_file": to_toml(scene),
-        "reference": ROD.label,
-        "versions": versions(),
-        "files": [str(path) for path in files],
-        "runs": runs,
-    }
-    return json_text(summary)

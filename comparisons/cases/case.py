@@ -5,7 +5,7 @@ import json
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from comparisons.models import find
+from comparisons.models import Model, find
 from comparisons.models.options import Options
 from comparisons.scene import Scene, to_toml
 from comparisons.version import version
@@ -26,13 +26,18 @@ class Case:
         find(self.model)
 
     @property
+    def found(self) -> Model:
+        """The model itself."""
+        return find(self.model)
+
+    @property
     def key(self) -> str:
         """SHA-256 of scene, mesh files, model, options and the version of the sources, in hexadecimal digits."""
         content = {
             "version": version(),
             "scene": to_toml(self.scene),
             "mesh_files": [_digest(beam.solid_mesh_file) for beam in self.scene.beams],
-            "model": find(self.model).identity,
+            "model": self.found.identity,
             "options": asdict(self.options),
         }
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
@@ -40,26 +45,29 @@ class Case:
     @property
     def description(self) -> dict[str, object]:
         """What the case is, for the file of its result."""
-        options = {name: value for name, value in asdict(self.options).items() if value is not None}
+        options = {name: value for name, value in vars(self.options).items() if value is not None}
         return {
             "scene": to_toml(self.scene),
-            "model": self.model_name,
+            "model": self.found.name,
             "options": options,
             "version": version(),
         }
 
     @property
-    def model_name(self) -> str:
-        """Name of the model, also where `model` is a program file."""
-        return find(self.model).name
-
-    @property
     def label(self) -> str:
         """Short text for people: ``tsm mixed 10``, ``solid Q2 50x2``."""
-        model = find(self.model)
-        setting = model.setting(self.scene, self.options)
-        branch = "" if self.options.branch is None else f" {self.options.branch}"
-        return f"{model.name} {setting}".rstrip() + branch
+        setting = self.found.setting(self.scene, self.options)
+        return " ".join(filter(None, (self.found.name, setting, self.options.branch)))
+
+    @property
+    def family(self) -> str:
+        """Name of the cases that differ from this one in resolution, load steps and contact only."""
+        return self.found.family(self.scene, self.options)
+
+    @property
+    def resolution(self) -> float:
+        """Number of elements along a beam, nan of an exact model."""
+        return self.found.resolution(self.options)
 
 
 def _digest(mesh_file: str | None) -> str | None:

@@ -61,6 +61,11 @@ class Measurement:
     verdict: str = ""
     process_seconds: float = np.nan
 
+    @classmethod
+    def of(cls, response: Response) -> "Measurement":
+        """Return a response that was not timed, with the verdict of its certificate."""
+        return cls(response=response, verdict=_verdict(response))
+
     @property
     def wrong(self) -> bool:
         """Whether the model reported success and its answer was refused by the checks or the referee."""
@@ -97,13 +102,12 @@ def measure(case: Case, *, repeats: int = 3, process: bool = False) -> Measureme
     except ModelError as error:
         return unmeasured(REFUSED, str(error))
     seconds = [first] if first > SLOW or not repeats else [_timed(case)[1] for _ in range(repeats)]
-    found = certified(response, case.scene).certificate if repeats else None
     return Measurement(
         response=storable(replace(response, wall_seconds=np.nan), axes=repeats > 0),
         seconds=statistics.median(seconds),
         repeats=len(seconds),
         peak_memory=peak,
-        verdict="" if found is None else found.verdict.name,
+        verdict=_verdict(certified(response, case.scene)) if repeats else "",
         process_seconds=_process_seconds(case) if process else np.nan,
     )
 
@@ -124,6 +128,10 @@ def _process_seconds(case: Case) -> float:
         after = times()
     spent = after.children_user + after.children_system - before.children_user - before.children_system
     return spent or np.nan
+
+
+def _verdict(response: Response) -> str:
+    return "" if response.certificate is None else response.certificate.verdict.name
 
 
 def _timed(case: Case) -> tuple[Response, float]:

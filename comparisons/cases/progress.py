@@ -2,13 +2,27 @@
 
 import math
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Any
 
-from comparisons.cases.run import Progress, Tally
+from comparisons.cases.case import Case
+from comparisons.cases.run import Progress, Results, Tally, run
+from comparisons.cases.workers import Workers
 from comparisons.models.progress import REDRAW, bar
 
 MILESTONES = 10
+Runner = Callable[[Iterable[Case]], Results]
+"""Measures cases."""
+
+
+@contextmanager
+def running(folder: Path, workers: Workers, *, quiet: bool = False, **how: Any) -> Iterator[Runner]:
+    """Give what runs cases on some workers, keeps their results in a folder, and shows its progress; `how` is that of `measure`."""
+    with shown(quiet=quiet) as progress:
+        yield partial(run, folder=folder, workers=workers, progress=progress, **how)
 
 
 @contextmanager
@@ -24,9 +38,8 @@ def shown(*, quiet: bool = False) -> Iterator[Progress]:
             return
         last = now
         end = "\n" if tally.done == tally.total else ""
-        stream.write(
-            f"\r{bar(tally.done / tally.total)} {line(tally)}\x1b[K{end}" if terminal else line(tally) + "\n"
-        )
+        drawn = f"\r{bar(tally.done / tally.total)} {line(tally)}\x1b[K{end}"
+        stream.write(drawn if terminal else line(tally) + "\n")
         stream.flush()
 
     try:

@@ -3,13 +3,12 @@
 import math
 import os
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
-from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from time import monotonic
-from typing import Any
+from typing import Any, NamedTuple
 
 from comparisons.cases.case import Case
 from comparisons.cases.measure import Measurement, measure, unmeasured
@@ -20,19 +19,16 @@ BEAT = 5.0
 """Seconds between two reports of the progress while no case ends."""
 COMPLETED = "COMPLETED"
 """The status of a completed and checked solution."""
-WORKER_LOST = "WORKER_LOST"
-"""The status of a case whose worker died, and died again when the case was tried alone."""
-ERROR = "ERROR"
-"""The status of a case that raised an exception, which no model should."""
-UNSETTLED = (WORKER_LOST, ERROR)
-"""Statuses that come from the machine or from a bug and not from the case; the next run repeats the case."""
+WORKER_LOST, ERROR = UNSETTLED = ("WORKER_LOST", "ERROR")
+"""A worker died, and died again when its case was tried alone; a case raised an exception, which no model should.
 
+They come from the machine or from a bug and not from the case; the next run repeats the case.
+"""
 Results = dict[Case, Measurement]
 """The measurement of every case."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Tally:
+class Tally(NamedTuple):
     """How far a sweep has come; `failed` results have no completed and checked solution, and `left` is nan before the first [s]."""
 
     total: int
@@ -70,7 +66,7 @@ def run(
     """
     writable_folder(folder)
     sweep = _Sweep({case.key: case for case in cases}, folder, progress)
-    while sweep.unfinished:
+    while len(sweep.done) < len(sweep.cases):
         try:
             with workers.start() as executor:
                 sweep.work(executor, workers, repeats=repeats, process=process)
@@ -82,24 +78,20 @@ def run(
 class _Sweep:
     """The state of a run: what is done, waits, is under way, and what may have ended its worker."""
 
-    def __init__(self, cases: Mapping[str, Case], folder: Path, progress: Progress) -> None:
+    def __init__(self, cases: dict[str, Case], folder: Path, progress: Progress) -> None:
         self.cases, self.folder, self.progress = cases, folder, progress
         kept = ((key, recorded(folder / f"{key}.json")) for key in cases)
         self.done = {key: found for key, found in kept if found is not None}
         self.waiting = deque(key for key in cases if key not in self.done)
-        self.under_way: dict[Future[Measurement], str] = {}
         self.suspects = deque[str]()
-        self.began, self.before = monotonic(), len(self.done)
+        self.under_way: dict[Future[Measurement], str] = {}
         self.failed = sum(found.response.status != COMPLETED for found in self.done.values())
+        self.began, self.before = monotonic(), len(self.done)
         self.report()
-
-    @property
-    def unfinished(self) -> bool:
-        return len(self.done) < len(self.cases)
 
     def work(self, executor: Executor, workers: Workers, **how: Any) -> None:
         """Keep the workers busy until all is done; while there are suspects, with one of them at a time."""
-        while self.unfinished:
+        while len(self.done) < len(self.cases):
             free = not self.under_way if self.suspects else workers.width - len(self.under_way)
             for key in list(islice(self.suspects or self.waiting, free)):
                 with interrupts_held():
@@ -141,21 +133,16 @@ class _Sweep:
 
     def report(self) -> None:
         """Tell the progress."""
-        seconds, pace = monotonic() - self.began, len(self.done) - self.before
-        rest = len(self.cases) - len(self.done)
-        left = seconds / pace * rest if pace else math.nan if rest else 0.0
-        self.progress(
-            Tally(total=len(self.cases), done=len(self.done), failed=self.failed, seconds=seconds, left=left)
-        )
+        total, done, seconds = len(self.cases), len(self.done), monotonic() - self.began
+        pace = seconds / (done - self.before) if done > self.before else math.nan
+        left = pace * (total - done) if done < total else 0.0
+        self.progress(Tally(total, done, self.failed, seconds, left))
 
 
 def recorded(file: Path) -> Measurement | None:
     """Return the settled result that `file` holds; None if there is none.
 
-    Raises
-    ------
-    OutputError
-        If the file cannot be read, or holds something else.
+    A file that cannot be read, or holds something else, is an `OutputError`.
     """
     try:
         found = Measurement.from_json(file.read_text(encoding="utf-8"))

@@ -1,18 +1,19 @@
 """The settings of a case by the names of a study file: ``elements``, ``scene.load_parameters``, ``beam.upper.height``."""
 
-import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, replace
 from typing import Any
 
 from comparisons.cases.case import Case
 from comparisons.output import plain
-from comparisons.scene import LoadSpec, Scene, to_toml
+from comparisons.scene import LoadSpec, Scene, to_tables
 from comparisons.scene.read import LISTS
 from comparisons.scene.rules import FieldError, RecordError
 
 Path = tuple[str, ...]
 """Where a setting stands: ``("scene", "load_parameters")``, ``("beam", "height")`` for every beam, ``("beam", "upper", "height")``."""
+Changes = Mapping[Path, object]
+"""New values of settings."""
 
 OWN = {item.name for item in fields(Scene)} - {f"{kind}s" for kind in LISTS}
 """The keys of the table ``[scene]``."""
@@ -39,7 +40,7 @@ def stated(record: Any) -> dict[str, Any]:
     return {item.name: getattr(record, item.name) for item in fields(record)}
 
 
-def changed(scene: Scene, changes: Mapping[Path, object]) -> Scene:
+def changed(scene: Scene, changes: Changes) -> Scene:
     """Return `scene` with changed settings. A change for a named record takes precedence over a change for all records of its kind.
 
     All rules that are broken are raised as one `FieldError`; their keys are the settings'.
@@ -70,7 +71,7 @@ def changed(scene: Scene, changes: Mapping[Path, object]) -> Scene:
 
 def settings(case: Case) -> dict[str, object]:
     """Return the settings of a case by key; the key omits the record's name if the scene has only one of its kind."""
-    tables = tomllib.loads(to_toml(case.scene))
+    tables = plain(to_tables(case.scene))
     found = {name: plain(value) for name, value in vars(case.options).items() if value is not None}
     found |= {f"scene.{key}": value for key, value in tables["scene"].items() if key != "name"}
     for kind in LISTS:

@@ -4,13 +4,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from itertools import product
-from math import prod
+from math import isclose, prod
 from pathlib import Path
 from typing import Any
 
 from comparisons.cases import settings
 from comparisons.cases.case import Case
-from comparisons.cases.ranges import values
 from comparisons.models import TSM, find
 from comparisons.models.options import BRANCHES, ModelError, Options
 from comparisons.scene import Scene, built_in_scenes, load_scene, rules
@@ -29,9 +28,20 @@ from comparisons.scene.tables import (
 
 Axes = dict[settings.Path, tuple[object, ...]]
 """The values of every setting that a run varies, by its place."""
+Tree = dict[str, "Tree | None"]
+"""The keys of a table, each with those of the table that it is, or None."""
 
-LARGEST = 100_000
-"""Cases of a study."""
+LARGEST, LARGEST_COUNT = 100_000, 10_000
+"""Cases of a study, and values of a range."""
+
+
+RANGE: dict[str, Rule] = {
+    "from": rules.number,
+    "to": rules.number,
+    "count": rules.whole(LARGEST_COUNT),
+    "spacing": rules.choice("linear", "log"),
+}
+"""The keys of a range with the rules of their values."""
 
 
 class StudyError(InputError):
@@ -100,45 +110,36 @@ def _cases(scene: Scene, runs: list[dict[str, Any]], folder: Path, mistakes: lis
 
 def _axes(scene: Scene, run: dict[str, Any], mistakes: list[FieldError]) -> Axes:
     """Return what a run varies: the values of every setting by its place."""
-    mistakes += check_keys(run, RUN_KEYS, required=("model",))
+    known: Tree = dict.fromkeys(("model", *OPTION_RULES)) | {"scene": dict.fromkeys(settings.OWN)}
+    for kind, record in LISTS.items():
+        keys: Tree = dict.fromkeys(item.name for item in fields(record))
+        records = getattr(scene, f"{kind}s")
+        named = settings.record_names(kind, map(settings.stated, records))
+        known[kind] = {**dict.fromkeys(named, keys), **keys} if records else {}
     axes: Axes = {}
-    for key in (key for key in run if key in RUN_KEYS):
-        records = key in LISTS or key == "scene"
-        places = _places(scene, key, run[key], mistakes) if records else {(key,): run[key]}
-        for place, value in places.items():
-            with _noting(mistakes):
-                axes[place] = values(".".join(place), value)
+    for place, value in _places((), run, known, mistakes):
+        with _noting(mistakes):
+            axes[place] = values(".".join(place), value)
     return axes
 
 
 def _places(
-    scene: Scene, kind: str, given: object, mistakes: list[FieldError]
-) -> dict[settings.Path, object]:
-    """Return what a run states for the records of one kind: for all of them, or for one by its name."""
-    known, named = settings.OWN, set[str]()
-    if kind != "scene":
-        known = {item.name for item in fields(LISTS[kind])}
-        named = set(settings.record_names(kind, map(settings.stated, getattr(scene, f"{kind}s"))))
-        if isinstance(given, dict) and not named:
-            mistakes.append(FieldError(kind, given, f"the scene has no {kind}"))
-            return {}
-    stated = _keyed((kind,), given, known | named, mistakes)
-    places = {place: value for place, value in stated.items() if place[1] in known}
-    for place in [place for place in stated if place not in places]:
-        places |= _keyed(place, stated[place], known, mistakes)
-    return places
-
-
-def _keyed(
-    place: settings.Path, given: object, known: set[str], mistakes: list[FieldError]
-) -> dict[settings.Path, object]:
-    """Return the values of the table at a place by their places; keys that are not `known` are mistakes."""
+    place: settings.Path, given: object, known: Tree, mistakes: list[FieldError]
+) -> Iterator[tuple[settings.Path, object]]:
+    """Yield the values of the table at a place and of the tables in it by their places; keys that are not `known` are mistakes."""
     name = ".".join(place)
     if not isinstance(given, dict):
         mistakes.append(FieldError(name, given, f"must be followed by a key, {name}.KEY"))
-        return {}
-    mistakes += (mistake.within(f"{name}.") for mistake in check_keys(given, known))
-    return {(*place, key): value for key, value in given.items() if key in known}
+    elif not known:
+        mistakes.append(FieldError(name, given, f"the scene has no {name}"))
+    else:
+        required = () if place else ("model",)
+        mistakes += (item.within(f"{name}.".lstrip(".")) for item in check_keys(given, known, required))
+        for key in (key for key in given if key in known):
+            if (below := known[key]) is None:
+                yield (*place, key), given[key]
+            else:
+                yield from _places((*place, key), given[key], below, mistakes)
 
 
 def _model(value: object, folder: Path) -> str:
@@ -174,16 +175,13 @@ assert OPTION_RULES.keys() == {item.name for item in fields(Options)}
 
 HEAD_RULES: dict[str, Rule] = {"name": rules.name, "scene": rules.text, "repeats": rules.whole_number}
 """The keys of the table ``[study]`` with the rules of their values."""
-RUN_KEYS = ("model", *OPTION_RULES, "scene", *LISTS)
-"""The keys of a table ``[[run]]``."""
 
 
 def _case(scene: Scene, chosen: dict[settings.Path, object], folder: Path) -> Case:
     """Return the case of the chosen settings; raise all mistakes in them."""
-    mistakes: list[FieldError] = []
     given = {place[0]: value for place, value in chosen.items() if len(place) == 1}
-    rules_of = {"model": lambda value: _model(value, folder), **OPTION_RULES}
-    own, wrong = table_values(given, rules_of, ())
+    own, wrong = table_values(given, {"model": lambda value: _model(value, folder), **OPTION_RULES}, ())
+    mistakes: list[FieldError] = []
     if "model" in own:
         model = find(own["model"])
         none = f'is no option of model = "{model.name}"'
@@ -193,3 +191,43 @@ def _case(scene: Scene, chosen: dict[settings.Path, object], folder: Path) -> Ca
     if mistakes or wrong:
         raise RecordError([*mistakes, *wrong])
     return Case(scene=scene, model=own.pop("model"), options=Options(**own))
+
+
+def values(key: str, given: object) -> tuple[object, ...]:
+    """Return the values that `given` states for `key`: itself, the items of a list, or a range.
+
+    A range has both ends; ``"linear"`` is the default spacing. Between whole ends, a value that is whole but for round-off is made so.
+
+    >>> values("elements", {"from": 5, "to": 40, "count": 4, "spacing": "log"})
+    (5, 10, 20, 40)
+    """
+    if isinstance(given, dict):
+        try:
+            return _range(given)
+        except FieldError as error:
+            raise error.within(f"{key}.") from None
+    if given == []:
+        raise FieldError(key, given, "must not be empty")
+    return tuple(given) if isinstance(given, list) else (given,)
+
+
+def _range(given: dict[str, Any]) -> tuple[float, ...]:
+    mistakes = table_values(given, RANGE, required=("from", "to", "count"))[1]
+    if mistakes:
+        raise RecordError(mistakes)
+    first, last, count = given["from"], given["to"], given["count"]
+    logarithmic = given.get("spacing") == "log"
+    if count < 2:
+        raise FieldError("count", count, "must be at least 2, a range has two ends")
+    if first == last:
+        raise FieldError("to", last, "must differ from the range's start")
+    for name in ("from", "to"):
+        if logarithmic and given[name] <= 0:
+            raise FieldError(name, given[name], 'must be positive in a range of spacing = "log"')
+
+    def between(part: float) -> float:
+        value: float = first * (last / first) ** part if logarithmic else first + (last - first) * part
+        whole = isinstance(first, int) and isinstance(last, int)
+        return round(value) if whole and isclose(value, round(value), rel_tol=1e-12) else value
+
+    return (first, *(between(k / (count - 1)) for k in range(1, count - 1)), last)

@@ -132,23 +132,13 @@ def _cluster(address: str) -> Iterator[Executor]:
 def _client(address: str) -> "Iterator[Client]":
     from distributed import Client
 
-    with _silent("distributed", "distributed.client"):
+    logging.disable()  # what is an exception here anyway would be printed with its traceback
+    try:
         try:
             client = Client(address, timeout=CLUSTER_PATIENCE)
         except (OSError, ValueError) as error:
             raise WorkersError(f"cluster {address}", str(error)) from None
         with client:
             yield client
-
-
-@contextmanager
-def _silent(*loggers: str) -> Iterator[None]:
-    """Keep loggers from printing tracebacks of what is an exception here anyway."""
-    before = {logger: logger.level for logger in map(logging.getLogger, loggers)}
-    try:
-        for logger in before:
-            logger.setLevel(logging.CRITICAL)
-        yield
     finally:
-        for logger, level in before.items():
-            logger.setLevel(level)
+        logging.disable(logging.NOTSET)

@@ -27,14 +27,8 @@ class Verdict(StrEnum):
 class Quantity:
     """A number with its reference value.
 
-    Attributes
-    ----------
-    name : str
-        Name with its unit; without a unit where the quantity is dimensionless.
-    exact : float
-        The reference value.
-    scale : float, optional
-        Divisor of the error; by default the magnitude of the reference value.
+    The name has the unit, unless the quantity is dimensionless. The scale divides the error; by default it is the magnitude of the
+    reference value.
     """
 
     name: str
@@ -56,22 +50,15 @@ class Allowance:
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
-    """An error with its allowance and the reason of the allowance.
+    """The relative error of a quantity, or against an answer, with its bound and the reason of the bound.
 
-    Attributes
-    ----------
-    name : str
-        The quantity, or the answer that is compared with.
-    error, allowed : float
-        Relative; the error is infinite where one of the two has no answer.
-    why : str
-        Where the allowed error comes from.
+    The error is infinite where one of the two has no answer.
     """
 
     name: str
     error: float
     allowed: float
-    why: str
+    why: str = "asked for"
 
     @property
     def holds(self) -> bool:
@@ -84,6 +71,15 @@ class Finding:
         share = self.error / self.allowed
         return share if math.isfinite(share) else math.inf
 
+    def beyond(self, value: float, exact: float) -> str:
+        """Return the sentence for a bound that a value breaks."""
+        return f"{self.name}: {value:.10g}, exact {exact:.10g}, error {self.error:.2g} > {self.allowed:.2g}"
+
+    @property
+    def measured(self) -> str:
+        """The error and its bound in one line."""
+        return f"{self.name}: error {self.error:.2g}, allowed {self.allowed:g}"
+
 
 @dataclass(frozen=True, kw_only=True)
 class Claim:
@@ -92,7 +88,7 @@ class Claim:
     Attributes
     ----------
     name : str
-        Name of the model with its resolution, or of a bound.
+        Name of the model with its resolution.
     statement, source : str
         The case with its sizes and units, and the source of the reference values.
     quantities : tuple of Quantity
@@ -113,22 +109,9 @@ class Claim:
 
 @dataclass(frozen=True, kw_only=True)
 class Judgement:
-    """A claim, what was measured, and the verdict.
+    """A claim, its verdict, and for every quantity the value, nan where the solution stopped, and the error.
 
-    Attributes
-    ----------
-    claim : Claim
-        The claim.
-    verdict : Verdict
-        Right, wrong or stopped.
-    values : tuple of float
-        One for every quantity, nan where the solution stopped.
-    findings : tuple of Finding
-        The error of every quantity.
-    seconds : float
-        Wall time, everything included.
-    stopped : str
-        Why there is no answer, empty if there is one.
+    `seconds` is the wall time of everything, and `stopped` says why there is no answer, if there is none.
     """
 
     claim: Claim
@@ -154,41 +137,33 @@ class Judgement:
         if self.passed or self.stopped:
             return self.stopped or None
         k = self.worst
-        exact, found = self.claim.quantities[k].exact, self.findings[k]
-        return f"{found.name}: {self.values[k]:.10g}, exact {exact:.10g}, error {found.error:.2g} > {found.allowed:.2g}"
+        return self.findings[k].beyond(self.values[k], self.claim.quantities[k].exact)
 
     def junit(self, classname: str) -> JUnitCase:
         """Return the judgement as a JUnit test case."""
-        measured = (f"{one.name}: error {one.error:.2g}, allowed {one.allowed:g}" for one in self.findings)
         return JUnitCase(
             classname=classname,
             name=self.claim.name,
             seconds=self.seconds,
             failure=self.failure,
-            output="\n".join(measured),
+            output="\n".join(one.measured for one in self.findings),
         )
 
 
 def judge(claim: Claim) -> Judgement:
-    """Measure what a claim is about and judge it.
-
-    Raises
-    ------
-    ValueError
-        If not every quantity has a value.
-    """
+    """Measure what a claim is about and judge it; a claim without a value for every quantity is a `ValueError`."""
     began, stopped = perf_counter(), ""
     try:
         values = tuple(claim.measure())
     except StoppedError as error:
         stopped, values = str(error), (math.nan,) * len(claim.quantities)
-    seconds = perf_counter() - began
+    seconds, allowed = perf_counter() - began, claim.allowance
     findings = tuple(
         Finding(
             name=quantity.name,
             error=math.inf if stopped else quantity.error(value),
-            allowed=claim.allowance.error,
-            why=claim.allowance.why,
+            allowed=allowed.error,
+            why=allowed.why,
         )
         for quantity, value in zip(claim.quantities, values, strict=True)
     )

@@ -1,12 +1,11 @@
 """Errors of one model against bounds: what a CI run asks."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from functools import partial
-from math import isnan
+from dataclasses import dataclass
+from math import inf, isnan
 
-from comparisons.claims.claim import Allowance, Claim, Finding, Judgement, Quantity, StoppedError, judge
-from comparisons.claims.junit import junit_text
+from comparisons.claims.claim import Finding
+from comparisons.claims.junit import JUnitCase, junit_text
 from comparisons.errors import difference, worst_place
 from comparisons.models import ROD, certified, find, solve
 from comparisons.models.options import ModelError, Options
@@ -18,46 +17,44 @@ from comparisons.scene import Scene
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Gate:
-    """A run against its bounds.
+    """A run, what it is measured against, and its errors with their bounds by name of the quantity, in the order asked for.
 
-    Attributes
-    ----------
-    scene : Scene
-        What is solved.
-    response, reference : Response
-        The run and what it is measured against.
-    judgements : tuple of Judgement
-        One for each bound, in the order asked for.
+    An error is infinite where a solution stopped.
     """
 
     scene: Scene
     response: Response
     reference: Response
-    judgements: tuple[Judgement, ...]
+    bounds: tuple[Finding, ...]
 
     @property
-    def bounds(self) -> tuple[Finding, ...]:
-        """The errors and their bounds, by name of the quantity; an error is infinite where a solution stopped."""
-        return tuple(finding for item in self.judgements for finding in item.findings)
+    def stopped(self) -> str:
+        """Which of the two solutions stopped, and why; empty if none did."""
+        both = (self.response, self.reference)
+        return next((f"{one.model}: {one.status}: {one.message}" for one in both if not one.completed), "")
 
     @property
     def held(self) -> bool:
         """Whether both solutions are complete and every bound holds."""
-        return all(item.passed for item in self.judgements)
+        return not self.stopped and all(item.holds for item in self.bounds)
 
     def place(self, quantity: str) -> str:
         """Return the pair, support or beam, and the load parameter, with the largest error; empty without an error or an answer."""
-        if not (self.response.completed and self.reference.completed):
-            return ""
-        return worst_place(self.response, self.reference, self.scene, quantity)
+        return "" if self.stopped else worst_place(self.response, self.reference, self.scene, quantity)
 
     def junit(self) -> str:
         """Return the bounds as JUnit XML, one test case each."""
-        classname = f"{self.response.scene}.{self.response.model}"
-        cases = [item.junit(classname) for item in self.judgements]
         against = f", against {self.reference.model}"
-        named = [replace(one, failure=one.failure and one.failure + against) for one in cases]
-        return junit_text(f"crossval compare {self.response.scene}", named)
+        cases = (
+            JUnitCase(
+                classname=f"{self.response.scene}.{self.response.model}",
+                name=item.name,
+                failure=None if item.holds else (self.stopped or item.beyond(item.error, 0.0)) + against,
+                output=item.measured,
+            )
+            for item in self.bounds
+        )
+        return junit_text(f"crossval compare {self.response.scene}", cases)
 
 
 def gate(
@@ -81,39 +78,26 @@ def gate(
     ModelError
         If a model cannot state the scene, a model is measured against itself, or the two do not state a quantity that is bounded.
     """
-    other = find(ROD.name if against is None else against)
+    own, other = find(model), find(against or ROD.name)
     exact = other.reference or Options()
-    if find(model).name == other.name and other.setting(scene, options) == other.setting(scene, exact):
+    if own.name == other.name and other.setting(scene, options) == other.setting(scene, exact):
         raise ModelError(f"{model}: is measured against itself; --against names another model")
     for name in bounds:
-        refused = QUANTITIES[name].refusal(scene, find(model).continuum and other.continuum)
+        refused = QUANTITIES[name].refusal(scene, own.continuum and other.continuum)
         if refused is not None:
             raise ModelError(f"{name}: {refused}")
-    allowance = max(ALLOWED, *bounds.values())
     reference = certified(solve(scene, against or ROD.name, exact), scene)
+    allowance = max(ALLOWED, *bounds.values())
     response = certified(solve(scene, model, options), scene, allowance=allowance)
 
-    def measured(quantity: str) -> tuple[float]:
-        for one in (response, reference):
-            if not one.completed:
-                raise StoppedError(f"{one.model}: {one.status}: {one.message}")
-        error = difference(response, reference, scene, quantity)
-        if isnan(error):
+    def error(quantity: str) -> float:
+        if not (response.completed and reference.completed):
+            return inf
+        found = difference(response, reference, scene, quantity)
+        if isnan(found):
             absent = QUANTITIES[quantity].absent(response, reference)
             raise ModelError(f"{quantity}: {absent or 'the scene has none'}")
-        return (error,)
+        return found
 
-    claims = (
-        Claim(
-            name=quantity,
-            statement=f"the error of {response.model} in {scene.name}",
-            source=f"against {reference.model}",
-            quantities=(Quantity(name=quantity, exact=0.0, scale=1.0),),
-            allowance=Allowance(error=bound, why="asked for"),
-            measure=partial(measured, quantity),
-        )
-        for quantity, bound in bounds.items()
-    )
-    return Gate(
-        scene=scene, response=response, reference=reference, judgements=tuple(judge(one) for one in claims)
-    )
+    held = tuple(Finding(name=name, error=error(name), allowed=bound) for name, bound in bounds.items())
+    return Gate(scene=scene, response=response, reference=reference, bounds=held)

@@ -7,19 +7,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 @dataclass(frozen=True, kw_only=True)
 class JUnitCase:
-    """One check.
-
-    Attributes
-    ----------
-    classname, name : str
-        Name of the group of checks, and name of the check.
-    seconds : float
-        What it took.
-    failure : str or None
-        Why it failed, in one line with numbers; None if it passed.
-    output : str
-        What was measured.
-    """
+    """One check: its group and name, seconds, why it failed if it did, in one line with numbers, and what was measured."""
 
     classname: str
     name: str
@@ -53,9 +41,8 @@ def junit_text(suite: str, cases: Iterable[JUnitCase]) -> str:
         time=f"{sum(case.seconds for case in listed):.6f}",
     )
     for case in listed:
-        element = SubElement(
-            root, "testcase", classname=case.classname, name=case.name, time=f"{case.seconds:.6f}"
-        )
+        names = {"classname": case.classname, "name": case.name, "time": f"{case.seconds:.6f}"}
+        element = SubElement(root, "testcase", names)
         if case.failure is not None:
             SubElement(element, "failure", message=case.failure)
         if case.output:

@@ -1,7 +1,7 @@
 """``crossval compare``: one scene by every model, one model against bounds, or several scenes by every program."""
 
 import argparse
-from contextlib import AbstractContextManager
+from functools import partial
 from pathlib import Path
 
 from comparisons.cli.options import Command, argument, chosen, workers
@@ -10,7 +10,6 @@ from comparisons.cli.progress import staging, watching
 from comparisons.files import result_file, writable_folder, write_text
 from comparisons.models import TSM
 from comparisons.models.options import ModelError
-from comparisons.models.progress import Count, Watch
 from comparisons.scene import Scene, built_in_scenes, load_scene
 
 EVERY = "all"
@@ -51,21 +50,13 @@ def _compare(scene: Scene, given: argparse.Namespace) -> int:
     from comparisons.models import find
     from comparisons.show.table import table_text
 
-    def tell(line: str) -> None:
-        if not given.quiet:
-            report(line)
-
-    def watch(label: str) -> AbstractContextManager[Watch]:
-        return watching(label, quiet=given.quiet)
-
-    def stage(label: str) -> AbstractContextManager[Count]:
-        return staging(label, quiet=given.quiet)
-
+    tell = (lambda _: None) if given.quiet else report
     more = [run_of(model, options) for model in map(find, given.others) for options in model.compared()]
     if any(getattr(given, option) is not None for option in MODEL):
         model, options = find(given.model or TSM.name), chosen(given)
         label = f"{model.label} {model.setting(scene, options)}".rstrip()
         more.append(Run(label=label, model=model.name, options=options))
+    watch, stage = partial(watching, quiet=given.quiet), partial(staging, quiet=given.quiet)
     found = compare(scene, given.out or Path("out") / scene.name, tell, watch, stage, more)
     print(table_text(found.rows, ROD.label))
     if found.other_events:
@@ -101,17 +92,14 @@ def _held(scene: Scene, given: argparse.Namespace) -> int:
 
 def _league(scenes: list[Scene], given: argparse.Namespace) -> int:
     """Measure every program on every scene, print the summary and name the files."""
-    written = (*(f"league.{kind}" for kind in ("csv", "json", "svg", "png")), "report.html")
-    folder = writable_folder(given.out or Path("out/league"), *written)
-    from comparisons.cases.progress import shown
-    from comparisons.league.entries import measure_league
-    from comparisons.league.page import summary, write_league
+    from comparisons.cases.progress import running
+    from comparisons.league import FILES, measure_league, summary, write_league
     from comparisons.output import tabulated
 
-    with shown(quiet=given.quiet) as progress:
-        league = measure_league(
-            scenes, given.others, folder / "results", workers(given, 1), quick=given.quick, progress=progress
-        )
+    folder = writable_folder(given.out or Path("out/league"), *FILES)
+    where = workers(given, 1)
+    with running(folder / "results", where, quiet=given.quiet, process=True) as run_cases:
+        league = measure_league(scenes, given.others, run_cases, quick=given.quick)
     print(tabulated(summary(league)))
     for name, program, reason in league.left_out:
         print(f"{name}: {program}: left out, {reason}")

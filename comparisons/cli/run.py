@@ -16,7 +16,6 @@ from comparisons.scene import InputError, load_scene
 if TYPE_CHECKING:
     import argparse
 
-    from comparisons.cost.points import Trade
 
 EPILOG = """exit status: 0 done (a solution that stopped is a result, and is named), 1 an answer of the manual is beyond its tolerance,
 or a cell of the extremes is wrong, 2 bad input or a place that cannot be used, 3 a figure's run stopped, a case has no result, or nothing
@@ -113,39 +112,22 @@ def _trade(given: "argparse.Namespace") -> int:
         raise InputError("SCENE", "is missing: crossval run trade SCENE")
     scene = load_scene(given.of[0])
     folder = given.out or Path("out/trade") / scene.name
-    from comparisons.cases.progress import shown
-    from comparisons.cost.references import NoReferenceError
-    from comparisons.cost.sweep import trade_off
+    writable_folder(folder, "report.html", "trade.csv", "trade.json")
+    from comparisons.cases.progress import running
+    from comparisons.trade.reference import NoReferenceError
+    from comparisons.trade.report import summary, write_trade
+    from comparisons.trade.trade import measure_trade
 
     try:
-        with shown(quiet=given.quiet) as progress:
-            found = trade_off(scene, folder, workers(given, 1), quick=given.quick, progress=progress)
+        with running(folder / "results", workers(given, 1), quiet=given.quiet) as run_cases:
+            trade = measure_trade(scene, run_cases, quick=given.quick)
     except NoReferenceError as error:
         report(f"crossval: {error}")
         return STOPPED
-    print(_traded(found.trade), end="\n\n")
-    _files(*found.files)
+    files = write_trade(trade, folder)
+    print(summary(trade), end="\n\n")
+    _files(*files)
     return DONE
-
-
-def _traded(trade: "Trade") -> str:
-    from comparisons.cost.orders import orders
-    from comparisons.cost.sweep import SHOWN
-    from comparisons.cost.tables import cheapest_text, orders_text, stopped_text
-
-    limit = (
-        "not known: a solid that it is extrapolated from stopped"
-        if trade.limit is None
-        else trade.limit.sentence
-    )
-    head = f"""{trade.scene.name}: {len(trade.points)} settings
-errors against: {trade.reference.sentence}
-the solid's own limit: {limit}
-seconds: processor time of one thread from the scene to the checked answer, median of repeats after a warm-up
--: no setting does it; not told: the limit is known less well than that; [n]: n load steps"""
-    fitted = orders_text(list(orders(trade, SHOWN)))
-    title = f"orders of convergence and cost exponents, error of {SHOWN} over the path"
-    return "\n\n".join([head, cheapest_text(trade, SHOWN), title, fitted, stopped_text(trade)])
 
 
 def _question(given: "argparse.Namespace") -> int:
@@ -160,21 +142,17 @@ def _question(given: "argparse.Namespace") -> int:
 
 
 def _study(given: "argparse.Namespace") -> int:
-    from comparisons.cases.progress import shown
+    from comparisons.cases.progress import running
+    from comparisons.cases.rows import result_rows, result_table
     from comparisons.cases.run import UNSETTLED
-    from comparisons.cases.run import run as run_cases
     from comparisons.cases.study import read_study
-    from comparisons.cases.table import result_rows, result_table
     from comparisons.output import write_rows
 
     study = read_study(Path(given.suite))
     table = f"{study.name}.csv"
     folder = writable_folder(given.out or Path("out/study"), table)
-    with shown(quiet=given.quiet) as progress:
-        found = run_cases(
-            study.cases, folder / study.name, workers(given), repeats=study.repeats, progress=progress
-        )
-    rows = result_rows(found)
+    with running(folder / study.name, workers(given), quiet=given.quiet, repeats=study.repeats) as run_cases:
+        rows = result_rows(run_cases(study.cases))
     ends = Counter(row["status"] for row in rows)
     print(result_table(rows))
     print(f"\n{study.name}: {len(rows)} cases: {', '.join(f'{name} {ends[name]}' for name in sorted(ends))}")

@@ -60,7 +60,7 @@ scene.load_parameters = 2
 ASKED = """
 from comparisons.claims.extremes.axes import matrix
 from comparisons.compare import RUNS
-from comparisons.cost.cases import sweep_cases
+from comparisons.trade.settings import sweep_cases
 from comparisons.scene import load_scene
 from comparisons.show.palette import colour
 print(sum(run.model == "chain" for run in RUNS))

@@ -20,7 +20,7 @@ DRAWS = (
     "comparisons/show",
     "comparisons/cli",
     "comparisons/claims/paper",
-    "comparisons/cost/plots.py",
+    "comparisons/trade/plots.py",
 )
 """Where faults are not put: pages, pictures and texts of help."""
 NEAR = {

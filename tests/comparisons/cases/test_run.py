@@ -11,12 +11,15 @@ import numpy as np
 import pytest
 
 # not public: a worker's exception cannot be brought about from outside, nor systems without /proc
-from comparisons.cases import Case, Measurement, measure, memory
+from comparisons.cases import Case, Measurement, Row, measure, memory
 from comparisons.cases import run as run_module
+from comparisons.cases.measure import unmeasured
+from comparisons.cases.rows import reached_errors
 from comparisons.cases.workers import Workers
 from comparisons.files import OutputError
 from comparisons.models import solve
 from comparisons.models.options import Options
+from comparisons.quantities import KEPT, SCOPES
 from comparisons.scene import load_scene
 from comparisons.version import version
 
@@ -114,13 +117,20 @@ def test_a_measurement_is_the_response_and_comes_back_as_it_was(measured):
     assert line.shape == (101, 2)
     assert line[[0, -1]] == pytest.approx(np.array([[0, 0], response.tips["cantilever"][1]]), abs=1e-3)
     refused, untimed = measure(replace(CASE, options=Options(mesh=(2, 1)))), measure(CASE, repeats=0)
-    assert (refused.response.status, refused.response.completed) == ("REFUSED", False)
-    assert refused.verdict == untimed.verdict == ""
+    assert (refused.response.status, refused.verdict, untimed.verdict) == ("REFUSED", "", "")
     for one in (measured, refused, untimed):
         again = Measurement.from_json(one.to_json())
         assert again.to_json() == one.to_json() == pickle.loads(pickle.dumps(one)).to_json()  # noqa: S301
         types = [[type(value) for value in vars(each.response).values()] for each in (again, one)]
         assert types[0] == types[1]
+
+
+def test_a_case_without_an_answer_has_no_errors():
+    lost, exact = unmeasured("WORKER_LOST", "gone"), solve(KS, "rod")
+    errors = reached_errors(lost.response, exact, KS, KEPT)
+    row = Row(case=CASE, measured=lost, errors=errors)
+    assert np.isnan([row.error(scope, name) for scope in SCOPES for name in KEPT]).all()
+    assert (row.outcome, row.measured.wrong) == ("WORKER_LOST", False)
 
 
 def test_peak_memory_without_proc_and_resource(tmp_path, monkeypatch):

@@ -82,18 +82,16 @@ class Terminal(io.StringIO):
 
 
 def test_progress_is_a_bar_on_a_terminal_and_lines_elsewhere(many, tmp_path, monkeypatch):
-    """Two cases are left to do; then a file is damaged, whose message stands in a line of its own."""
+    """Two cases are left to do."""
     for stream in (Terminal(), io.StringIO()):
         folder = tmp_path / type(stream).__name__
         shutil.copytree(many.with_suffix(""), folder / "many")
-        told = {file: json.loads(file.read_text()) for file in folder.glob("many/*")}
-        (rod,) = (file for file in told if told[file]["model"] == "rod")
-        (refused,) = (file for file in told if told[file]["response"]["status"] == "REFUSED")
-        rod.unlink()
-        refused.unlink()
-        command = ("run", many.with_suffix(".toml"), "--out", folder, "--workers", "1")
+        for file in folder.glob("many/*"):
+            told = json.loads(file.read_text())
+            if told["model"] == "rod" or told["response"]["status"] == "REFUSED":
+                file.unlink()
         monkeypatch.setattr(sys, "stderr", stream)
-        assert crossval(*command) == 0
+        assert crossval("run", many.with_suffix(".toml"), "--out", folder, "--workers", "1") == 0
         text = stream.getvalue()
         if stream.isatty():
             first, *_, last = text.split("\r")[1:]
@@ -103,10 +101,6 @@ def test_progress_is_a_bar_on_a_terminal_and_lines_elsewhere(many, tmp_path, mon
             assert text.splitlines()[0] == "10 of 12 cases done, 3 failed"
             assert text.splitlines()[-1] == "12 of 12 cases done, 4 failed"
             assert re.search(r"^\d+ of 12 cases done, \d failed, \d:\d\d left$", text, re.MULTILINE)
-        rod.write_text("{}")
-        assert crossval(*command) == 2
-        line = f"crossval: {rod}: is damaged: delete it, and the case is solved again\n"
-        assert stream.getvalue().removeprefix(text) == "\n" * stream.isatty() + line
 
 
 @pytest.mark.slow

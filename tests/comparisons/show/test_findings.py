@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 
 from comparisons.budget import PARTS, Budget
+from comparisons.cases import Measurement, Row
 from comparisons.compare import ROD, Run, _row, run_of
 from comparisons.models import ELASTICA, SOLID, TSM, certified, solve
 from comparisons.models.options import Options
 from comparisons.referee import Verdict
 from comparisons.scene import load_scene
 from comparisons.show.findings import BUDGET, findings  # sentences on data that no scene gives at will
-from comparisons.show.table import Row, table_csv
+from comparisons.show.table import table_csv
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=5)
 
@@ -32,8 +33,8 @@ CHOSEN = (
 
 @pytest.fixture(scope="module")
 def rows() -> list[Row]:
-    responses = {run.label: certified(solve(KS, run.model, run.options), KS) for run in CHOSEN}
-    return [_row(run, responses, KS) for run in CHOSEN]
+    answers = {run: certified(solve(KS, run.model, run.options), KS) for run in CHOSEN}
+    return [_row(KS, run, answers[run], answers[ROD]) for run in CHOSEN]
 
 
 def budget(**parts: float) -> Budget:
@@ -55,7 +56,8 @@ def told(rows: list[Row], made: Budget | None = None, left_out: dict[str, str] |
 
 def changed(rows: list[Row], number: int, **fields: object) -> list[Row]:
     """Return rows of which one has another response."""
-    other = replace(rows[number], response=replace(rows[number].response, **fields))
+    response = replace(rows[number].response, **fields)
+    other = replace(rows[number], measured=Measurement(response=response))
     return [*rows[:number], other, *rows[number + 1 :]]
 
 
@@ -87,7 +89,7 @@ def test_every_sentence_is_said_of_its_data_and_of_no_other(rows):
     )
     solid = re.search(r"The solid Q2 is off by .*?(a bent strip, softer|cause: shear)", plain)[0]
     off = with_error(with_error(rows, 0, moment=0.016), 1, moment=0.004, force=0.001)
-    stable = [replace(row, response=replace(row.response, index=np.zeros(5, dtype=int))) for row in rows]
+    stable = [changed(rows, k, index=np.zeros(5, dtype=int))[k] for k in range(len(rows))]
     unstable, partly = (
         changed(stable, 2, index=np.array(index)) for index in ([0, 0, 1, 0, 0], [0, -1, -1, -1, 0])
     )

@@ -1,7 +1,7 @@
 """Pareto fronts, orders of convergence and cost exponents."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,24 +29,13 @@ def pareto(cost: ArrayLike, error: ArrayLike) -> list[int]:
     return front
 
 
-@dataclass(frozen=True, kw_only=True)
-class Fit:
-    """A power law ``y = c x^exponent`` by least squares on the logarithms.
+class Fit(NamedTuple):
+    """A power law ``y ~ x^exponent`` by least squares on the logarithms.
 
-    Attributes
-    ----------
-    exponent, factor : float
-        Exponent and c.
-    first, last : float
-        Range of x fitted.
-    points : int
-        Points fitted.
-    scatter : float
-        Largest ``|ln y - ln y_fit|``.
+    It is fitted to `points` points from x = `first` to `last`; `scatter` is the largest ``|ln y - ln y_fit|``.
     """
 
     exponent: float
-    factor: float
     first: float
     last: float
     points: int
@@ -59,14 +48,8 @@ def power_law(x: Sequence[float], y: Sequence[float]) -> Fit | None:
         return None
     lx, ly = np.log(x), np.log(y)
     exponent, constant = np.polyfit(lx, ly, 1)
-    return Fit(
-        exponent=float(exponent),
-        factor=float(np.exp(constant)),
-        first=float(min(x)),
-        last=float(max(x)),
-        points=len(x),
-        scatter=float(np.abs(ly - exponent * lx - constant).max()),
-    )
+    scatter = float(np.abs(ly - exponent * lx - constant).max())
+    return Fit(float(exponent), float(min(x)), float(max(x)), len(x), scatter)
 
 
 def convergence(resolution: Sequence[float], error: Sequence[float], floor: float) -> Fit | None:

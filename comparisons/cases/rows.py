@@ -1,0 +1,157 @@
+"""Rows: cases with their answers, their costs, and their errors against a reference; and the table of a study."""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from math import nan
+from typing import Any
+
+import numpy as np
+
+from comparisons.cases.case import Case
+from comparisons.cases.measure import Measurement
+from comparisons.cases.settings import settings
+from comparisons.errors import Errors, error_histories, largest
+from comparisons.output import tabulated
+from comparisons.quantities import SCOPES
+from comparisons.response import Response
+from comparisons.scene import Scene
+from comparisons.version import version
+
+DETAILS = ("moment:", "tip_x:", "tip_y:")
+"""Columns that a table for a reader leaves out, by their beginnings."""
+HIDDEN = {"label", "load_parameter", "cutbacks", "seconds", "repeats", "peak_memory", "version", "message"}
+"""Columns that a table for a reader leaves out; without times it is the same in every run."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Row:
+    """A case with its answer, its cost and its errors by scope and quantity.
+
+    `errors` are against the reference, which itself has none; `own_errors` are against what the model converges to, where that is known.
+    `name` is the label of the run, by default that of the case. `cause` is the largest part of the error that theory allows the model,
+    empty where theory has no estimate for the scene.
+    """
+
+    case: Case
+    measured: Measurement
+    errors: Errors | None = None
+    own_errors: Errors | None = None
+    name: str = ""
+    cause: str = ""
+
+    @property
+    def response(self) -> Response:
+        """The answer."""
+        return self.measured.response
+
+    @property
+    def label(self) -> str:
+        """Label of the run."""
+        return self.name or self.case.label
+
+    @property
+    def outcome(self) -> str:
+        """``certified``, ``wrong`` for a refused answer that the program reported as a success, or the status of a stop."""
+        if self.measured.wrong:
+            return "wrong"
+        if not self.response.completed:
+            return self.response.status
+        return self.measured.verdict.lower().replace("_", " ") or "no verdict"
+
+    def error(self, scope: str, quantity: str, *, own: bool = False) -> float:
+        """Return an error against the reference, or against what the model converges to; nan where it is not known."""
+        errors = self.own_errors if own else self.errors
+        return nan if errors is None else errors[scope][quantity]
+
+    def spent(self, cost: str) -> float:
+        """Return the ``seconds``, the ``iterations`` or the ``unknowns``."""
+        return float(getattr(self.measured if cost == "seconds" else self.response, cost))
+
+    def cost(self) -> dict[str, float]:
+        """Return the columns of all costs."""
+        own = {name: getattr(self.response, name) for name in ("iterations", "cutbacks", "unknowns")}
+        return own | {name: getattr(self.measured, name) for name in ("seconds", "repeats", "peak_memory")}
+
+
+def reached_errors(
+    response: Response, reference: Response, scene: Scene, quantities: Sequence[str]
+) -> Errors:
+    """Return the errors as far as both responses came, nan where there are none; those of ``end`` are at the reference's last state."""
+    if not np.isin(response.load_parameter, reference.load_parameter).any():
+        return {scope: dict.fromkeys(quantities, nan) for scope in SCOPES}
+    shared, found = error_histories(response, reference, scene, quantities=quantities)
+    ends = {"end": shared == reference.load_parameter[-1], "path": slice(None)}
+    return {
+        scope: {name: largest(values[at]) for name, values in found.items()} for scope, at in ends.items()
+    }
+
+
+def result_rows(results: Mapping[Case, Measurement]) -> list[dict[str, Any]]:
+    """Return a row for each result, with settings that differ, status, last state reached and cost.
+
+    The columns of answers are ``force:PAIR``, ``arc_position:PAIR``, ``moment:BEAM``, ``tip_x:BEAM`` and ``tip_y:BEAM``.
+    """
+    rows = [Row(case=case, measured=found) for case, found in results.items()]
+    stated = [settings(row.case) for row in rows]
+    answers = [_answers(row.response) for row in rows]
+    varied = _varied(stated)
+    columns = list(dict.fromkeys(name for answer in answers for name in answer))
+    return [
+        {
+            "scene": row.case.scene.name,
+            "model": row.case.found.name,
+            "label": row.label,
+            **{name: _text(own.get(name)) for name in varied},
+            "status": row.response.status,
+            "verdict": row.measured.verdict,
+            **{name: answer.get(name) for name in columns},
+            **row.cost(),
+            "version": version(),
+            "message": row.response.message,
+        }
+        for row, own, answer in zip(rows, stated, answers, strict=True)
+    ]
+
+
+def result_table(rows: list[dict[str, Any]]) -> str:
+    """Return `result_rows` as a table for a reader, with the reasons of the stopped cases below it."""
+    hidden = HIDDEN | ({"scene"} if len({row["scene"] for row in rows}) == 1 else set())
+    names = [name for name in rows[0] if name not in hidden and not name.startswith(DETAILS)]
+    shown = tabulated([{name: row[name] for name in names} for row in rows])
+    stopped = [
+        f"{row['scene']}, {row['label']}: {row['status']}: {row['message']}"
+        for row in rows
+        if row["status"] != "COMPLETED"
+    ]
+    return "\n".join([shown, f"\nversion {version()}", *([""] if stopped else []), *stopped])
+
+
+def _varied(tables: Collection[Mapping[str, object]]) -> list[str]:
+    """Return the settings that differ between cases, a model's options first."""
+    known = {name for table in tables for name in table}
+    differ = (name for name in known if len({repr(table.get(name)) for table in tables}) > 1)
+    return sorted(differ, key=lambda name: ("." in name, name))
+
+
+def _answers(response: Response) -> dict[str, float]:
+    """Return the last state reached."""
+    if not len(response.load_parameter):
+        return {}
+    contacts, tips = response.contacts.items(), response.tips.items()
+    last = {
+        "load_parameter": response.load_parameter[-1],
+        **{f"force:{pair}": one.force[-1] for pair, one in contacts},
+        **{f"arc_position:{pair}": one.arc_position[-1] for pair, one in contacts},
+        **{f"moment:{node}": one.moment[-1] for node, one in response.supports.items()},
+        **{f"tip_x:{beam}": tip[-1, 0] for beam, tip in tips},
+        **{f"tip_y:{beam}": tip[-1, 1] for beam, tip in tips},
+    }
+    return {name: float(value) for name, value in last.items() if np.isfinite(value)}
+
+
+def _text(value: object) -> object:
+    """Return a setting for one cell: ``50x2`` for a mesh, the other lists as text."""
+    if not isinstance(value, list):
+        return value
+    whole = all(isinstance(item, int) for item in value)
+    return ("x" if whole else " ").join(str(item) for item in value)

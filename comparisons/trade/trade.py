@@ -1,0 +1,172 @@
+"""The trade-off of a scene: every setting with its cost and errors, the cheapest for an accuracy, fronts and orders."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import inf, isfinite, nan
+from typing import Any
+
+from comparisons.cases import Row
+from comparisons.cases.progress import Runner
+from comparisons.models import MODELS, SOLID, TSM
+from comparisons.scene import Scene
+from comparisons.trade.fits import Fit, convergence, pareto, power_law
+from comparisons.trade.reference import (
+    Reference,
+    best_reference,
+    reference_cases,
+    solid_limit,
+)
+from comparisons.trade.settings import chains, sweep_cases
+
+Line = dict[str, Any]
+"""A row of a table by its columns."""
+TARGETS = (5e-2, 1e-2, 1e-3, 1e-4, 1e-5)
+COSTS = ("seconds", "iterations", "unknowns")
+MESHED = tuple(model.name for model in MODELS.values() if model.meshed)
+"""The models that have a Pareto front."""
+LARGEST = 4
+"""Number of the largest settings of a family to which the cost exponent is fitted; the cost of small settings does not depend on size."""
+ABOVE = 3.0
+"""Least error in a fit, over the uncertainty of the reference."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Trade:
+    """The whole sweep: a row for every case, with errors against the reference and against what its model converges to.
+
+    The solid converges to a limit of its own, None if it is not known; the limit of all other models is the reference.
+    """
+
+    scene: Scene
+    rows: list[Row]
+    reference: Reference
+    limit: Reference | None
+
+    def uncertainty(self, model: str, scope: str, quantity: str) -> float:
+        """Return the uncertainty of a model's limit; nan if the limit is not known."""
+        known = self.limit if MODELS[model].continuum else self.reference
+        return nan if known is None else known.uncertainty[scope][quantity]
+
+    def of_model(self, model: str, scope: str) -> list[Row]:
+        """Return the completed rows of a model; for the scope ``path`` those with every load parameter of the scene."""
+        return [
+            row
+            for row in self.rows
+            if row.response.completed
+            and row.case.model == model
+            and (scope == "end" or row.case.scene.load_parameters == self.scene.load_parameters)
+        ]
+
+
+def measure_trade(scene: Scene, run: Runner, *, quick: bool = False) -> Trade:
+    """Measure every setting of `scene` and state its errors; nothing to measure them against is a `NoReferenceError`."""
+    cases = list(dict.fromkeys([*reference_cases(scene), *sweep_cases(scene, quick=quick)]))
+    measured = run(cases)
+    reference = best_reference(scene, measured)
+    limit = solid_limit(scene, measured, quick=quick)
+    rows = []
+    for case in cases:
+        response, own = measured[case].response, limit if case.found.continuum else reference
+        errors, own_errors = (None if one is None else one.errors(response) for one in (reference, own))
+        rows.append(Row(case=case, measured=measured[case], errors=errors, own_errors=own_errors))
+    return Trade(scene=scene, rows=rows, reference=reference, limit=limit)
+
+
+def cheapest(trade: Trade, scope: str, quantity: str, target: float) -> Line:
+    """Return the settings of TSM and of the solid with the least seconds for an error of at most `target`, as a row.
+
+    The error of the solid is measured against its own limit, and once more against the reference. Where the limit is known less well
+    than the target, the solid has no setting. A ratio is that of the seconds of the solid over those of TSM.
+    """
+
+    def least(model: str, *own: bool) -> Row | None:
+        """The larger error counts: on a coarse mesh, discretisation and model error may cancel."""
+
+        def error(row: Row) -> float:
+            errors = (row.error(scope, quantity, own=one) for one in own)
+            return max(filter(isfinite, errors), default=inf)
+
+        good = (row for row in trade.of_model(model, scope) if error(row) <= target)
+        return min(good, key=lambda row: row.measured.seconds, default=None)
+
+    doubt = trade.uncertainty(SOLID.name, scope, quantity)
+    beams, there = least(TSM.name, False), least(SOLID.name, False, True)
+    solid = least(SOLID.name, True) if doubt <= target else None
+    return {
+        "scope": scope,
+        "quantity": quantity,
+        "target": target,
+        **_named(TSM.name, beams),
+        **_named(SOLID.name, solid),
+        "ratio": _ratio(solid, beams),
+        "limit_uncertainty": doubt,
+        **_named("solid_against_reference", there),
+        "ratio_against_reference": _ratio(there, beams),
+    }
+
+
+def _named(name: str, row: Row | None) -> Line:
+    return {
+        name: row and row.label,
+        f"{name}_load_steps": row and row.case.scene.load_parameters,
+        f"{name}_seconds": row and row.measured.seconds,
+    }
+
+
+def _ratio(slow: Row | None, fast: Row | None) -> float | None:
+    return slow.measured.seconds / fast.measured.seconds if slow and fast else None
+
+
+def front(trade: Trade, model: str, scope: str, quantity: str, cost: str) -> list[Line]:
+    """Return the Pareto front of a model by rising cost as rows, with errors against the model's limit.
+
+    Errors below the uncertainty of the limit count as equal.
+    """
+    rows, doubt = trade.of_model(model, scope), trade.uncertainty(model, scope, quantity)
+    costs = [row.spent(cost) for row in rows]
+    errors = [max(row.error(scope, quantity, own=True), doubt) for row in rows]
+    return [
+        {
+            "model": model,
+            "scope": scope,
+            "quantity": quantity,
+            "cost": cost,
+            "label": rows[k].label,
+            "load_steps": rows[k].case.scene.load_parameters,
+            "spent": costs[k],
+            "own_error": errors[k],
+        }
+        for k in pareto(costs, errors)
+    ]
+
+
+def orders(trade: Trade, quantity: str) -> Iterator[Line]:
+    """Yield a row for every family with all load steps: ``error ~ n^-order`` over the path, ``seconds ~ unknowns^cost_exponent``.
+
+    An exponent is None where its asymptotic range has fewer than three points.
+    """
+    rows = {row.case: row for model in MESHED for row in trade.of_model(model, "path")}
+    for chain in chains(rows):
+        case, known = chain[0], [rows[one] for one in chain]
+        doubt = trade.uncertainty(case.model, "path", quantity)
+        errors = [row.error("path", quantity, own=True) for row in known]
+        sizes = [row.case.resolution for row in known]
+        order = convergence(sizes, errors, ABOVE * doubt) if isfinite(doubt) else None
+        costs = ([row.spent(cost) for row in known[-LARGEST:]] for cost in ("unknowns", "seconds"))
+        given = [contact for contact in case.scene.contacts if contact.penetration is not None]
+        yield {
+            "family": case.family + (f", penetration {given[0].penetration:g}" if given else ""),
+            "settings": len(chain),
+            **_stated("order", order, -1.0),
+            **_stated("cost_exponent", power_law(*costs), 1.0),
+        }
+
+
+def _stated(name: str, fit: Fit | None, sign: float) -> Line:
+    return {
+        name: fit and sign * fit.exponent,
+        f"{name}_points": fit.points if fit else 0,
+        f"{name}_from": fit and fit.first,
+        f"{name}_to": fit and fit.last,
+        f"{name}_scatter": fit and fit.scatter,
+    }
