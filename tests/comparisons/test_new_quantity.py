@@ -13,7 +13,7 @@ from comparisons import compare
 from comparisons.cli import main
 from comparisons.quantities import QUANTITIES, Quantity
 from comparisons.scene import load_scene, to_toml
-from docs.extensions import response as documented
+from docs.extensions import generated
 
 
 def rises(response):
@@ -56,7 +56,7 @@ def test_every_place_has_a_new_quantity(scene, capsys):
             == status
         )
         assert f"  rise {error:13.3g}  " in capsys.readouterr().out
-    assert "| `rise` | length | rise of the tips over the length |" in documented.quantities_page()
+    assert "| `rise` | length | rise of the tips over the length |" in generated.quantities()
     with pytest.raises(SystemExit):
         main(["compare", "--help"])
     assert "rise" in capsys.readouterr().out.rpartition("--max-error")[2].partition("--against")[0]
