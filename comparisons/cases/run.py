@@ -19,7 +19,9 @@ BEAT = 5.0
 """Seconds between two reports of the progress while no case ends."""
 COMPLETED = "COMPLETED"
 """The status of a completed and checked solution."""
-WORKER_LOST, ERROR = UNSETTLED = ("WORKER_LOST", "ERROR")
+WORKER_LOST = "WORKER_LOST"
+ERROR = "ERROR"
+UNSETTLED = (WORKER_LOST, ERROR)
 """A worker died, and died again when its case was tried alone; a case raised an exception, which no model should.
 
 They come from the machine or from a bug and not from the case; the next run repeats the case.
