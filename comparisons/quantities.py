@@ -67,17 +67,15 @@ class Quantity:
         if self.compare is not None:
             return self.compare(pair)
         own, true = self.values(pair.response), self.values(pair.reference)
-        found = {name: np.full(len(pair.own_steps), np.inf) for name in {**true, **own}}
-        for name in (name for name in true if name in own):
-            mine, other = own[name][pair.own_steps], true[name][pair.reference_steps]
-            if self.acting and not (own[name].any() or true[name].any()):
-                del found[name]
-                continue
-            scale = pair.scale.get(self.words, 1.0)
-            if self.over == "length":
-                scale = pair.scene.beam(name.rpartition("->")[2]).length
-            alike = np.isfinite(size(mine)) == np.isfinite(size(other))
-            found[name] = np.where(alike, size(mine - other), np.inf) / scale
+        found = {}
+        for name in {**true, **own}:
+            if name not in own or name not in true:
+                found[name] = np.full(len(pair.own_steps), np.inf)
+            elif not self.acting or own[name].any() or true[name].any():
+                mine, other = own[name][pair.own_steps], true[name][pair.reference_steps]
+                alike = np.isfinite(size(mine)) == np.isfinite(size(other))
+                length = pair.scene.beam(name.rpartition("->")[2]).length if self.over == "length" else 1.0
+                found[name] = np.where(alike, size(mine - other), np.inf) / pair.scale.get(self.words, length)
         return found
 
     def values(self, response: Response) -> Columns:

@@ -13,17 +13,10 @@ import numpy as np
 
 from comparisons.files import one_line
 from comparisons.output import json_text
+from comparisons.response import record
 from comparisons.response.axis import SampledAxes, no_grid, sampled_axes
 from comparisons.response.material import clamped
-from comparisons.response.record import (
-    Array,
-    ContactEvent,
-    ContactHistory,
-    CriticalPoint,
-    FrictionHistory,
-    Response,
-    SupportHistory,
-)
+from comparisons.response.record import Array, Response
 from comparisons.scene import Scene, load_scene
 from comparisons.scene.rules import MISSING, FieldError
 from comparisons.scene.tables import InputError, check_keys, read_text
@@ -34,11 +27,11 @@ SCHEMA: dict[str, Any] = json.loads(
 )
 """Every field of a response in JSON."""
 RECORDS: dict[str, Any] = {
-    "contact": ContactHistory,
-    "friction": FrictionHistory,
-    "support": SupportHistory,
-    "event": ContactEvent,
-    "critical": CriticalPoint,
+    "contact": record.ContactHistory,
+    "friction": record.FrictionHistory,
+    "support": record.SupportHistory,
+    "event": record.ContactEvent,
+    "critical": record.CriticalPoint,
 }
 """What is made of the tables that the schema defines by name."""
 LARGEST_WHOLE = 1e15
@@ -83,12 +76,15 @@ def _stated(field: Field, value: Any) -> Any:
         return value
     if "properties" in field:
         values = value if isinstance(value, dict) else vars(value)
-        given = {key: one for key, one in field["properties"].items() if key in values}
+        left_out = {
+            key
+            for key in values
+            if values[key] is None or (isinstance(values[key], dict) and not values[key])
+        }
         return {
             key: _stated(one, values[key])
-            for key, one in given.items()
-            if key in field["required"]
-            or not (values[key] is None or (isinstance(values[key], dict) and not values[key]))
+            for key, one in field["properties"].items()
+            if key in values and (key in field["required"] or key not in left_out)
         }
     if isinstance(value, Mapping):
         named = field.get("additionalProperties", {})
