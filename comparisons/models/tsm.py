@@ -88,7 +88,9 @@ class Tsm(Model):
 
     def run_label(self, options: Options) -> str:
         """Return the label of one run, as ``TSM mixed, 20 elements``."""
-        return super().run_label(options).replace(self.label, f"{self.label} {self.element(options).name}", 1)
+        return (
+            f"{self.label} {self.element(options).name}{super().run_label(options).removeprefix(self.label)}"
+        )
 
     def setting(self, scene: Scene, options: Options) -> str:
         """Return element type, numbers of elements and tolerance, as ``mixed 20``."""

@@ -65,6 +65,27 @@ def test_bounds(scene, bounds, status, tmp_path, capsys):
     assert all("allowed" in case.findtext("system-out") for case in suite)
 
 
+@pytest.mark.parametrize(
+    ("line", "options", "said"),
+    [
+        ("", (), "exact 1"),
+        ("elements = 7", (), "mixed 7"),
+        ("nodes = [0.3, 0.5]", (), "mixed 3"),
+        ("elements = 7", ("--elements", "5"), "mixed 5"),
+        ("elements = 7", ("--element", "exact"), "exact 1"),
+    ],
+)
+def test_every_command_obeys_the_number_of_elements_of_the_file(line, options, said, tmp_path, capsys):
+    file = tmp_path / "my.toml"
+    file.write_text(KS.replace("clamped =", f"{line}\nclamped ="))
+    if not options:
+        assert solve(read_scene(file.read_text(), "my"), "tsm").setting == said
+    assert main(["solve", str(file), *options, "--quiet"]) == 0
+    assert f"tsm, {said}, " in capsys.readouterr().out
+    assert main(["compare", str(file), *options, "--max-error", "tip=1"]) == 0
+    assert f"tsm {said} against rod" in capsys.readouterr().out
+
+
 @pytest.mark.slow
 def test_a_bound_names_where_the_error_is_largest_and_a_slip_off_is_an_event(capsys):
     """The pin slips off the upper beam at .707 and off the lower one at .972; four elements are not as exact as twenty."""

@@ -1,4 +1,4 @@
-"""An element that is registered is right wherever elements are asked for: accuracy, figures, comparisons of cost."""
+"""An element that is registered is right wherever elements are asked for."""
 
 from dataclasses import replace
 
@@ -7,9 +7,7 @@ import pytest
 
 import tsm
 from comparisons.accuracy import solve_to
-from comparisons.cases import Case
-from comparisons.models import TSM, solve
-from comparisons.models.options import Options
+from comparisons.models import solve
 from comparisons.scene import load_scene
 from tsm.elements import MIXED
 
@@ -30,10 +28,3 @@ def test_accuracy_grades_its_mesh_by_its_order_and_keeps_the_promise():
     force = answer.response.contacts["pin->cantilever"].force
     assert answer.reached
     assert np.abs(force - exact).max() <= 1e-5 * exact.max()
-
-
-def test_figures_and_labels_have_it():
-    options = Options(element=KIND.name, elements=10)
-    assert TSM.run_label(options) == "TSM new, 10 elements"
-    assert Case(scene=KS, model=TSM.name, options=options).label == "tsm new 10"
-    assert (TSM.styles()["TSM new"].colour, TSM.styles()["TSM new"].marker) == ("#AA3377", "x")

@@ -80,7 +80,6 @@ def registered(tmp_path_factory: pytest.TempPathFactory) -> Path:
     listed, count = re.subn(r"^(FILES = .*)\)$", r'\1, "chain")', registry.read_text(), flags=re.MULTILINE)
     assert count == 1
     registry.write_text(listed)
-    (folder / "study.toml").write_text(STUDY)
     return folder
 
 
@@ -102,9 +101,7 @@ def crossval(place: Path, *arguments: str, code: str = COMMAND) -> subprocess.Co
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("way", ["registered", "offered"])
-def test_commands_have_it(way, request):
-    place = request.getfixturevalue(way)
+def test_commands_have_it(offered):
     for arguments, line in {
         ("check", "ks-cantilever"): "chain: yes",
         ("check", "double-beam"): "chain: no, the chain has one beam",
@@ -112,7 +109,7 @@ def test_commands_have_it(way, request):
         ("compare", "ks-cantilever", "--model", "chain", "--max-error", "force=1e-8"): "chain",
         ("run", "study.toml", "--out", "s", "--workers", "1", "--quiet"): "2 cases: COMPLETED 2",
     }.items():
-        found = crossval(place, *arguments)
+        found = crossval(offered, *arguments)
         assert found.returncode == 0, found.stderr
         assert line in found.stdout
 

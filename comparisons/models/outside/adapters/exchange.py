@@ -1,6 +1,5 @@
 """What all adapters share: they read the resolved scene, state the reason of a refusal, and write the response."""
 
-import contextlib
 import json
 import os
 import sys
@@ -79,7 +78,9 @@ def serve(refusal: Refusal, states: States, *, continuum: bool = False) -> None:
     continuum : bool
         Whether the program solves a two- or three-dimensional body.
     """
-    with _output_aside() as answer:
+    with os.fdopen(os.dup(1), "w", encoding="utf-8") as answer:
+        sys.stdout.flush()
+        os.dup2(2, 1)  # what the program prints goes to standard error
         scene = json.load(sys.stdin) | ({"steps": int(sys.argv[1])} if sys.argv[1:] else {})
         json.dump(answered(scene, refusal, states) | {"continuum": continuum}, answer)
 
@@ -91,25 +92,15 @@ def answered(scene: Table, refusal: Refusal, states: States) -> Table:
         return {"status": "REFUSED", "message": reason}
     histories, began = Histories(scene), perf_counter()
     status, message = "COMPLETED", "the program reports success"
-    if scene["load_parameters"]:
-        try:
-            for load_parameter in states(scene, histories):
-                histories.reached.append(load_parameter)
-        except RefusedError as error:
-            return {"status": "REFUSED", "message": str(error)}
-        except StoppedError as error:
-            status, message = "STOPPED", str(error)
+    try:
+        for load_parameter in states(scene, histories) if scene["load_parameters"] else ():
+            histories.reached.append(load_parameter)
+    except RefusedError as error:
+        return {"status": "REFUSED", "message": str(error)}
+    except StoppedError as error:
+        status, message = "STOPPED", str(error)
     seconds = perf_counter() - began
     return {"status": status, "message": message, "wall_seconds": seconds, **histories.tables()}
-
-
-@contextlib.contextmanager
-def _output_aside() -> Iterator[Any]:
-    """Give a file that is the standard output, while all that a program prints goes to standard error."""
-    with os.fdopen(os.dup(1), "w", encoding="utf-8") as answer:
-        sys.stdout.flush()
-        os.dup2(2, 1)
-        yield answer
 
 
 def rough(scene: Table) -> str | None:
@@ -126,10 +117,7 @@ def points_along(beam: Table, count: int) -> tuple[list[float], list[tuple[float
 
 
 def refined(scene: Table, steps: int) -> list[list[float]]:
-    """Return the load steps to each load parameter, equal between two load parameters.
-
-    `steps` is the least number of all steps; an argument of the program replaces it.
-    """
+    """Return equal load steps to each load parameter, at least `steps` in all; an argument of the program replaces that number."""
     times = [0.0, *scene["load_parameters"]]
     inner = max(1, -(-scene.get("steps", steps) // (len(times) - 1)))
     return [

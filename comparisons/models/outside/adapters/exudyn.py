@@ -29,10 +29,12 @@ def refusal(scene: Table) -> str | None:
     if inclined or any(support["motion"][2] for support in scene["supports"]):
         return "the adapter has beams along x or y, and turns no support"
     for item in scene["contacts"]:
-        pins = [pin for pin in scene["pins"] if pin["name"] == item["node"]]
-        beam = mesh.named("beams", item["beam"])
-        part, left = projection(beam["start"], beam["end"], pins[0]["path"][0]) if pins else (0.0, 1.0)
-        if item["offset"] or abs(left) > NEAR * beam["length"] or not -NEAR <= part <= 1.0 + NEAR:
+        there = "." not in item["node"] and not item["offset"]
+        if there:
+            beam, pin = mesh.pair(item)
+            part, left = projection(beam["start"], beam["end"], pin["path"][0])
+            there = abs(left) <= NEAR * beam["length"] and -NEAR <= part <= 1.0 + NEAR
+        if not there:
             return f"a sliding joint holds a pin on the axis from the start on, {item['node']} is not there"
     return rough(scene)
 
@@ -81,7 +83,8 @@ def _stated(ex: Any, system: Any, mesh: Frame) -> tuple[list[int], Held, dict[st
         cables.append(system.AddObject(ex.ObjectANCFCable2D(**section)))
     held: Held = {}
     for support in mesh.scene["supports"]:
-        node, (c, s) = mesh.node(support), mesh.named("beams", support["beam"])["direction"]
+        node = mesh.node(support)
+        c, s = next(beam["direction"] for beam in mesh.scene["beams"] if beam["name"] == support["beam"])
         for component, value in enumerate(support["motion"]):
             # a rotation is held by the slope across the beam
             coordinate, arm = (component, 1.0) if component < 2 else (3, c) if c else (2, -s)
@@ -108,7 +111,7 @@ def _moved(ex: Any, system: Any, node: int, coordinate: int, times: list[float],
 
 def _joint(ex: Any, system: Any, mesh: Frame, item: Table, cables: list[int]) -> int:
     """State the pin of a pair and its sliding joint."""
-    beam, pin = mesh.named("beams", item["beam"]), mesh.named("pins", item["node"])
+    beam, pin = mesh.pair(item)
     start, node = pin["path"][0], system.AddNode(ex.NodePoint2D(referenceCoordinates=pin["path"][0]))
     for k in (0, 1):
         _moved(ex, system, node, k, mesh.way(pin)[0], mesh.way(pin)[1][k])

@@ -34,10 +34,10 @@ class Frame:
         """Return the node of a support or load."""
         return self.numbers[item["beam"]][0 if item["end"] == "start" else -1]
 
-    def named(self, kind: str, name: str) -> Table:
-        """Return a beam or pin of the scene by its name."""
-        found: Table = next(item for item in self.scene[kind] if item["name"] == name)
-        return found
+    def pair(self, contact: Table) -> tuple[Table, Table]:
+        """Return the beam and the pin of a contact."""
+        beams, pins = ({item["name"]: item for item in self.scene[kind]} for kind in ("beams", "pins"))
+        return beams[contact["beam"]], pins[contact["node"]]
 
     def way(self, pin: Table) -> tuple[list[float], list[list[float]]]:
         """Return the load parameters of the corners of a pin's path, and the displacements x and y of the pin there."""
@@ -50,7 +50,7 @@ class Frame:
 
     def beside(self, contact: Table, radius: float) -> tuple[tuple[float, float], float]:
         """Return the start of a contact's pin, moved across the axis until a gap of the scene is one for `radius`; and its gap."""
-        beam, pin = self.named("beams", contact["beam"]), self.named("pins", contact["node"])
+        beam, pin = self.pair(contact)
         (x, y), (c, s), side = pin["path"][0], beam["direction"], 1.0 if contact["side"] == "left" else -1.0
         _, left = projection(beam["start"], beam["end"], (x, y))
         across = side * (radius - contact["offset"])

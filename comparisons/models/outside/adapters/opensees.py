@@ -75,7 +75,7 @@ def _contact(ops: Any, mesh: Frame, item: Table) -> dict[int, int]:
     """State the pin of a pair and its contact elements; return the numbers of the beam's elements by their numbers."""
     ops.model("basic", "-ndm", 2, "-ndf", 2)
     first = 1_000_000 * (1 + mesh.scene["contacts"].index(item))
-    beam, pin = mesh.named("beams", item["beam"]), mesh.named("pins", item["node"])
+    beam, pin = mesh.pair(item)
     radius = item["offset"] or APART * beam["length"]
     (x, y), gap = mesh.beside(item, radius)
     closed = gap < INSIDE * beam["length"]
