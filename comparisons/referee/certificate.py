@@ -10,13 +10,13 @@ from comparisons.referee.state import Equilibrium
 
 
 class Verdict(Enum):
-    """Verdict on an answer; the value is its meaning."""
+    """Verdict on an answer, the most serious last; the value is its meaning."""
 
     CERTIFIED = "within its allowance of a stable, admissible equilibrium"
+    NOT_JUDGED = "not judged"
     UNSTABLE = "near an unstable equilibrium, or not on the branch from the undeformed state"
     INADMISSIBLE = "near an equilibrium that violates unilateral contact or Coulomb's law"
     NOT_AN_EQUILIBRIUM = "not near an equilibrium"
-    NOT_JUDGED = "not judged"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

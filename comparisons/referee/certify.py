@@ -110,20 +110,11 @@ def _judged(
     return states
 
 
-_GRAVITY = (
-    Verdict.CERTIFIED,
-    Verdict.NOT_JUDGED,
-    Verdict.UNSTABLE,
-    Verdict.INADMISSIBLE,
-    Verdict.NOT_AN_EQUILIBRIUM,
-)
-
-
 def _worst(states: Sequence[Judgement], unsound: Sequence[str], path: Sequence[str]) -> tuple[Verdict, str]:
     """Return the most serious verdict and its reason."""
     if not states:
         return Verdict.NOT_JUDGED, "no load parameter was reached or asked for"
-    worst = max(states, key=lambda item: _GRAVITY.index(item.verdict))
+    worst = max(states, key=lambda item: [*Verdict].index(item.verdict))
     if worst.verdict is Verdict.NOT_AN_EQUILIBRIUM or not (unsound or path):
         return worst.verdict, f"{worst.reason} at load parameter {worst.load_parameter:.6g}"
     return (Verdict.NOT_AN_EQUILIBRIUM, unsound[0]) if unsound else (Verdict.INADMISSIBLE, path[0])

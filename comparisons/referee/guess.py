@@ -177,28 +177,22 @@ def _aligned(layout: Layout, turns: list[Rotations]) -> list[Rotations]:
 def _set_displacements(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Array) -> None:
     """Set the displacements of the stations and the normals of the contacts."""
     beams = layout.scene.beams
-    origin = np.array(beams[0].start)
     for number, station in enumerate(layout.stations):
         touch, unknown = station.touch, station.numbers[:2]
         if touch is None:
-            seen = (_stated_place(layout, answer, number) - origin) / layout.length
-            moved = seen - station.reference
+            if station.arc is None:
+                seen = answer.end((station.joint or station.ends)[0])
+            else:
+                part = next(item for item in layout.parts if item.first == number)
+                arcs, line = answer.axes[beams[part.beam].name]
+                seen = np.array([np.interp(station.arc * layout.length, arcs, way) for way in line.T])
+            moved = (seen - beams[0].start) / layout.length - station.reference
             z[unknown[unknown >= 0]] = moved[unknown >= 0]
         elif touch.angle != NONE:
             beam, arc = [item.name for item in beams].index(touch.spec.beam), float(z[touch.arc])
             x, y = beams[beam].direction
             undeformed = math.atan2(y, x) + layout.rod(beam).angle(arc)
             z[touch.angle] = undeformed + float(turns[beam].angle(arc)) + math.asin(touch.slope)
-
-
-def _stated_place(layout: Layout, answer: AnswerState, number: int) -> Array:
-    """Position of an end, a joint or a place inside a beam in the answer."""
-    station = layout.stations[number]
-    if station.arc is not None:
-        part = next(item for item in layout.parts if item.first == number)
-        arc, line = answer.axes[layout.scene.beams[part.beam].name]
-        return np.array([np.interp(station.arc * layout.length, arc, way) for way in line.T])
-    return answer.end((station.joint or station.ends)[0])
 
 
 def _balance(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Array) -> None:

@@ -55,9 +55,9 @@ def judged(
         return Judgement(load_parameter=t, verdict=Verdict.NOT_AN_EQUILIBRIUM, reason=contradiction)
     answer = answer_state(response, scene, k)
     if history is not None:
-        from comparisons.referee.friction import unlawful, wanders
+        from comparisons.referee.friction import unlawful
 
-        misstated = next(unlawful(response, scene, k, allowed), "") or next(wanders(history, k, allowed), "")
+        misstated = next(unlawful(history, k, allowed), "")
         if misstated:
             return Judgement(load_parameter=t, verdict=Verdict.INADMISSIBLE, reason=misstated)
         try:
@@ -69,11 +69,8 @@ def judged(
         # it is the nearest one if it is close, though it was not sought from the answer
         found = reach(before, t, {}, halvings=0)
         item = compared(response, k, found, allowed, history) if found.found else None
-        if (
-            item
-            and item.distance
-            and max(item.distance.largest[1], item.distance.sizes["place"]) <= min(allowed, CLOSE)
-        ):
+        off = item.distance if item else None
+        if item and off and max(off.largest[1], off.sizes["place"]) <= min(allowed, CLOSE):
             return item
     exact = equilibrium(scene, answer)
     if not exact.found:

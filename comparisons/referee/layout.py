@@ -237,7 +237,7 @@ def lay_out(
     rods = [rod_of(scene, beam, load_parameter, (length, force)) for beam in scene.beams]
     given = [0.0]
     stations, hinges = _joints(scene, load_parameter, rods, length, unit, given)
-    count = 1 + max(int(item.numbers.max()) for item in stations)
+    count = 1 + max(NONE, *(int(item.numbers.max()) for item in stations))
     at = {end: station for station in stations for end in station.joint}
     on_beam: dict[str, list[tuple[float, int, int]]] = {beam.name: [] for beam in scene.beams}
     for spec in scene.contacts:

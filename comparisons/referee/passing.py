@@ -216,7 +216,7 @@ def misstated(
         if event.kind == PASSES or any(spec.friction for spec in scene.contacts):
             continue
         for k in (after - 1, after)[: 1 if event.kind in OPENS else 2]:
-            there = _at(found.get(k), t) if _alone(response, event, k) else None
+            there = _beside(response, event, found.get(k))
             wrong = "" if there is None else _wrong(specs[event.pair], event, there, allowed)
             if wrong:
                 yield f"{event.kind} of {event.pair} at load parameter {t:.6g}: {wrong}"
@@ -224,12 +224,15 @@ def misstated(
         yield from _disorder(response, spec)
 
 
-def _alone(response: Response, event: ContactEvent, k: int) -> bool:
-    """Whether nothing else changes between an event and a load parameter beside it."""
-    if not 0 <= k < len(response.load_parameter):
-        return False
-    low, high = sorted((event.load_parameter, float(response.load_parameter[k])))
-    return not any(low <= one.load_parameter <= high for one in changes_of(response) if one is not event)
+def _beside(response: Response, event: ContactEvent, near: Equilibrium | None) -> Equilibrium | None:
+    """Return the equilibrium at an event that follows from one beside it, if nothing else changes in between."""
+    if near is None:
+        return None
+    low, high = sorted((event.load_parameter, near.load_parameter))
+    if any(low <= one.load_parameter <= high for one in changes_of(response) if one is not event):
+        return None
+    found = reach(near, event.load_parameter, near.layout.grips, halvings=2)
+    return found if found.found else None
 
 
 def _disorder(response: Response, spec: ContactSpec) -> Iterator[str]:
@@ -244,12 +247,6 @@ def _disorder(response: Response, spec: ContactSpec) -> Iterator[str]:
         closed = event.kind not in OPENS
     if own and own[-1].load_parameter < times[-1] and closed != (force[-1] != 0.0):
         yield f"{spec.pair} is {'open' if closed else 'closed'} at the end, not as its last event says"
-
-
-def _at(near: Equilibrium | None, t: float) -> Equilibrium | None:
-    """Return the equilibrium with the same contacts at an event beside a load parameter; None if there is none."""
-    found = None if near is None else reach(near, t, near.layout.grips, halvings=2)
-    return found if found and found.found else None
 
 
 def _wrong(spec: ContactSpec, event: ContactEvent, there: Equilibrium, allowed: float) -> str:

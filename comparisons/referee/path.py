@@ -154,14 +154,11 @@ def _switched(now: Equilibrium, event: ContactEvent) -> Equilibrium:
 
 def _alike(one: Equilibrium, other: Equilibrium) -> bool:
     """Whether two equilibria have the same contacts in the same order along the beams, which slip in the same direction or stick."""
+    if not one.found or one.closed.keys() != other.closed.keys():
+        return False
     slips = [{pair: grip.slip for pair, grip in item.layout.grips.items()} for item in (one, other)]
     orders = [[(part.beam, part.first, part.last) for part in item.layout.parts] for item in (one, other)]
-    return (
-        one.found
-        and one.closed.keys() == other.closed.keys()
-        and slips[0] == slips[1]
-        and orders[0] == orders[1]
-    )
+    return slips[0] == slips[1] and orders[0] == orders[1]
 
 
 def at_rest(scene: Scene) -> Equilibrium:
@@ -174,23 +171,21 @@ def at_rest(scene: Scene) -> Equilibrium:
 
 def departs(first: Equilibrium, last: Equilibrium) -> str:
     """Return the reason why the path from `first` does not lead to `last` with the same contacts; empty if it does."""
-    there, stopped = _followed(first, last.load_parameter, last)
+    start, end = first.load_parameter, last.load_parameter
+    there, stopped = _followed(first, end, last)
     if not stopped:
         off = _apart(there, last)
-        if off < _SAME:
-            return ""
-        return f"the path from load parameter {first.load_parameter:.6g} ends on another branch at {last.load_parameter:.6g}, {off:.2g} L away"
+        words = (
+            f"the path from load parameter {start:.6g} ends on another branch at {end:.6g}, {off:.2g} L away"
+        )
+        return "" if off < _SAME else words
     # where it ends at a bifurcation, all stable branches that lead back to it are right
-    back, stopped = _followed(last, first.load_parameter)
-    if (
-        stopped
-        and abs(back.load_parameter - there.load_parameter)
-        < _MEET * (last.load_parameter - first.load_parameter)
-        and _apart(there, back) < _MEETING
-    ):
+    back, stopped = _followed(last, start)
+    met, t = back.load_parameter, there.load_parameter
+    if stopped and abs(met - t) < _MEET * (end - start) and _apart(there, back) < _MEETING:
         return ""
     kind = "" if first.index < 0 else f" of index {first.index}"
-    return f"no continuous path{kind} leads on beyond load parameter {there.load_parameter:.6g}"
+    return f"no continuous path{kind} leads on beyond load parameter {t:.6g}"
 
 
 def _followed(first: Equilibrium, end: float, last: Equilibrium | None = None) -> tuple[Equilibrium, bool]:
@@ -198,16 +193,9 @@ def _followed(first: Equilibrium, end: float, last: Equilibrium | None = None) -
 
     A step is accepted if the tangents at both its ends explain it, and the index, or with friction the sign of the determinant, is unchanged.
     """
-    index, ways, sign = (
-        _kind(first),
-        abs(end - first.load_parameter),
-        1.0 if end > first.load_parameter else -1.0,
-    )
-    stops = sorted(
-        sign * t
-        for t in {*corners(first.layout.scene), end}
-        if 0.0 < sign * (t - first.load_parameter) <= ways
-    )
+    index, start = _kind(first), first.load_parameter
+    ways, sign = abs(end - start), 1.0 if end > start else -1.0
+    stops = sorted(sign * t for t in {*corners(first.scene), end} if 0.0 < sign * (t - start) <= ways)
     now, step, rate = first, ways, None
     while (here := now.load_parameter) != end:
         stop = sign * next(t for t in stops if t > sign * here)
@@ -225,7 +213,7 @@ def _followed(first: Equilibrium, end: float, last: Equilibrium | None = None) -
         step = min(step, abs(t - here)) * float(np.clip(_AIM / max(off, 1e-300), 0.25, 3.0))
         if off < _NEAR:
             now, rate = there, None if t == stop else behind
-        elif step < _SMALLEST * max(abs(here - first.load_parameter), _SMALLEST * ways):
+        elif step < _SMALLEST * max(abs(here - start), _SMALLEST * ways):
             return now, True
     return now, False
 

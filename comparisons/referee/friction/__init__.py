@@ -2,9 +2,9 @@
 
 from comparisons.referee.friction.dissipation import dissipated
 from comparisons.referee.friction.history import History
-from comparisons.referee.friction.rubbing import rubs_wrongly, rubs_wrongly_on_the_way, unlawful, wanders
+from comparisons.referee.friction.rubbing import rubs_wrongly, rubs_wrongly_on_the_way, unlawful
 
-__all__ = ["History", "dissipated", "rubs_wrongly", "rubs_wrongly_on_the_way", "unlawful", "wanders"]
+__all__ = ["History", "dissipated", "rubs_wrongly", "rubs_wrongly_on_the_way", "unlawful"]
 
 
 def __dir__() -> list[str]:

@@ -31,19 +31,25 @@ _MOST = 6
 """Number of changes between slip and stick, the latest ones, that are compared with the referee's own."""
 
 
-def unlawful(response: Response, scene: Scene, k: int, allowed: float) -> Iterator[str]:
-    """Yield violations of Coulomb's law by the forces and signs that an answer states up to a load parameter, the latest first."""
-    rubbing = [(spec, response.contacts[spec.pair]) for spec in scene.contacts if spec.friction]
+def unlawful(history: History, k: int, allowed: float) -> Iterator[str]:
+    """Yield violations of Coulomb's law by the stated numbers up to a load parameter, the latest first, and moves in stick beyond rolling."""
+    response, scene, law = history.response, history.scene, _law(history.response, allowed)
+    rubbing = [spec for spec in scene.contacts if spec.friction]
     for earlier in range(k, -1, -1):
         where = "" if earlier == k else f" at load parameter {response.load_parameter[earlier]:.6g}"
-        for spec, contact in rubbing:
+        for spec in rubbing:
+            contact = response.contacts[spec.pair]
             force = abs(float(contact.force[earlier]))
             if contact.friction is not None and force:
-                law = _law(response, allowed)
                 for sentence in _unlawful(
                     spec, contact.friction, force, earlier, law, least_force(scene) / LEAST
                 ):
                     yield sentence + where
+    for spec in rubbing:
+        if history.phase(spec.pair, k).slip == 0:
+            length, moved = scene.beam(spec.beam).length, _moved(history, spec, k)
+            if abs(moved) > law * length + math.pi * scene.offset(spec):
+                yield f"{spec.pair} sticks and moves by {moved / length:.2g} L"
 
 
 def _unlawful(
@@ -77,17 +83,6 @@ def rubs_wrongly(history: History, k: int, exact: Equilibrium, allowed: float) -
         moved = _crept(history, k, touch, touch.grip.hold, exact, allowed)
         if moved:
             yield f"{pair} sticks and moves by {moved:.2g} L"
-
-
-def wanders(history: History, k: int, allowed: float) -> Iterator[str]:
-    """Yield contacts that stick and move along the beam by more than they could roll, by the stated arc positions alone."""
-    scene = history.scene
-    for spec in scene.contacts:
-        if spec.friction and history.phase(spec.pair, k).slip == 0:
-            length = scene.beam(spec.beam).length
-            moved = _moved(history, spec, k)
-            if abs(moved) > _law(history.response, allowed) * length + math.pi * scene.offset(spec):
-                yield f"{spec.pair} sticks and moves by {moved / length:.2g} L"
 
 
 def _crept(history: History, k: int, touch: Touch, hold: Hold, exact: Equilibrium, allowed: float) -> float:
