@@ -201,12 +201,10 @@ def outputs(names: Sequence[str], *kinds: str) -> list[tuple[str, Path]]:
     found = []
     for name in names:
         path = Path(name)
-        if path == STANDARD:
-            found.append((".json", path))
-        elif path.suffix not in kinds:
+        kind = ".json" if path == STANDARD else "" if path.is_dir() else path.suffix
+        if kind not in kinds:
             raise OutputError(f"{name}: must end in {', '.join(filter(None, kinds))}")
-        else:
-            found.append((path.suffix, result_file(path) if path.suffix else path))
+        found.append((kind, result_file(path) if kind and path != STANDARD else path))
     return found
 
 

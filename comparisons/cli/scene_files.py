@@ -62,13 +62,13 @@ def run_check(given: Namespace) -> int:
     printed = (".json", STANDARD) in files
     if not printed:
         print(*stated(scene, given.others), *near_ends(scene), sep="\n")
-    for kind, path in files:
+    for file, (kind, path) in zip(given.out, files, strict=True):
         if kind == ".json":
             write(path, request(scene, Options(), scene.times))
         else:
             draw(scene, path)
         if path != STANDARD:
-            print(f"written: {path}", file=sys.stderr if printed else sys.stdout)
+            print(f"written: {file}", file=sys.stderr if printed else sys.stdout)
     return DONE
 
 
