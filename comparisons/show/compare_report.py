@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 from comparisons.budget import PARTS, Budget, budget_rows
 from comparisons.cases import Row
@@ -17,11 +16,11 @@ from comparisons.show.pages import (
     picture,
     provenance,
     states_section,
+    table,
     tracks,
     write_page,
 )
-from comparisons.show.table import cells
-from comparisons.show.work import rows_table
+from comparisons.show.table import HEADER, cells
 
 EXACT = ROD.run_label(Options())
 """Label of the run of the exact rod, to which all others are compared."""
@@ -29,7 +28,6 @@ ERRORS = (
     f"Largest error over all load parameters against the {EXACT}; forces and moments over their largest, positions "
     "over the length, friction over the contact forces. Newton iterations and wall seconds of the whole path."
 )
-BUDGET = "(TSM - solid) / exact rod; parts are measured by themselves, the rest is over the difference"
 
 
 def write_comparison_page(
@@ -53,14 +51,14 @@ def write_comparison_page(
     }
     shown = tracks(responses, EXACT, scene)
     sections = [
-        Section(title="Errors", html=rows_table(ERRORS, list(map(cells, rows)))),
+        Section(title="Errors", html=table(ERRORS, HEADER, map(cells, rows))),
         motion_section("Shapes and histories", scene, responses, shown, focus=EXACT, vtu=vtu),
-        *filter(None, [states_section(responses)]),
     ]
+    states = states_section(responses)
+    if states is not None:
+        sections.append(states)
     if budget is not None:
-        drawn = picture(folder / "budget.svg", "What the difference of TSM and solid is made of.")
-        numbers = rows_table(BUDGET, list(map(_line, budget_rows(budget))))
-        sections.append(Section(title="Error budget", html=f"{drawn}\n{numbers}\n{definitions(PARTS)}"))
+        sections.append(_budget(budget, folder))
     if folder / "side-by-side.png" in files:
         stress = picture(folder / "side-by-side.png", "Beams and solid, von Mises stress.")
         sections.append(Section(title="Stress", html=stress))
@@ -69,10 +67,18 @@ def write_comparison_page(
     return write_page(folder, f"{scene.name}: beams, solid and exact answers", lead, sections)
 
 
-def _line(row: Mapping[str, Any]) -> dict[str, object]:
-    parts = {"difference": row["total"], **row["parts"], "rest": row["rest_over_total"]}
-    return {
-        "quantity": row["quantity"].replace("_", " "),
-        "load parameter": row["load_parameter"],
-        **{name: f"{part:.1e}" for name, part in parts.items()},
-    }
+def _budget(budget: Budget, folder: Path) -> Section:
+    numbers = table(
+        "(TSM - solid) / exact rod; parts are measured by themselves, the rest is over the difference",
+        ("quantity", "load parameter", "difference", *PARTS, "rest"),
+        (
+            (
+                str(row["quantity"]).replace("_", " "),
+                row["load_parameter"],
+                *(f"{part:.1e}" for part in (row["total"], *row["parts"].values(), row["rest_over_total"])),
+            )
+            for row in budget_rows(budget)
+        ),
+    )
+    drawn = picture(folder / "budget.svg", "What the difference of TSM and solid is made of.")
+    return Section(title="Error budget", html=f"{drawn}\n{numbers}\n{definitions(PARTS)}")

@@ -8,9 +8,9 @@ import numpy as np
 
 from comparisons.budget import TIMES, Budget
 from comparisons.cases import Row
+from comparisons.models import find
 from comparisons.referee import Verdict
 from comparisons.scene import Scene
-from comparisons.show.table import stable
 
 BUDGET = "error budget"
 """Key of the error budget among what is left out."""
@@ -21,7 +21,11 @@ LEAST_PART = 0.05
 
 
 def findings(
-    scene: Scene, rows: Sequence[Row], reference: str, budget: Budget | None, left_out: Mapping[str, str]
+    scene: Scene,
+    rows: Sequence[Row],
+    reference: str,
+    budget: Budget | None,
+    left_out: Mapping[str, str],
 ) -> list[str]:
     """Return what a comparison found, in sentences.
 
@@ -31,13 +35,13 @@ def findings(
     """
     found = [_compared(scene, rows, reference)]
     others = [row for row in rows if row.label != reference]
-    for family, own in groupby(others, key=lambda row: row.case.family):
+    for family, own in groupby(others, key=lambda row: row.family):
         found += _off(family, list(own), scene, budget, reference)
     return [*found, *_stopped(rows), *_left_out(left_out), *_stability(rows), _certified(rows)]
 
 
 def _compared(scene: Scene, rows: Sequence[Row], reference: str) -> str:
-    models = dict.fromkeys(row.case.found.label for row in rows if row.label != reference)
+    models = dict.fromkeys(find(row.response.model).label for row in rows if row.label != reference)
     last = max(float(row.response.load_parameter.max(initial=0.0)) for row in rows)
     count = f"{len(rows) - 1} run{'' if len(rows) == 2 else 's'}"
     return (
@@ -49,20 +53,20 @@ def _compared(scene: Scene, rows: Sequence[Row], reference: str) -> str:
 
 def _off(family: str, rows: list[Row], scene: Scene, budget: Budget | None, reference: str) -> Iterable[str]:
     """Yield how far the runs of a family are off, and why."""
-    known = [row for row in rows if isfinite(_worst(row, scene)[0])]
+    known = [row for row in rows if row.errors is not None and isfinite(_worst(row, scene)[0])]
     if not known:
         return
     name = f"The {family}" if family[0].islower() else family
     stated = _stated(known, scene)
-    explaining = budget if known[0].case.found.continuum else None
+    explained = budget is not None and find(known[0].response.model).continuum
     if max(_worst(row, scene)[0] for row in known) < AGREES:
         yield f"{name} agrees with the {reference} to {stated}."
     else:
-        cause = "" if explaining else next((row.cause for row in known if row.cause), "")
+        cause = "" if explained else next((row.cause for row in known if row.cause), "")
         because = f". Theory expects most of it from this cause: {cause}" if cause else ""
         yield f"{name} is off by at most {stated}{_falling(known, scene)}{because}."
-    if explaining:
-        yield _parts(explaining)
+    if explained and budget is not None:
+        yield _parts(budget)
     for row in known:
         if inf in (row.errors or {})["path"].values():
             yield f"{row.label} and the {reference} disagree on whether a contact is closed."
@@ -74,8 +78,8 @@ def _stated(rows: Sequence[Row], scene: Scene) -> str:
     for row in rows:
         error, quantity = _worst(row, scene)
         named = "" if quantity == before else f" ({quantity})"
-        many = "" if row.case.resolution == 1 else "s"
-        resolved = f" with {row.case.resolution:.0f} element{many}" if isfinite(row.case.resolution) else ""
+        many = "" if row.resolution == 1 else "s"
+        resolved = f" with {row.resolution:.0f} element{many}" if isfinite(row.resolution) else ""
         words.append(f"{_size(error)}{named}{resolved}")
         before = quantity
     return _listed(words)
@@ -85,32 +89,29 @@ def _worst(row: Row, scene: Scene) -> tuple[float, str]:
     """Return the largest finite error over the path, and its quantity; nan without one."""
     acting = "contact force" if scene.contacts else "support force"
     names = {"force": acting, "arc": "arc position", "moment": "support moment", "tip": "tip"}
-    found = ((row.error("path", name), words) for name, words in names.items())
-    return max((one for one in found if isfinite(one[0])), default=(np.nan, ""))
+    path = {} if row.errors is None else row.errors["path"]
+    found = [(path[name], words) for name, words in names.items() if isfinite(path.get(name, inf))]
+    return max(found, default=(np.nan, ""))
 
 
 def _falling(rows: list[Row], scene: Scene) -> str:
     """Return the measured order of runs with several resolutions."""
-    first, last = (choose(rows, key=lambda row: row.case.resolution) for choose in (min, max))
+    first, last = (choose(rows, key=lambda row: row.resolution) for choose in (min, max))
     coarse, fine = _worst(first, scene)[0], _worst(last, scene)[0]
-    finer = last.case.resolution / first.case.resolution
-    if not finer > 1.0 or fine < AGREES or coarse <= fine:
+    if not last.resolution > first.resolution or fine < AGREES or coarse <= fine:
         return ""
-    order = log(coarse / fine) / log(finer)
+    order = log(coarse / fine) / log(last.resolution / first.resolution)
     return f"; the error falls with the power {order:.1f} of the length of the elements"
 
 
 def _parts(budget: Budget) -> str:
     """Return what makes the largest difference between beams and solid, of a force where there is one."""
     names = [name for name in budget.total if "force" in name] or list(budget.total)
-    largest, quantity, k = max(
-        (
-            (float(np.nan_to_num(abs(budget.total[name][k]))), name, k)
-            for name in names
-            for k in range(len(TIMES))
-        ),
-        key=lambda item: item[0],
+    quantity, k = max(
+        ((name, k) for name in names for k in range(len(TIMES))),
+        key=lambda item: np.nan_to_num(abs(budget.total[item[0]][item[1]])),
     )
+    largest = np.nan_to_num(abs(budget.total[quantity][k]))
     if largest < AGREES:
         return f"In the error budget, beams and solid agree to {_size(largest)}."
     parts = {name: float(values[k]) for name, values in budget.parts[quantity].items()}
@@ -144,18 +145,21 @@ def _left_out(left_out: Mapping[str, str]) -> Iterable[str]:
 
 
 def _stability(rows: Sequence[Row]) -> Iterable[str]:
-    found: dict[str, dict[str, None]] = {word: {} for word in ("yes", "-", "in part", "no")}
-    for row in rows:
-        found[stable(row.response)][row.case.family] = None
-    silent = [
-        family for family in found["-"] if not any(family in found[word] for word in ("yes", "in part", "no"))
-    ]
+    indices = [(row.family, -1 if row.response.index is None else row.response.index) for row in rows]
+    stated = {family for family, index in indices if np.any(np.greater_equal(index, 0))}
+    unstable = dict.fromkeys(family for family, index in indices if np.any(np.greater(index, 0)))
+    silent = dict.fromkeys(family for family, _ in indices if family not in stated)
+    partial = dict.fromkeys(
+        family
+        for family, index in indices
+        if family in stated and np.any(np.less(index, 0)) and not np.any(np.greater(index, 0))
+    )
     if silent:
         yield f"Stability is not stated by {_listed(silent)}."
-    if found["in part"]:
-        yield f"Stability is stated at a part of the load parameters by {_listed(found['in part'])}."
-    if found["no"]:
-        yield f"Unstable equilibria are on the path of {_listed(found['no'])}."
+    if partial:
+        yield f"Stability is stated at a part of the load parameters by {_listed(partial)}."
+    if unstable:
+        yield f"Unstable equilibria are on the path of {_listed(unstable)}."
 
 
 def _certified(rows: Sequence[Row]) -> str:
