@@ -58,11 +58,11 @@ class League:
     @property
     def programs(self) -> list[str]:
         """The programs in the order of the models."""
-        return list(dict.fromkeys(row.case.family for row in self.rows))
+        return list(dict.fromkeys(row.family for row in self.rows))
 
     def of(self, scene: str, program: str) -> list[Row]:
         """Return the rows of one program on one scene, coarse to fine."""
-        return [row for row in self.rows if (row.case.scene.name, row.case.family) == (scene, program)]
+        return [row for row in self.rows if (row.case.scene.name, row.family) == (scene, program)]
 
 
 def measure_league(
@@ -121,7 +121,7 @@ def league_row(row: Row) -> dict[str, Any]:
     response, measured = row.response, row.measured
     return {
         "scene": row.case.scene.name,
-        "program": row.case.family,
+        "program": row.family,
         "setting": row.label,
         "outcome": row.outcome,
         **{f"error_{name}": row.error("path", name) for name in QUANTITIES},
@@ -198,7 +198,7 @@ def summary(league: League) -> list[dict[str, object]]:
     """Return a row for each program: on how many scenes it runs, and how its runs ended."""
     rows: list[dict[str, object]] = []
     for program in league.programs:
-        own = [row for row in league.rows if row.case.family == program]
+        own = [row for row in league.rows if row.family == program]
         ends = Counter(row.outcome for row in own)
         rows.append(
             {

@@ -50,6 +50,24 @@ class Row:
         return self.name or self.case.label
 
     @property
+    def family(self) -> str:
+        """What the runs that differ in resolution only share."""
+        return self.case.family
+
+    @property
+    def resolution(self) -> float:
+        """Number of elements along a beam; nan without a mesh, or where the scene gives the number."""
+        return self.case.resolution
+
+    @property
+    def stable(self) -> str:
+        """Yes, no, a dash where the model states no index, or that it states one at a part of the load parameters."""
+        index = self.response.index
+        if index is None or not np.any(index >= 0):
+            return "-"
+        return "no" if np.any(index > 0) else "yes" if np.all(index >= 0) else "in part"
+
+    @property
     def outcome(self) -> str:
         """``certified``, ``wrong`` for a refused answer that the program reported as a success, or the status of a stop."""
         if self.measured.wrong:

@@ -16,11 +16,11 @@ from comparisons.show.pages import (
     picture,
     provenance,
     states_section,
+    table,
     tracks,
     write_page,
 )
-from comparisons.show.table import cells
-from comparisons.show.work import rows_table
+from comparisons.show.table import cells, header
 
 EXACT = ROD.run_label(Options())
 """Label of the run of the exact rod, to which all others are compared."""
@@ -51,7 +51,7 @@ def write_comparison_page(
     }
     shown, states = tracks(responses, EXACT, scene), states_section(responses)
     sections = [
-        Section(title="Errors", html=rows_table(ERRORS, list(map(cells, rows)))),
+        Section(title="Errors", html=table(ERRORS, header(), map(cells, rows))),
         motion_section("Shapes and histories", scene, responses, shown, focus=EXACT, vtu=vtu),
     ]
     if states is not None:

@@ -8,10 +8,10 @@ import numpy as np
 
 from comparisons.budget import TIMES, Budget
 from comparisons.cases import Row
+from comparisons.models import find
 from comparisons.quantities import table_columns
 from comparisons.referee import Verdict
 from comparisons.scene import Scene
-from comparisons.show.table import stable
 
 BUDGET = "error budget"
 """Key of the error budget among what is left out."""
@@ -28,7 +28,11 @@ STATES = {
 
 
 def findings(
-    scene: Scene, rows: Sequence[Row], reference: str, budget: Budget | None, left_out: Mapping[str, str]
+    scene: Scene,
+    rows: Sequence[Row],
+    reference: str,
+    budget: Budget | None,
+    left_out: Mapping[str, str],
 ) -> list[str]:
     """Return what a comparison found, in sentences.
 
@@ -38,13 +42,13 @@ def findings(
     """
     others = [row for row in rows if row.label != reference]
     found = [_compared(scene, rows, others, reference)]
-    for family, own in groupby(others, key=lambda row: row.case.family):
+    for family, own in groupby(others, key=lambda row: row.family):
         found += _off(family, list(own), scene, budget, reference)
     return [*found, *_stopped(rows), *_left_out(left_out), *_stability(rows), _certified(rows)]
 
 
 def _compared(scene: Scene, rows: Sequence[Row], others: Sequence[Row], reference: str) -> str:
-    models = dict.fromkeys(row.case.found.label for row in others)
+    models = dict.fromkeys(find(row.response.model).label for row in others)
     last = max(float(row.response.load_parameter.max(initial=0.0)) for row in rows)
     runs = "1 run of {} is" if len(others) == 1 else f"{len(others)} runs of {{}} are"
     return (
@@ -60,7 +64,7 @@ def _off(family: str, rows: list[Row], scene: Scene, budget: Budget | None, refe
     if not known:
         return
     name = f"The {family}" if family[0].islower() else family
-    explained = budget is not None and known[0].case.found.continuum
+    explained = budget is not None and find(known[0].response.model).continuum
     if max(_worst(row, scene)[0] for row in known) < AGREES:
         yield f"{name} agrees with the {reference} to {_stated(known, scene)}."
     else:
@@ -80,8 +84,8 @@ def _stated(rows: Sequence[Row], scene: Scene) -> str:
     for row in rows:
         error, quantity = _worst(row, scene)
         named = "" if quantity == before else f" ({quantity})"
-        elements = f" with {row.case.resolution:.0f} element{'' if row.case.resolution == 1 else 's'}"
-        words.append(f"{_size(error)}{named}{elements if isfinite(row.case.resolution) else ''}")
+        elements = f" with {row.resolution:.0f} element{'' if row.resolution == 1 else 's'}"
+        words.append(f"{_size(error)}{named}{elements if isfinite(row.resolution) else ''}")
         before = quantity
     return _listed(words)
 
@@ -96,12 +100,11 @@ def _worst(row: Row, scene: Scene) -> tuple[float, str]:
 
 def _falling(rows: list[Row], scene: Scene) -> str:
     """Return the measured order of runs with several resolutions."""
-    first, last = (choose(rows, key=lambda row: row.case.resolution) for choose in (min, max))
+    first, last = (choose(rows, key=lambda row: row.resolution) for choose in (min, max))
     coarse, fine = _worst(first, scene)[0], _worst(last, scene)[0]
-    finer = last.case.resolution / first.case.resolution
-    if not finer > 1.0 or fine < AGREES or coarse <= fine:
+    if not last.resolution > first.resolution or fine < AGREES or coarse <= fine:
         return ""
-    order = log(coarse / fine) / log(finer)
+    order = log(coarse / fine) / log(last.resolution / first.resolution)
     return f"; the error falls with the power {order:.1f} of the length of the elements"
 
 
@@ -143,8 +146,7 @@ def _left_out(left_out: Mapping[str, str]) -> Iterator[str]:
 def _stability(rows: Sequence[Row]) -> Iterator[str]:
     """Yield what is not stable; a family that states an index in one run is not silent."""
     states = {
-        state: dict.fromkeys(row.case.family for row in rows if stable(row.response) == state)
-        for state in (*STATES, "yes")
+        state: dict.fromkeys(row.family for row in rows if row.stable == state) for state in (*STATES, "yes")
     }
     spoken = {*states["in part"], *states["no"], *states["yes"]}
     left = {"-": spoken, "in part": {*states["no"]}, "no": set[str]()}

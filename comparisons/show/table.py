@@ -7,14 +7,12 @@ import numpy as np
 from comparisons.cases import Row
 from comparisons.output import aligned, csv_text
 from comparisons.quantities import SCOPES, names, table_columns
-from comparisons.response import Response
 
 
 def table_text(rows: Sequence[Row], reference: str) -> str:
     """Return the table as aligned text; errors are the largest over all load parameters."""
-    lines = [cells(row) for row in rows]
-    texts = [list(lines[0]), *(list(line.values()) for line in lines)]
-    first, *rest = aligned(texts, [False] + [True] * (len(texts[0]) - 1))
+    head = header()
+    first, *rest = aligned([head, *map(cells, rows)], [False] + [True] * (len(head) - 1))
     title = (
         f"Largest error over the load parameters reached, against the {reference}; forces and moments relative to their\n"
         "largest, positions to the length, friction to the contact forces; Newton iterations and seconds for the whole path"
@@ -22,40 +20,35 @@ def table_text(rows: Sequence[Row], reference: str) -> str:
     return "\n".join([title, "", first, "-" * len(first), *rest])
 
 
-def cells(row: Row) -> dict[str, str]:
-    """Return a run as text by column, a dash where the run or the scene does not have the quantity."""
-    response, errors = row.response, {}
-    for name, quantity in table_columns().items():
-        error = row.error("path", name)
-        errors[quantity.words] = "-" if np.isnan(error) else f"{error:.1e}"
-    return {
-        "model": row.label if response.completed else f"{row.label} ({response.status})",
-        "unknowns": str(response.unknowns),
-        **errors,
-        "stable": stable(response),
-        "iterations": str(response.iterations),
-        "seconds": f"{response.wall_seconds:.3f}",
-    }
+def header() -> tuple[str, ...]:
+    """Return the names of the columns, the quantities that have one in the middle."""
+    middle = (row.words for row in table_columns().values())
+    return "model", "unknowns", *middle, "stable", "iterations", "seconds"
 
 
-def stable(response: Response) -> str:
-    """Return yes, no, a dash where the model states no index, or that it states one at a part of the load parameters."""
-    index = response.index
-    if index is None or not np.any(index >= 0):
-        return "-"
-    return "no" if np.any(index > 0) else "yes" if np.all(index >= 0) else "in part"
+def cells(row: Row) -> tuple[str, ...]:
+    """Return a run as text under `header`."""
+    # a dash where the run or the scene does not have the quantity
+    errors = [np.nan if row.errors is None else row.errors["path"][name] for name in table_columns()]
+    shown = ["-" if np.isnan(value) else f"{value:.1e}" for value in errors]
+    response = row.response
+    label = row.label if response.completed else f"{row.label} ({response.status})"
+    iterations, seconds = str(response.iterations), f"{response.wall_seconds:.3f}"
+    return label, str(response.unknowns), *shown, row.stable, iterations, seconds
 
 
 def table_csv(rows: Sequence[Row]) -> str:
     """Return the table as CSV text: errors over all load parameters and at the last, empty for the reference."""
     records = []
     for row in rows:
-        response = row.response
+        response, errors = row.response, row.errors
         found = {
-            f"error_{scope}_{name}": row.error(scope, name) for scope in SCOPES for name in names(mesh=False)
+            f"error_{scope}_{name}": errors and errors[scope].get(name)
+            for scope in SCOPES
+            for name in names(mesh=False)
         }
         first = {"label": row.label, "model": response.model, "status": response.status}
         spent = {"newton_iterations": response.iterations, "cutbacks": response.cutbacks}
-        last = {"stable": stable(response), **spent, "wall_seconds": response.wall_seconds}
+        last = {"stable": row.stable, **spent, "wall_seconds": response.wall_seconds}
         records.append({**first, "unknowns": response.unknowns, **found, **last})
     return csv_text(records)

@@ -61,16 +61,16 @@ def _draw(axes: Any, trade: Trade, scope: str, cost: str, *, own: bool) -> None:
     shown = [row for model in models for row in trade.of_model(model, scope)]
     order = [words for model in MODELS.values() for words in model.styles()]
     for row in sorted(
-        shown, key=lambda row: max(k for k, words in enumerate(order) if row.case.family.startswith(words))
+        shown, key=lambda row: max(k for k, words in enumerate(order) if row.family.startswith(words))
     ):
-        style, spent = palette.style(row.case.family), row.spent(cost)
+        style, spent = palette.style(row.family), row.spent(cost)
         error = row.error(scope, SHOWN, own=own)
         if not (np.isfinite(error) and spent > 0):
             continue
         floor = trade.uncertainty(row.case.model if own else ROD.name, scope, SHOWN)
         full = row.case.scene.load_parameters == trade.scene.load_parameters
         axes.plot(
-            spent, max(error, floor), color=style.colour, marker=style.marker, linestyle="none", label=row.case.family,
+            spent, max(error, floor), color=style.colour, marker=style.marker, linestyle="none", label=row.family,
             markersize=9 if style.marker == "*" else 6, markerfacecolor=style.colour if full else "none", alpha=0.85,
         )  # fmt: skip
 

@@ -83,7 +83,7 @@ def _setting(row: Row) -> Line:
     contact = case.scene.contacts[0] if case.scene.contacts and case.found.continuum else None
     return {
         "label": row.label,
-        "family": row.case.family,
+        "family": row.family,
         "model": case.model,
         "elements": case.options.elements,
         "mesh": case.options.mesh and "x".join(map(str, case.options.mesh)),

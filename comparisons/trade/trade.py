@@ -150,7 +150,7 @@ def orders(trade: Trade, quantity: str) -> Iterator[Line]:
         case, known = chain[0], [rows[one] for one in chain]
         doubt = trade.uncertainty(case.model, "path", quantity)
         errors = [row.error("path", quantity, own=True) for row in known]
-        sizes = [row.case.resolution for row in known]
+        sizes = [row.resolution for row in known]
         order = convergence(sizes, errors, ABOVE * doubt) if isfinite(doubt) else None
         costs = ([row.spent(cost) for row in known[-LARGEST:]] for cost in ("unknowns", "seconds"))
         given = [contact for contact in case.scene.contacts if contact.penetration is not None]
