@@ -107,10 +107,8 @@ def distance(response: Response, k: int, exact: Equilibrium, largest: Scales) ->
     scales = (*_forces(exact), max(float(np.hypot(*way.T).max()) for way in ways))
     size, moment, moved = map(max, scales, largest)
     length = max(beam.length for beam in scene.beams)
-    last, last_moment = (
-        force_round_off(scene, size),
-        min(force_round_off(scene, math.inf) * length, UNRESOLVED * moment),
-    )
+    last = force_round_off(scene, size)
+    last_moment = min(force_round_off(scene, math.inf) * length, UNRESOLVED * moment)
     found: dict[str, dict[str, float]] = {name: {} for name in (*COMPARED, *ROUGH, "place")}
     for name, pair, off in _contact_differences(response, k, exact):
         found[name][pair] = off
@@ -128,16 +126,15 @@ def distance(response: Response, k: int, exact: Equilibrium, largest: Scales) ->
         for name, off in _section_differences(response, k, exact, beam):
             of = (moment, last_moment) if name == "M" else (size, last)
             found["sections"][f"{name} of {beam.name}"] = _beyond(off, *of)
-    found["place"] = _misplaced(response, k, exact)
-    touched = {spec.pair: spec.beam for spec in scene.contacts}
-    off_by = {
-        name: off * scene.beam(touched.get(name, name.split(".")[0])).length
-        for name, off in found["place"].items()
-    }
+    misplaced = [*_misplaced(response, k, exact)]
+    found["place"] = {name: off / length for name, off, length in misplaced}
     places = [np.abs(place) for beam in scene.beams for place in (beam.start, beam.end)]
     soft = max(beam.length**3 / beam.EI for beam in scene.beams)
     floor = RESIDUAL * length + LAST_PLACES * float(np.max(places)) + last * soft
-    for relative, lengths in (("displacement", apart), ("constraint", off_by)):
+    for relative, lengths in (
+        ("displacement", apart),
+        ("constraint", {name: off for name, off, _ in misplaced}),
+    ):
         found[relative] = {
             name: 0.0 if off <= floor else _size(off / moved) if moved else math.inf
             for name, off in lengths.items()
@@ -268,9 +265,8 @@ def _loads(scene: Scene, t: float) -> Iterator[tuple[float, float, float]]:
             yield gravity[0] * mass * beam.length / 2.0, gravity[1] * mass * beam.length / 2.0, 0.0
 
 
-def _misplaced(response: Response, k: int, exact: Equilibrium) -> dict[str, float]:
-    """Violations of contact and support constraints by the answer's axes, over the beams' lengths, by pair and supported end."""
-    distances: dict[str, float] = {}
+def _misplaced(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple[str, float, float]]:
+    """Yield pairs and supported ends, how far the answer's axes violate their constraints, and the lengths of the beams."""
     scene = exact.scene
 
     def end(node: str) -> Array:
@@ -279,23 +275,18 @@ def _misplaced(response: Response, k: int, exact: Equilibrium) -> dict[str, floa
         return np.asarray(line[0 if where == "start" else -1])
 
     for spec in scene.contacts:
-        if spec.pair not in exact.contacts:
-            continue
-        arc = float(response.contacts[spec.pair].arc_position[k])
-        place, cut = _on_axis(*response.axis_line(spec.beam, k), arc)
-        pin = "." not in spec.node
-        node = scene.pin(spec.node).position(exact.load_parameter) if pin else end(spec.node)
-        apart = abs(float(np.hypot(*(place - node))) - face_of(scene, spec).reach(arc))
-        distances[spec.pair] = max(0.0, apart - cut) / scene.beam(spec.beam).length
+        if spec.pair in exact.contacts:
+            arc = float(response.contacts[spec.pair].arc_position[k])
+            place, cut = _on_axis(*response.axis_line(spec.beam, k), arc)
+            node = end(spec.node) if "." in spec.node else exact.place(spec.node)
+            apart = abs(float(np.hypot(*(place - node))) - face_of(scene, spec).reach(arc))
+            yield spec.pair, max(0.0, apart - cut), scene.beam(spec.beam).length
     for support in scene.all_supports:
-        way = end(support.node) - scene.place(support.node)
-        motion = scene.prescribed_motions[support.node].at(exact.load_parameter)[:2]
-        off = [
-            _size(abs(x - given)) for x, given in zip(way.tolist(), motion, strict=True) if given is not None
-        ]
+        way = (end(support.node) - scene.place(support.node)).tolist()
+        motion = scene.prescribed_motions[support.node].at(exact.load_parameter)
+        off = [_size(abs(x - to)) for x, to in zip(way, motion, strict=False) if to is not None]
         if off:
-            distances[support.node] = max(off) / scene.beam(support.beam).length
-    return distances
+            yield support.node, max(off), scene.beam(support.beam).length
 
 
 def _on_axis(arcs: Array, line: Array, arc: float) -> tuple[Array, float]:

@@ -137,10 +137,11 @@ def _rotations(layout: Layout, answer: AnswerState, number: int, z: Array | None
     s, way = (arc[:-1] + arc[1:])[long] / (2.0 * layout.length), pieces[long] / extents[long]
     way = way * np.exp(-1.0j * rod.angle(s)) if rod.turn else way
     theta = np.angle(way)
-    for n, part in enumerate(layout.parts):
-        if part.beam == number and z is not None and np.any(rod.greatest.shear):
+    if z is None or not np.any(rod.greatest.shear):
+        return Rotations(s, np.unwrap(theta))
+    for part, (first, last) in zip(layout.parts, layout.extents(z), strict=True):
+        if part.beam == number:
             _, stretch, shear = rod.flexibility(s)
-            first, last = layout.extents(z)[n]
             x, y = rod.force(part.piece, part.constant(z), s)
             force = (x + 1.0j * y) * np.exp(-1.0j * rod.angle(s))
             along = way - shear * force

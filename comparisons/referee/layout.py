@@ -204,10 +204,8 @@ class Layout:
     def shifts(self, z: Array) -> Array:
         """Ways (stations, 2) of the axis from the references."""
         ways = self.motions(z)[:, :2]
-        for k, item in enumerate(self.stations):
-            if item.touch is not None and item.touch.angle != NONE:
-                s, phi = z[[item.touch.arc, item.touch.angle]].tolist()
-                ways[k] -= item.touch.away(s) * normal(phi)
+        for k, touch in self._offset:
+            ways[k] -= touch.away(float(z[touch.arc])) * normal(float(z[touch.angle]))
         return ways
 
     def position(self, z: Array, station: int) -> Array:
@@ -217,6 +215,11 @@ class Layout:
     def extents(self, z: Array) -> Array:
         """Arc positions (parts, 2) at the starts and the ends of all parts."""
         return self.full(z)[self._ends]
+
+    @cached_property
+    def _offset(self) -> list[tuple[int, Touch]]:
+        touched = [(k, item.touch) for k, item in enumerate(self.stations) if item.touch is not None]
+        return [(k, touch) for k, touch in touched if touch.angle != NONE]
 
     @cached_property
     def _ends(self) -> Ints:
