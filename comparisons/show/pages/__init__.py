@@ -17,3 +17,7 @@ __all__ = [
     "Section", "Track", "definitions", "folded", "motion_section", "page", "picture", "provenance", "states_section", "table", "tracks",
     "write_page",
 ]  # fmt: skip
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
