@@ -77,15 +77,15 @@ def budget_cases(scene: Scene) -> dict[str, Case]:
     free: Changes = {("contact", "penalty"): None, ("contact", "penetration"): 1e-12}
     rod_law: Changes = {("beam", "material"): "biot-linear"}
     solids = {
-        "solid": short,
+        "bodies": short,
         "linear": changed(short, rod_law),
         "free": changed(short, free),
-        "like the rod": changed(short, {**rod_law, **free}),
+        "like rods": changed(short, {**rod_law, **free}),
     }
-    solids |= {f"finer {name}": _refined(solids[name]) for name in ("solid", "like the rod")}
+    solids |= {f"finer {name}": _refined(solids[name]) for name in ("bodies", "like rods")}
     solids["careful"] = replace(short, load_parameters=2 * STEPS)
     return {
-        "rod": Case(scene=short, model=ROD.name),
+        "rods": Case(scene=short, model=ROD.name),
         "beams": Case(scene=short, model=TSM.name, options=Options(elements=ELEMENTS)),
         "finer beams": Case(scene=short, model=TSM.name, options=Options(elements=2 * ELEMENTS)),
         **{name: Case(scene=one, model=SOLID.name) for name, one in solids.items()},
@@ -113,17 +113,17 @@ def error_budget(scene: Scene, count: Count = uncounted) -> Budget:
     for name, case in cases.items():
         found[name] = _values(case)
         count(len(found), len(cases))
-        if not any(np.isfinite(values).any() for values in found["rod"].values()):
+        if not any(np.isfinite(values).any() for values in found["rods"].values()):
             raise ModelError(
                 "the budget is relative to the exact rods, which have no force at its load parameters"
             )
 
     def parts(q: str) -> dict[str, Array]:
-        rod, beams, solid, like_rod = (found[name][q] for name in ("rod", "beams", "solid", "like the rod"))
+        rod, beams, solid, like_rod = (found[name][q] for name in ("rods", "beams", "bodies", "like rods"))
         # the limit minus the answer, from that on a mesh twice as fine (Richardson)
         beam_step, solid_step, like_rod_step = (
             (found[f"finer {name}"][q] - found[name][q]) / (1.0 - 2.0**-order)
-            for name, order in (("beams", 4), ("solid", 2), ("like the rod", 2))
+            for name, order in (("beams", 4), ("bodies", 2), ("like rods", 2))
         )
         return {
             "TSM mesh": -beam_step,
@@ -135,10 +135,10 @@ def error_budget(scene: Scene, count: Count = uncounted) -> Budget:
             "load steps": found["careful"][q] - solid,
         }
 
-    rods = {q: values for q, values in found["rod"].items() if np.isfinite(values).any()}
+    rods = {q: values for q, values in found["rods"].items() if np.isfinite(values).any()}
     return Budget(
         scene=scene.name,
-        total={q: (found["beams"][q] - found["solid"][q]) / rod for q, rod in rods.items()},
+        total={q: (found["beams"][q] - found["bodies"][q]) / rod for q, rod in rods.items()},
         parts={q: {name: part / rod for name, part in parts(q).items()} for q, rod in rods.items()},
     )
 

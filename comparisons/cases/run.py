@@ -20,12 +20,11 @@ BEAT = 5.0
 COMPLETED = "COMPLETED"
 """The status of a completed and checked solution."""
 WORKER_LOST = "WORKER_LOST"
+"""The status of a case whose worker died, and died again when the case was tried alone."""
 ERROR = "ERROR"
+"""The status of a case that raised an exception, which no model should."""
 UNSETTLED = (WORKER_LOST, ERROR)
-"""A worker died, and died again when its case was tried alone; a case raised an exception, which no model should.
-
-They come from the machine or from a bug and not from the case; the next run repeats the case.
-"""
+"""Statuses that come from the machine or from a bug and not from the case; the next run repeats the case."""
 Results = dict[Case, Measurement]
 """The measurement of every case."""
 

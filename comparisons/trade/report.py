@@ -6,6 +6,7 @@ from math import isfinite
 from pathlib import Path
 
 from comparisons.cases import Row
+from comparisons.models import SOLID, TSM
 from comparisons.output import tabulated, write_numbers, write_rows
 from comparisons.quantities import KEPT, SCOPES
 from comparisons.scene import to_toml
@@ -116,15 +117,16 @@ def cheapest_lines(trade: Trade, scope: str) -> tuple[str, list[Line]]:
 
 def _line(row: Line) -> Line:
     told = row["limit_uncertainty"] <= row["target"]
+    beams, solid, there = TSM.name, SOLID.name, "solid_against_reference"
     return {
         "error": row["target"],
-        "TSM": short(row, "tsm"),
-        "seconds": row["tsm_seconds"],
-        "solid, its own limit": short(row, "solid") if told else "not told",
-        "its seconds": row["solid_seconds"],
+        "TSM": short(row, beams),
+        "seconds": row[f"{beams}_seconds"],
+        "solid, its own limit": short(row, solid) if told else "not told",
+        "its seconds": row[f"{solid}_seconds"],
         "ratio": row["ratio"],
-        "solid, the reference": short(row, "solid_against_reference"),
-        "and its seconds": row["solid_against_reference_seconds"],
+        "solid, the reference": short(row, there),
+        "and its seconds": row[f"{there}_seconds"],
         "ratio there": row["ratio_against_reference"],
     }
 
