@@ -71,7 +71,6 @@ THEORY = "Theory expects most of it from this cause: "
 DIFFER = "In the error budget, beams and solid differ most in the "
 APART = "solid and the exact rod disagree on whether a contact is closed."
 STOPPED = {
-    "completed": False,
     "status": "CUTBACK_FLOOR",
     "message": "no step",
     "load_parameter": np.array([0.2, 0.4]),
