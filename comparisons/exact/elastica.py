@@ -12,7 +12,7 @@ so that the polar angle of the pin is `tc - arctan(I2/I1)`. It grows with `tc` u
 is a little behind the clamp. The branch below the fold starts at the straight beam.
 """
 
-from dataclasses import dataclass
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -22,43 +22,12 @@ from scipy.special import elliprd, elliprf
 
 from comparisons.exact.checks import require_positive
 from comparisons.exact.contact import Cantilever
-from comparisons.exact.follow import Event, Standing
+from comparisons.exact.follow import Standing, changed
 from comparisons.exact.outcome import Outcome
-from comparisons.exact.rod import RodPath, collect, fractions
+from comparisons.exact.rod import RodPath, collect, fractions, vertices
 from comparisons.exact.section import Flexibility
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, kw_only=True)
-class ElasticaState:
-    """Equilibrium of the elastica under a pin.
-
-    Attributes
-    ----------
-    outcome : Outcome
-        State of contact. Without contact the beam is straight and all forces are zero; without an equilibrium that is connected with it, `LOST`, as well.
-    tangent_angle : float
-        Angle `tc` of the tangent at the pin and of the tail [rad].
-    arc_position : float
-        Distance `s` of the pin from the clamp along the axis; nan without contact.
-    magnitude : float
-        Contact force `F >= 0`.
-    force : ndarray, shape (2,)
-        Force of the pin on the beam.
-    clamp_moment : float
-        Moment of the clamp on the beam, anticlockwise positive: `-(r x force)`.
-    tip : ndarray, shape (2,)
-        Position of the free tip.
-    """
-
-    outcome: Outcome
-    tangent_angle: float
-    arc_position: float
-    magnitude: float
-    force: Array
-    clamp_moment: float
-    tip: Array
 
 
 def _integrals(u: NDArray[np.float64] | float) -> tuple[Array, Array, Array]:
@@ -105,102 +74,60 @@ def fold_angle() -> float:
     return float(brentq(slope, 2.0, 3.1, xtol=1e-15))
 
 
-def _straight(outcome: Outcome, length: float, arc_position: float = np.nan) -> ElasticaState:
-    """Return the beam without load."""
-    return ElasticaState(
-        outcome=outcome,
-        tangent_angle=0.0,
-        arc_position=arc_position,
-        magnitude=0.0,
-        force=np.zeros(2),
-        clamp_moment=0.0,
-        tip=np.array([length, 0.0]),
-    )
+def _state(x: float, y: float) -> tuple[Outcome, list[float]]:
+    """State of contact with a pin at a place, where EI = L = 1, and force, moment at the clamp and arc position."""
+    if y <= 0.0:
+        touches = y == 0.0 and 0.0 < x <= 1.0
+        return Outcome.CONTACT if touches else Outcome.OPEN, [0.0, 0.0, 0.0, x]
+    polar, fold = float(np.arctan2(y, x)), fold_angle()
+    if polar >= _polar_angle(fold):
+        return Outcome.LOST, [np.nan] * 4
+    tc = float(brentq(lambda angle: _polar_angle(angle) - polar, polar, fold, xtol=1e-300, rtol=1e-15))
+    I0, I1, I2 = map(float, _integrals(tc))
+    lam = float(np.hypot(x, y)) / float(np.hypot(I1, I2))
+    F, s = 1.0 / (2.0 * lam**2), lam * I0
+    outcome = Outcome.CONTACT if s <= 1.0 else Outcome.SLIPPED
+    return outcome, [-F * float(np.sin(tc)), F * float(np.cos(tc)), F * lam * I1, s]
 
 
-def elastica_under_pin(x: float, y: float, *, EI: float = 1.0, length: float = 1.0) -> ElasticaState:
-    """Equilibrium of the elastica under a frictionless pin at `(x, y)`.
+def elastica_under_pin(points: ArrayLike, *, EI: float = 1.0, length: float = 1.0) -> RodPath:
+    """Equilibrium of the elastica under a frictionless pin at every vertex of the pin's path.
 
-    The state is on the branch from the straight beam, `0 < tc < fold_angle()`, on which `y/x` increases. It depends only on
-    the position of the pin. A pin that has never touched the beam is `SLIPPED` too if it is beyond the tip.
+    The states are on the branch from the straight beam, `0 < tc < fold_angle()`, on which `y/x` increases. They depend only on the
+    position of the pin, except that a pin which has left the beam stays off it while it is above the straight beam. A pin that has never
+    touched the beam is `SLIPPED` too if it is beyond the tip.
 
     Parameters
     ----------
-    x, y : float
-        Position of the pin. On the straight beam it is in contact without force.
+    points : array_like, shape (s, 2)
+        Positions of the pin. On the straight beam it is in contact without force.
     EI, length : float
         Bending stiffness and length.
 
     Returns
     -------
-    ElasticaState
-        With outcome `CONTACT`, `OPEN` (below the straight beam), `SLIPPED` (`s > length`) or `LOST` (beyond the fold).
+    RodPath
+        A rod without stretch and shear, with outcome `CONTACT`, `OPEN` (below the straight beam), `SLIPPED` (`s > length`, first seen at
+        a vertex) or `LOST` (beyond the fold).
 
     Raises
     ------
     ValueError
-        If a number is not finite, or `EI` or `length` is not positive.
+        If the path is not finite, or `EI` or `length` is not positive.
 
     Examples
     --------
-    >>> state = elastica_under_pin(0.0, 2 / np.pi)
-    >>> round(state.magnitude, 12), round(state.arc_position, 12), round(state.clamp_moment, 12)
-    (8.182128140184, 0.89572169201, -3.14159265359)
+    >>> path = elastica_under_pin([(0.0, 2 / np.pi)])
+    >>> [round(float(value[0]), 12) for value in (path.magnitude, path.arc_position, path.clamp_moment)]
+    [8.182128140184, 0.89572169201, -3.14159265359]
     """
     require_positive(EI=EI, length=length)
-    for name, value in (("x", x), ("y", y)):
-        if not np.isfinite(value):
-            raise ValueError(f"{name} = {value}: must be finite")
-    if y == 0.0 and 0.0 < x <= length:
-        return _straight(Outcome.CONTACT, length, x)
-    if y <= 0.0:
-        return _straight(Outcome.OPEN, length)
-    polar, fold = float(np.arctan2(y, x)), fold_angle()
-    if polar >= _polar_angle(fold):
-        return _straight(Outcome.LOST, length)
-    tc = float(brentq(lambda angle: _polar_angle(angle) - polar, polar, fold, xtol=1e-300, rtol=1e-15))
-    I0, I1, I2 = map(float, _integrals(tc))
-    lam = float(np.hypot(x, y)) / float(np.hypot(I1, I2))
-    s = lam * I0
-    if s > length:
-        return _straight(Outcome.SLIPPED, length)
-    tangent, normal = np.array([np.cos(tc), np.sin(tc)]), np.array([-np.sin(tc), np.cos(tc)])
-    F = EI / (2.0 * lam**2)
-    return ElasticaState(
-        outcome=Outcome.CONTACT,
-        tangent_angle=tc,
-        arc_position=s,
-        magnitude=F,
-        force=F * normal,
-        clamp_moment=-F * lam * I1,
-        tip=np.array([x, y]) + (length - s) * tangent,
-    )
-
-
-def elastica_along(points: ArrayLike, *, EI: float = 1.0, length: float = 1.0) -> RodPath:
-    """Equilibria of the elastica at the vertices (s, 2) of a pin's path; a pin that has slipped off stays off above the straight beam.
-
-    They are those of a rod without stretch and shear, whose contact has the force, the place and the clamp moment of `ElasticaState`.
-    The slip-off is at the first vertex at which the pin has left the beam.
-    """
-    pins, path, events = np.asarray(points, dtype=np.float64), list[Standing](), tuple[Event, ...]()
+    pins, path, standing = vertices(points) / length, list[Standing](), Standing(z=np.zeros(4))
     rod = Cantilever(flexibility=Flexibility(stretch=0.0, shear=0.0), face=0.0, radius=0.0, friction=0.0)
-    t, outcome = fractions(pins), Outcome.OPEN
-    for when, (x, y) in zip(t, pins, strict=True):
-        before, state = outcome, elastica_under_pin(float(x), float(y), EI=EI, length=length)
-        if y <= 0.0 or before is not Outcome.SLIPPED:
-            outcome = state.outcome
-        if outcome is Outcome.SLIPPED and outcome is not before:
-            events += (
-                Event(
-                    load_parameter=float(when), before=before, after=outcome, arc_position=1.0, magnitude=0.0
-                ),
-            )
-        z = (
-            np.array(
-                [*state.force * length**2, -state.clamp_moment * length, state.arc_position * EI / length]
-            )
-            / EI
-        )
-        path.append(Standing(state=outcome, z=z, events=events))
-    return collect(rod, path, t, EI=EI, length=length)
+    for t, (x, y) in zip(fractions(pins).tolist(), pins.tolist(), strict=True):
+        outcome, z = _state(x, y)
+        standing = replace(standing, t=t, z=np.array(z))
+        if outcome is not standing.state and (y <= 0.0 or standing.state is not Outcome.SLIPPED):
+            standing = changed(standing, outcome)
+        path.append(standing)
+    return collect(rod, path, EI=EI, length=length)

@@ -110,7 +110,7 @@ def _along(piece: Piece, standing: Standing, finish: float) -> Standing:
             step, growth = (end - standing.t) / 3.0, 1.0
             many = not piece.rod.friction and piece.iterations > _MOST_ITERATIONS
             if step < _SMALLEST_STEP or many:
-                standing = _change(standing, Outcome.LOST)
+                standing = changed(standing, Outcome.LOST)
             continue
         standing = replace(
             standing,
@@ -155,10 +155,10 @@ def _turned(piece: Piece, standing: Standing) -> Standing:
 def _after(piece: Piece, standing: Standing, ending: Ending) -> Standing:
     """Return the state after the end of a phase."""
     if ending is Ending.RELEASE:
-        return _change(standing, Outcome.OPEN)
+        return changed(standing, Outcome.OPEN)
     if ending is Ending.SLIP_OFF:
         energy = piece.rod.energy(standing.z)
-        return _change(replace(standing, released=standing.released + energy), Outcome.SLIPPED)
+        return changed(replace(standing, released=standing.released + energy), Outcome.SLIPPED)
     if standing.phase.sense:
         return _enter(piece, standing, [0])
     return _decide(piece, standing, (int(np.sign(_linear(piece, standing).here.tangential)),))
@@ -191,13 +191,13 @@ def _decide(piece: Piece, standing: Standing, senses: Iterable[int]) -> Standing
 def _enter(piece: Piece, standing: Standing, possible: list[int]) -> Standing:
     """Return the only possible state."""
     if len(possible) != 1:
-        return _change(standing, Outcome.JAMMED)
+        return changed(standing, Outcome.JAMMED)
     (sense,) = possible
     if standing.state.touches and sense == standing.phase.sense:
         return standing
     state = _STATES[sense] if piece.rod.friction else Outcome.CONTACT
     phase = Phase(sense, standing.t, _linear(piece, standing).held)
-    return _change(replace(standing, phase=phase), state)
+    return changed(replace(standing, phase=phase), state)
 
 
 def _linear(piece: Piece, standing: Standing) -> Linear:
@@ -205,8 +205,8 @@ def _linear(piece: Piece, standing: Standing) -> Linear:
     return piece.rod.linearise(standing.z, piece.pin(standing.t))
 
 
-def _change(standing: Standing, state: Outcome) -> Standing:
-    """Change the state and record the event."""
+def changed(standing: Standing, state: Outcome) -> Standing:
+    """Return a state after a change, with the event."""
     event = Event(
         load_parameter=float(standing.t),
         before=standing.state,

@@ -161,9 +161,7 @@ def rod_under_pin(
     require_positive(EI=EI, length=length)
     require_positive(infinite=True, EA=EA, GA=GA)
     require_not_negative(friction=friction, offset=offset, radius=radius)
-    pins = np.asarray(points, dtype=np.float64)
-    if pins.ndim != 2 or pins.shape[1] != 2 or not len(pins) or not np.all(np.isfinite(pins)):
-        raise ValueError(f"points, shape {pins.shape}: must be finite and of shape (s, 2), s >= 1")
+    pins = vertices(points)
     unit = EI / length**2
     rod = Cantilever(
         flexibility=Flexibility(stretch=unit / EA, shear=unit / GA),
@@ -171,8 +169,16 @@ def rod_under_pin(
         radius=radius / length,
         friction=friction,
     )
-    t = fractions(pins)
-    return collect(rod, list(follow(rod, pins / length, t)), t, EI=EI, length=length)
+    path = follow(rod, pins / length, fractions(pins))
+    return collect(rod, list(path), EI=EI, length=length)
+
+
+def vertices(points: ArrayLike) -> Array:
+    """Return the vertices (s, 2) of a path."""
+    pins = np.asarray(points, dtype=np.float64)
+    if pins.ndim != 2 or pins.shape[1] != 2 or not len(pins) or not np.all(np.isfinite(pins)):
+        raise ValueError(f"points, shape {pins.shape}: must be finite and of shape (s, 2), s >= 1")
+    return pins
 
 
 def fractions(points: Array) -> Array:
@@ -181,8 +187,8 @@ def fractions(points: Array) -> Array:
     return np.asarray(way / (way[-1] or 1.0))
 
 
-def collect(rod: Cantilever, path: list[Standing], t: Array, *, EI: float, length: float) -> RodPath:
-    """Return the states at load parameters in the units of the input."""
+def collect(rod: Cantilever, path: list[Standing], *, EI: float, length: float) -> RodPath:
+    """Return the states in the units of the input."""
     unit, energy = EI / length**2, EI / length
     outcome = tuple(one.state for one in path)
     touches = np.array([state.touches for state in outcome])
@@ -194,7 +200,7 @@ def collect(rod: Cantilever, path: list[Standing], t: Array, *, EI: float, lengt
         return energy * (np.array([getattr(one, name) for one in path]) + lost)
 
     return RodPath(
-        load_parameter=t,
+        load_parameter=np.array([one.t for one in path]),
         outcome=outcome,
         force=unit * (z[:, :2] + lost[:, None]),
         tangential=unit * (contact.tangential + lost),

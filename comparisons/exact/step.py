@@ -1,7 +1,7 @@
 """Steps of a contact along a straight piece of the pin's path, and the first event in a step."""
 
 from dataclasses import dataclass
-from enum import Enum
+from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -25,7 +25,7 @@ _TOGETHER, AT_ONCE, EDGE = 1e-9, 1e-14, 1e-12
 than the second are one; a margin within the third is at its edge."""
 
 
-class Ending(Enum):
+class Ending(IntEnum):
     """Why a phase ends, in the order of the margins; of two at one load parameter the later one counts."""
 
     FRICTION = 0
@@ -156,22 +156,19 @@ class Piece:
 
         roots: list[tuple[float, Ending]] = []
         for ending in Ending:
-            k = ending.value
-            if after.margins[k] >= -EDGE:
+            if after.margins[ending] >= -EDGE:
                 continue
             goes_on = start.t - phase.since > _TOGETHER or ending is Ending.SLIP_OFF or not self.rod.friction
-            if before is start and start.margins[k] <= EDGE and goes_on:
+            if before is start and start.margins[ending] <= EDGE and goes_on:
                 return Step(start, 0.0, 0.0, ending, _held(phase, start))
-            if before.margins[k] <= EDGE:
+            if before.margins[ending] <= EDGE:
                 return None
             try:
-                roots.append((float(brentq(margin, before.t, after.t, args=(k,), xtol=1e-15)), ending))
+                roots.append((float(brentq(margin, before.t, after.t, args=(ending,), xtol=1e-15)), ending))
             except ValueError:  # Newton's method fails in between
                 return None
         first = min(t for t, _ in roots)
-        t, ending = max(
-            (item for item in roots if item[0] <= first + _TOGETHER), key=lambda item: item[1].value
-        )
+        t, ending = max((item for item in roots if item[0] <= first + _TOGETHER), key=lambda item: item[1])
         if t - start.t < AT_ONCE:
             return Step(start, 0.0, 0.0, ending, _held(phase, start))
         nodes = self._nodes(phase, start, t)

@@ -40,13 +40,13 @@ class Elastica(Model):
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked."""
-        from comparisons.exact import elastica_along
+        from comparisons.exact import elastica_under_pin
         from comparisons.models.cantilever import local_response
 
         del options, watch
         local = _stated(scene)
         sizes = {"EI": local.beam.EI, "length": local.beam.length}
-        return local_response(self.name, local, lambda: elastica_along(local.path, **sizes), unknowns=1)
+        return local_response(self.name, local, lambda: elastica_under_pin(local.path, **sizes), unknowns=1)
 
     def styles(self) -> dict[str, Style]:
         """Return one style."""

@@ -84,8 +84,8 @@ def by_the_rod(name):
 
 
 def elastica_of_ks():
-    states = [elastica_under_pin(1.0 - t, t * 2.0 / np.pi) for t in (0.25, 0.5, 0.75, 1.0)]
-    return [*(one.magnitude for one in states), *(one.arc_position for one in states), -np.pi]
+    path = elastica_under_pin([(1.0 - t, t * 2.0 / np.pi) for t in (0.25, 0.5, 0.75, 1.0)])
+    return [*path.magnitude, *path.arc_position, -np.pi]
 
 
 def haringx():

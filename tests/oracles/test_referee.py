@@ -49,8 +49,7 @@ def last(path: Any) -> list[Any]:
 
 
 def elastica(_: Scene) -> list[Any]:
-    state = elastica_under_pin(*KS_PATH[1])
-    return [state.force, state.arc_position, state.clamp_moment, state.tip]
+    return last(elastica_under_pin(KS_PATH))
 
 
 def on_the_face(scene: Scene) -> list[Any]:
