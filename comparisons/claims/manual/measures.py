@@ -9,6 +9,7 @@ import numpy as np
 from comparisons.claims.claim import Quantity, StoppedError
 from comparisons.claims.manual.answers import ANSWER, Answers, answered, readings, undeformed
 from comparisons.claims.manual.problem import Problem, varied
+from comparisons.claims.solid.peers import solved
 from comparisons.models import ROD, SOLID
 from comparisons.models.solid import to_solid
 from comparisons.models.tsm import to_structure
@@ -159,9 +160,7 @@ def _solved_directly(answers: Answers, times: Array, **strip: Any) -> Any:
     solid = answers.trial.key == SOLID.name
     result: Any
     if solid:
-        problem = to_solid(scene, mesh=options.mesh)
-        problem = replace(problem, strips=tuple(replace(one, **strip) for one in problem.strips))
-        result = fem_reference.solve(problem, times, throw=False)
+        result = solved(to_solid(scene, mesh=options.mesh), times, throw=False, **strip)
     else:
         beams = to_structure(scene, elements=options.elements, element=options.element)
         result = tsm.solve(beams, times, throw=False)

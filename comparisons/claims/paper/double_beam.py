@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import partial
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -157,24 +158,17 @@ def _stage(scene: Scene, response: Response, stage: Row) -> Panel:
     lines: list[Line] = []
     notes, k = [], stage["index"]
     for beam in scene.beams:
-        rest, style = (
-            np.array([beam.start, beam.end]),
-            {"color": COLOURS[beam.name], "marker": "o", "markersize": 3},
-        )
-        line = rest if k < 0 else response.axis_line(beam.name, k)[1]
-        nodes = np.linspace(0, len(line) - 1, beam.divisions + 1).round().astype(int).tolist()
-        lines += [
-            (*rest.T, {"color": "0.75", "linewidth": 0.8}),
-            (*line.T, {**style, "markevery": nodes, "linewidth": 1.8, "label": f"{beam.name} beam"}),
-        ]
+        rest = np.array([beam.start, beam.end])
+        axis = rest if k < 0 else response.axis_line(beam.name, k)[1]
+        style = {"color": COLOURS[beam.name], "marker": "o", "markersize": 3, "label": f"{beam.name} beam"}
+        every = {"markevery": max(1, (len(axis) - 1) // beam.divisions)}
+        lines += [(*rest.T, {"color": "0.75", "linewidth": 0.8}), (*axis.T, style | every)]
     pin = np.array(scene.pins[0].position(0.0 if k < 0 else float(response.load_parameter[k])))
     for row, (pair, name) in enumerate(NAMES.items() if k >= 0 else ()):
         contact, point = response.contacts[pair], response.tips["upper"][k] if pair == TIP else pin
         if np.isfinite(contact.arc_position[k]) and contact.vector is not None:
             ends = np.array([point - ARROW * contact.vector[k], point])
-            lines.append(
-                (*ends.T, {"color": STYLES[pair]["color"], "linewidth": 1.8, "label": f"force of {name}"})
-            )
+            lines.append((*ends.T, {"color": STYLES[pair]["color"], "label": f"force of {name}"}))
             notes.append((f"{name}: {contact.force[k]:.3f} N", (0.0, -0.62 - 0.07 * row)))
     mark = {"color": "black", "marker": "o", "markerfacecolor": "white", "linestyle": "none", "label": "pin"}
     lines.append((*pin, mark))
@@ -184,25 +178,23 @@ def _stage(scene: Scene, response: Response, stage: Row) -> Panel:
 
 
 def _histories(columns: Columns, events: list[Row]) -> list[Panel]:
-    """Forces and places of all contacts against the depth, with the exact rods and the events."""
-    marks: dict[float, list[str]] = {}
-    for event in (one for one in events if one["depth"] > 0.0):
-        near = next((depth for depth in marks if abs(depth - event["depth"]) < 2e-3), event["depth"])
-        marks.setdefault(near, []).append(f"{event['kind']}, {NAMES[event['pair']]}")
-    panels = []
+    """Forces and places of all contacts against the depth, with the exact rods and the events, those at one depth together."""
+    later, marks, panels = (one for one in events if one["depth"] > 0.0), list[tuple[float, str]](), []
+    for number, (_, found) in enumerate(groupby(later, key=lambda one: round(one["depth"], 3)), 1):
+        same = list(found)
+        words = "; ".join(f"{one['kind']}, {NAMES[one['pair']]}" for one in same)
+        marks.append((same[0]["depth"], f"{number}: {same[0]['depth']:.4f} m, {words}"))
     for quantity, label in (("force", "contact force [N]"), ("arc", "arc position [m]")):
         lines: list[Line] = []
         for pair, name in NAMES.items():
-            exact = {"color": "0.7", "linewidth": 5.0, "label": RODS}
-            lines.append((columns["depth"], columns[f"{pair} exact_{quantity}"], exact))
-            lines.append((columns["depth"], columns[f"{pair} {quantity}"], {**STYLES[pair], "label": name}))
+            exact, own = (columns[f"{pair} {prefix}{quantity}"] for prefix in ("exact_", ""))
+            lines.append((columns["depth"], exact, {"color": "0.7", "linewidth": 5.0, "label": RODS}))
+            lines.append((columns["depth"], own, {**STYLES[pair], "label": name}))
         high = max(float(np.nanmax(line[1])) for line in lines)
-        for number, (depth, texts) in enumerate(marks.items(), 1):
-            words = f"{number}: {depth:.4f} m, {'; '.join(texts)}"
-            lines.append(([depth, depth], [0.0, high], {"color": "0.4", "linestyle": ":", "label": words}))
-        notes = [(f"{number}", (depth, high)) for number, depth in enumerate(marks, 1)]
+        dotted = {"color": "0.4", "linestyle": ":"}
+        lines += [([depth, depth], [0.0, high], {**dotted, "label": words}) for depth, words in marks]
+        notes = [(words.split(":")[0], (depth, high)) for depth, words in marks]
         settings = {"xlabel": "depth of the pin [m]", "ylabel": label}
-        panels.append(
-            Panel(title="Double beam, 10 + 10 mixed elements", lines=lines, settings=settings, notes=notes)
-        )
+        title = "Double beam, 10 + 10 mixed elements"
+        panels.append(Panel(title=title, lines=lines, settings=settings, notes=notes))
     return panels

@@ -55,10 +55,10 @@ def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[
 
 
 def _claims(judgements: Sequence[Judgement]) -> Section:
-    rows = []
-    for number, one in enumerate(judgements, 1):
-        place, text, verdict, measured, why = one.cells
-        rows.append((number, place, text, verdict, f"{measured} ({one.claim.figure})", why))
+    rows = [
+        (number, *one.cells[:3], f"{one.number} ({one.claim.figure})", one.why)
+        for number, one in enumerate(judgements, 1)
+    ]
     caption = f"{counted(judgements)}. Every number is computed by the run that wrote this page."
     header = ("", "where", "claim", "verdict", "number", "why")
     return Section(title="Claims", html=table(caption, header, rows, prose=True))
