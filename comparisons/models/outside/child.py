@@ -187,6 +187,7 @@ def _started(others: set[int]) -> dict[int, _Process]:
 def _end(process: Any, others: set[int]) -> None:
     """End whatever a program has started, and wait for its end; an ended process leaves its children to this one."""
     if LINUX:
+        process.kill()
         for _ in range(ROUNDS):
             process.poll()
             family = _started(others)
