@@ -81,7 +81,8 @@ def _scales(model: Model) -> tuple[Array, Array, float]:
     element in closed form, and ``4 eps`` of the node positions where positions are equations.
     """
     sharp = np.where(np.isin(np.arange(10), (0, 1, 2, 8)), 1.0, SHARP)
-    residual = 1 / (units_of(model.sizes)[1] * sharp)
+    # the forces of a long frame of short beams are those of its extent
+    residual = 1 / (units_of(model.sizes._replace(force_scale=model.least_force))[1] * sharp)
     way, turn = 1 / (WAY * model.extent), 1 / TURN
     step = np.array([way, way, turn, 0.0, 0.0, 0.0, 0.0, 0.0, way, turn])
     EA, EI, l0 = (

@@ -20,8 +20,6 @@ OTHER_WORDS = {
     "comparisons/cli/command.py": "the package tsm",
     "comparisons/referee/certificate.py": "a key of a certificate in JSON",
     "comparisons/claims/manual/problem.py": "a key of a problem",
-    "comparisons/budget.py": "names of the solutions behind a budget",
-    "comparisons/trade/report.py": "a key of what errors are measured against",
     "comparisons/claims/manual/write.py": "a key of the manual in JSON",
 }
 
