@@ -45,10 +45,8 @@ def one_line(text: object) -> str:
 def read_regular(path: str, most: int) -> bytes:
     """Return the bytes of a regular file. A pipe is refused at once, and at most `most` bytes are read.
 
-    Raises
-    ------
-    OSError, ValueError
-        If the file cannot be read, is not a regular file, or has more than `most` bytes.
+    Raises OSError, ValueError if the file cannot be read, is not a regular file, or has more than `most`
+    bytes.
     """
     # O_NONBLOCK is missing on systems without named pipes, where opening a file never waits
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
@@ -204,10 +202,8 @@ def staging(folder: Path, named: Path | None = None) -> Iterator[Path]:
 def replacing(path: Path) -> Iterator[Path]:
     """Yield a temporary place for a file of this name; move it to `path` once the block has written it.
 
-    Raises
-    ------
-    OutputError
-        If a file is there that this program did not write, the disk is full or the system refuses to write the file.
+    Raises OutputError if a file is there that this program did not write, the disk is full or the system
+    refuses to write the file.
     """
     check_free(path.parent, path.name)
     with staging(path.parent, path) as aside:
@@ -243,10 +239,8 @@ def writable_folder(folder: Path, *names: str) -> Path:
 def result_file(path: Path) -> Path:
     """Return `path` with links followed, after a trial of writing in its folder. The folder must exist.
 
-    Raises
-    ------
-    OutputError
-        If the folder does not exist or is not writable, or `path` is a folder, a device, or a file that this program did not write.
+    Raises OutputError if the folder does not exist or is not writable, or `path` is a folder, a device, or a
+    file that this program did not write.
     """
     if path.exists() and not path.is_file():
         raise OutputError(f"{path}: cannot be written: is not a regular file")

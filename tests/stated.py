@@ -83,10 +83,7 @@ def count(mark: re.Match[str]) -> int:
 def marked(text: str, mark: re.Match[str]) -> list[Stated]:
     """Return the numbers that a mark names.
 
-    Raises
-    ------
-    ValueError
-        If fewer numbers follow the mark, or the first does not follow at once.
+    Raises ValueError if fewer numbers follow the mark, or the first does not follow at once.
     """
     end = following.start() if (following := MARK.search(text, mark.end())) else len(text)
     found = [Stated(n[1], bool(n[2]), n.start(1), n.end(1)) for n in NUMBER.finditer(text, mark.end(), end)]

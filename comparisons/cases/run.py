@@ -58,12 +58,7 @@ def run(
     alone. If its worker dies again, the case is recorded as ``WORKER_LOST``. A case that raises is recorded as ``ERROR``.
     `repeats` and `process` are those of `measure`.
 
-    Raises
-    ------
-    OutputError
-        If a result cannot be written, or read.
-    WorkersError
-        If the cluster is gone.
+    Raises OutputError if a result cannot be written, or read. Raises WorkersError if the cluster is gone.
     """
     writable_folder(folder)
     sweep = _Sweep({case.key: case for case in cases}, folder, progress)

@@ -83,27 +83,15 @@ class Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class Claim:
-    """A statement about the answer to a case.
+    """A statement about the answer to a case."""
 
-    Attributes
-    ----------
-    name : str
-        Name of the model with its resolution.
-    statement, source : str
-        The case with its sizes and units, and the source of the reference values.
-    quantities : tuple of Quantity
-        What is compared, with the reference values.
-    allowance : Allowance
-        Allowed error of every quantity.
-    measure : callable
-        Returns a value for every quantity; raises `StoppedError` where there is no answer.
-    """
-
-    name: str
+    name: str  # name of the model with its resolution
+    # statement, source: the case with its sizes and units, and the source of the reference values
     statement: str
     source: str
-    quantities: tuple[Quantity, ...]
-    allowance: Allowance
+    quantities: tuple[Quantity, ...]  # what is compared, with the reference values
+    allowance: Allowance  # allowed error of every quantity
+    # returns a value for every quantity; raises `StoppedError` where there is no answer
     measure: Callable[[], Sequence[float]]
 
 

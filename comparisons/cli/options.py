@@ -193,10 +193,7 @@ STANDARD = Path("-")
 def outputs(names: Sequence[str], *kinds: str) -> list[tuple[str, Path]]:
     """Return the files to write, tried out, each with its kind, the end of its name; a folder has the kind ``""``.
 
-    Raises
-    ------
-    OutputError
-        For a file of another kind, or one that cannot be written or is not this program's.
+    Raises OutputError for a file of another kind, or one that cannot be written or is not this program's.
     """
     found = []
     for name in names:

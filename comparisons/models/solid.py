@@ -317,10 +317,7 @@ def rectangle(beam: BeamSpec) -> tuple[float, float]:
 
     ``h = sqrt(12 I / A)``, ``b = A / h``.
 
-    Raises
-    ------
-    ModelError
-        If the rectangle is not slender in the plane.
+    Raises ModelError if the rectangle is not slender in the plane.
     """
     if beam.width is not None and beam.height is not None:
         return _ends(beam.width)[0], _ends(beam.height)[0]

@@ -48,22 +48,14 @@ a beam to a half circle, as a function of the half height, the number is 6."""
 
 @dataclass(frozen=True, kw_only=True)
 class Bending:
-    """Bending and shear of the exact answer, as dimensionless maxima over the load parameters.
+    """Bending and shear of the exact answer, as dimensionless maxima over the load parameters."""
 
-    Attributes
-    ----------
-    force, curvature : float
-        ``F L^2/EI`` and ``kappa L``.
-    turn : float
-        Angle by which the contact force turns, equal to the bending angle of the part between clamp and contact [rad].
-    nearest : float
-        Smallest distance between contact and clamp, over L.
-    """
-
-    force: float = 0.0
+    force: float = 0.0  # force, curvature: ``F L^2/EI`` and ``kappa L``
     curvature: float = 0.0
+    # angle by which the contact force turns, equal to the bending angle of the part between clamp and
+    # contact [rad]
     turn: float = 0.0
-    nearest: float = 1.0
+    nearest: float = 1.0  # smallest distance between contact and clamp, over L
 
 
 def bending(beam: BeamSpec, exact: Response) -> Bending:

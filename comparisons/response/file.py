@@ -97,10 +97,7 @@ def read_response(path: str, scene: str | None = None) -> tuple[Response, Scene]
 
     The response has no grid. The scene is the one that the response names, unless another one is given.
 
-    Raises
-    ------
-    InputError
-        One line: file, key, value and rule.
+    Raises InputError, in one line: file, key, value and rule.
     """
     text = read_text(path, "no such file", ResponseError)
     try:
@@ -132,10 +129,7 @@ def parsed(text: str) -> Any:
 def restated(data: Any) -> Response:
     """Return the response that the tables of `as_dict` state.
 
-    Raises
-    ------
-    FieldError
-        If a table, a list of numbers or a name is missing or of another shape.
+    Raises FieldError if a table, a list of numbers or a name is missing or of another shape.
     """
     found = _read(SCHEMA, data, "", {})
     axes = found.pop("axes")

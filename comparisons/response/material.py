@@ -73,14 +73,9 @@ def _otherwise_free(scene: Scene, beam: BeamSpec) -> bool:
 def material_forces(response: Response, scene: Scene, *, strains: bool = True) -> dict[str, Array]:
     """Return the material force of a rod at the clamps of `clamped`, shape (s,) by beam [force].
 
-    Parameters
-    ----------
-    response : Response
-        Response of a model of rods, with the reactions of the clamps.
-    scene : Scene
-        The scene that was solved.
-    strains : bool
-        Whether the model has the stretch and the shear of Reissner's rod; without them EA and GA are infinite.
+    ``response``: response of a model of rods, with the reactions of the clamps. ``scene``: the scene that was
+    solved. ``strains``: whether the model has the stretch and the shear of Reissner's rod; without them EA
+    and GA are infinite.
     """
     found = {}
     for name, clamp in clamped(scene).items():

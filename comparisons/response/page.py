@@ -47,14 +47,9 @@ class Block:
 def text(response: Response, more: Sequence[tuple[str, str]] = (), rule: str = "") -> str:
     """Return the page as text.
 
-    Parameters
-    ----------
-    response : Response
-        The answer. Without its `definition` the numbers have no units, and no extremes along the beams are stated.
-    more : sequence of (str, str)
-        Labels and texts that are added to the head.
-    rule : str
-        Why the setting of the model was chosen.
+    ``response``: the answer. Without its `definition` the numbers have no units, and no extremes along the
+    beams are stated. ``more``: labels and texts that are added to the head. ``rule``: why the setting of the
+    model was chosen.
     """
     return "\n\n".join(_lines(block, response.scene) for block in blocks(response, more, rule))
 

@@ -44,10 +44,7 @@ def optional(rule: ValueRule[Any], meaning: str, default: Any = None) -> Any:
 class Record:
     """Immutable, hashable values that obey the rules of their keys, and those between them, `obeys`.
 
-    Raises
-    ------
-    FieldError
-        At construction, with all mistakes.
+    Raises FieldError at construction, with all mistakes.
     """
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]

@@ -46,17 +46,9 @@ def picture(response: Response, scene: Scene | None = None) -> "Figure":
     without contact the reactions, over the load parameter. Shape and section forces are those of the last load parameter at which a
     force acts.
 
-    Parameters
-    ----------
-    response : Response
-        The answer. A model that states no section forces has no diagrams.
-    scene : Scene, optional
-        The scene that was solved; needed for an answer that was read from a file.
-
-    Raises
-    ------
-    PictureError
-        If the scene is not known, or no load parameter was reached.
+    ``response``: the answer. A model that states no section forces has no diagrams. ``scene``: the scene that
+    was solved; needed for an answer that was read from a file. Raises PictureError if the scene is not known,
+    or no load parameter was reached.
     """
     scene = scene or response.definition
     if scene is None:

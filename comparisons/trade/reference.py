@@ -55,10 +55,7 @@ def best_reference(scene: Scene, measured: Measured) -> Reference:
 
     The rods and not the elastica: every model of the sweep stretches and shears.
 
-    Raises
-    ------
-    NoReferenceError
-        If the exact rods did not complete.
+    Raises NoReferenceError if the exact rods did not complete.
     """
     rod, exact = (measured[case].response for case in reference_cases(scene))
     if not rod.completed:

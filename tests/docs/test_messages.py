@@ -33,10 +33,7 @@ RULE = "must be {}"
 def sentences(source: str) -> set[str]:
     """Return the sentences that a module raises, hands down or keeps in a variable, ``{}`` for every value in them.
 
-    Raises
-    ------
-    ValueError
-        For a sentence that is made in a way that is not understood here.
+    Raises ValueError for a sentence that is made in a way that is not understood here.
     """
     said = []
     for node in ast.walk(ast.parse(source)):

@@ -128,10 +128,7 @@ def extremes(folder: Path, workers: Workers, progress: Progress, *, quick: bool 
 
     A run that was interrupted is taken up where it was; one that ended starts anew.
 
-    Raises
-    ------
-    OutputError, WorkersError
-        If a file cannot be written, or the workers are gone.
+    Raises OutputError, WorkersError if a file cannot be written, or the workers are gone.
     """
     cells, kept = matrix(quick=quick), folder / ".extremes"
     cases = sorted(dict.fromkeys(case for cell in cells for case in cell.cases), key=_cost, reverse=True)

@@ -51,10 +51,7 @@ class Answers:
 def answered(scene: Scene, model: str, options: Options | None = None) -> Response:
     """Return the response of a model to a scene.
 
-    Raises
-    ------
-    StoppedError
-        If it is not complete and checked.
+    Raises StoppedError if it is not complete and checked.
     """
     response = solve(scene, model, options)
     if not response.completed:

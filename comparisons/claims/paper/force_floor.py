@@ -69,32 +69,12 @@ def force_floor(
 ) -> float:
     """Unbalanced force that round-off leaves, median over random states.
 
-    Parameters
-    ----------
-    element : str
-        Element type, a key of `tsm.ELEMENTS` with a closed form, or `turned_frame.NAME`.
-    ratio : float
-        Distance of the contact point from the near end in parts of the element's length.
-    end : {"start", "end"}
-        Which end is near.
-    Psi : float
-        ``EI/(G A_e)`` in ``l0^2``: 9 in [P] 4.1, about 0.04 in 4.2 with 20 elements.
-    elements : int
-        Elements on the beam, ``L = elements l0``: coordinates are of the size of L, and the contact force is ``EI/L^2``.
-    samples : int
-        Number of random states: place, direction, rotations and strain.
-
-    Returns
-    -------
-    float
-        Largest entry of the unbalanced force of element and node in ``EI/L^2``, moments in ``EI/L``: the scale that
-        `tsm.Settings.tolerance` has.
-
-    Raises
-    ------
-    ValueError
-        If the element has no closed form, the ratio does not lie in [0, 1], or the platform has no floating-point type beyond double
-        precision.
+    ``ratio``: distance of the contact point from the near end in parts of the element's length. ``end``:
+    which end is near. ``Psi``: ``EI/(G A_e)`` in ``l0^2``: 9 in [P] 4.1, about 0.04 in 4.2 with 20 elements.
+    ``samples``: number of random states: place, direction, rotations and strain. Returns largest entry of the
+    unbalanced force of element and node in ``EI/L^2``, moments in ``EI/L``: the scale that
+    `tsm.Settings.tolerance` has. Raises ValueError if the element has no closed form, the ratio does not lie
+    in [0, 1], or the platform has no floating-point type beyond double precision.
     """
     kind = CLOSED_FORM.get(element)
     if (kind is None and element != turned_frame.NAME) or not 0 <= ratio <= 1:

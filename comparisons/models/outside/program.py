@@ -110,17 +110,10 @@ class Command(Source):
 
 @dataclass(frozen=True, kw_only=True)
 class Functions(Source):
-    """Functions in this process, as `comparisons.models.outside.adapters.exchange.serve` takes them.
+    """Functions in this process, as `comparisons.models.outside.adapters.exchange.serve` takes them."""
 
-    Parameters
-    ----------
-    refusal : callable
-        ``refusal(scene)``: why the program cannot state the scene, None if it can.
-    states : callable
-        ``states(scene, histories)``: adds the states to `histories` and yields the load parameter of each.
-    """
-
-    refusal: Refusal
+    refusal: Refusal  # ``refusal(scene)``: why the program cannot state the scene, None if it can
+    # ``states(scene, histories)``: adds the states to `histories` and yields the load parameter of each
     states: States
 
     def digest(self) -> str:
@@ -153,10 +146,8 @@ def _digest(file: Path) -> str:
 class Program(Model):
     """A program of others.
 
-    Parameters
-    ----------
-    source : Source
-        How it is asked: a `Command`, which runs in a child process, or `Functions`, which run in this one.
+    ``source``: how it is asked: a `Command`, which runs in a child process, or `Functions`, which run in this
+    one.
     """
 
     keys = PROGRAMS

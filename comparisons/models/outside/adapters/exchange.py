@@ -68,15 +68,10 @@ States = Callable[[Table, Histories], Iterator[float]]
 def serve(refusal: Refusal, states: States, *, continuum: bool = False) -> None:
     """Answer the scene on standard input.
 
-    Parameters
-    ----------
-    refusal : callable
-        ``refusal(scene)``: why the program cannot state the scene, None if it can.
-    states : callable
-        ``states(scene, histories)``: adds the states to `histories` and yields the load parameter of each. It raises
-        `StoppedError` where the program stops.
-    continuum : bool
-        Whether the program solves a two- or three-dimensional body.
+    ``refusal``: ``refusal(scene)``: why the program cannot state the scene, None if it can. ``states``:
+    ``states(scene, histories)``: adds the states to `histories` and yields the load parameter of each. It
+    raises `StoppedError` where the program stops. ``continuum``: whether the program solves a two- or three-
+    dimensional body.
     """
     with os.fdopen(os.dup(1), "w", encoding="utf-8") as answer:
         sys.stdout.flush()
