@@ -166,6 +166,7 @@ def test_the_cheapest_settings_their_ratio_and_the_front():
     assert front(made, "solid", "path", "force", "seconds")[-1]["own_error"] == 1e-4
 
 
+@pytest.mark.slow
 def test_orders_and_exponents_of_families_and_no_reference_where_the_rods_stop():
     counts = (2, 3, 5, 10, 20, 40, 80, 160)
     cases = [Case(scene=KS, model="tsm", options=Options(element="mixed", elements=n)) for n in counts]

@@ -88,7 +88,7 @@ def check_schema(schema: dict, data: dict) -> None:
         ("ks-cantilever", "--model elastica"),
         ("ks-cantilever", "--accuracy 1e-3"),
         ("double-beam", "--model tsm --elements 5"),
-        ("ks-friction", "--model tsm --elements 5 --certify none"),
+        pytest.param("ks-friction", "--model tsm --elements 5 --certify none", marks=pytest.mark.slow),
         pytest.param("ks-friction", "--model rod", marks=pytest.mark.slow),
         pytest.param("ks-friction", "--model solid", marks=pytest.mark.slow),
     ],

@@ -46,8 +46,8 @@ def test_a_contact_passes_a_node_where_neither_element_has_an_equilibrium() -> N
         assert answer.contacts[pair].force == pytest.approx(contact.force, rel=0.05)
 
 
-@pytest.mark.slow_at("2", "5", "20")
-@pytest.mark.parametrize("count", [1, 5, 2, 20], ids=str)
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [1, 5, 2, 20])
 def test_an_answer_does_not_hang_on_the_number_of_load_parameters(count: int) -> None:
     """A node passes beside a beam's end on a bent way, whose chord cuts the beam; a contact opens by the force of a beam that is 4e7 times softer than another."""
     for name in ("passes-by", "passes-by-under-loads", "soft-beside-stiff"):

@@ -15,7 +15,7 @@ from tests.fuzz.special import DRAW
 from tests.fuzz.world_judge import BEAMS, Judged, Row, findings, judged, wrong
 
 
-@pytest.mark.slow_at("friction", "more")
+@pytest.mark.slow_at("world", "friction", "more")
 @pytest.mark.parametrize(
     ("kind", "seeds", "least"),
     [

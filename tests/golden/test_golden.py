@@ -15,6 +15,8 @@ LATE = {
     *SLOW,
     "heavy-strip",
     "tip-load",
+    "hinged-truss",
+    "sleeve",
     "page-hysteresis-stages",
     *(f"compare-{scene}" for scene in COMPARED),
 }

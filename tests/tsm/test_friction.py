@@ -115,7 +115,7 @@ WORK = {  # structure, load parameters, largest part of the work that is lost
 }  # fmt: skip
 
 
-@pytest.mark.slow_at("face", "a thick rod that rolls", "jumps at nodes")
+@pytest.mark.slow_at("face", "a thick rod that rolls", "jumps at nodes", "a round pin on a face")
 @pytest.mark.parametrize("name", WORK)
 def test_work_is_stored_or_dissipated(name):
     structure, count, lost = WORK[name]

@@ -111,6 +111,7 @@ def test_exact_against_shooting(case, key):
     assert np.array(found) == pytest.approx(np.array(expected), abs=1e-9)
 
 
+@pytest.mark.slow
 def test_too_coarse_a_mesh_for_a_boundary_layer_is_told():
     """Tension along the clamp's normal, 40,000 EI/L^2: the layer at the clamp has the length L/200."""
     tight = {"loads": (((((0.0, 1e-3),)), 0.0, 1.0),), "tip": (0.0, 4e4, 0.0)}

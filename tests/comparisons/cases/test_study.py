@@ -81,6 +81,7 @@ class Terminal(io.StringIO):
         return True
 
 
+@pytest.mark.slow
 def test_progress_is_a_bar_on_a_terminal_and_lines_elsewhere(many, tmp_path, monkeypatch):
     """Two cases are left to do."""
     for stream in (Terminal(), io.StringIO()):

@@ -98,7 +98,9 @@ PAST = [(0.709, -0.01), (0.781, 0.236), (-0.6, 0.259)]
 JAM = [(0.681, -0.019), (0.291, 0.559), (0.735, 0.173)]
 
 
-@pytest.mark.slow_at("points4-0.277-None-elastica4", "points6-0.3-rod6-elastica6")
+@pytest.mark.slow_at(
+    "points3-1.086-rod3-elastica3", "points4-0.277-None-elastica4", "points6-0.3-rod6-elastica6"
+)
 @pytest.mark.parametrize(
     ("points", "friction", "rod", "elastica"),
     [

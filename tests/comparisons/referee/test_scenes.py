@@ -99,6 +99,7 @@ def test_both_branches_of_a_symmetric_bifurcation_are_right():
         assert found.certified, found.line()
 
 
+@pytest.mark.slow
 def test_the_other_side_of_a_column_is_another_branch_also_through_a_touch():
     """A pin touches an arm beside the column, before the only load parameter; the column stands on its other branch, of index 0 too."""
     scene = scene_of("column")

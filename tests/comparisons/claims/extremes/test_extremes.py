@@ -112,6 +112,7 @@ def test_every_check_holds_a_true_answer_and_finds_a_spoiled_one(kind):
         assert (found.error <= found.allowed) == held, (cell.row, cell.column, found)
 
 
+@pytest.mark.slow
 def test_what_is_allowed_falls_with_the_order_of_the_element_and_has_a_cap():
     """Lengths 1 : 1e6: `mixed`, whose force is an unknown, may be off by its order alone; inside, the moment is larger than at the clamp."""
     slender = half_circle(cantilever(slenderness=1e4))

@@ -33,7 +33,7 @@ FAILURES = tomllib.loads(Path(__file__).with_name("failures.toml").read_text(enc
 """By status, the last lines of a program that spoil its answer, and part of the message."""
 
 
-@pytest.mark.slow_at("OUT_OF_MEMORY", "TOO_MUCH_OUTPUT")
+@pytest.mark.slow_at("OUT_OF_MEMORY", "TOO_MUCH_OUTPUT", "TIMED_OUT")
 @pytest.mark.parametrize("status", FAILURES)
 def test_a_failure_has_its_name(status, program):
     for lines, said in FAILURES[status].items():
