@@ -193,12 +193,6 @@ def _sort(item: dict[str, Any]) -> str:
     return " or ".join(names.get(kind, kind) for kind in kinds)
 
 
-def quantities() -> str:
-    """Return a table with a row for every quantity that is compared."""
-    rows = ((f"`{name}`", row.unit, line(row.meaning)) for name, row in QUANTITIES.items())
-    return table(("quantity", "unit", "what is compared"), rows)
-
-
 PAGES: dict[str, Callable[[], str]] = {
     "scene-file.md": scene_file,
     "messages.md": messages,
@@ -206,7 +200,10 @@ PAGES: dict[str, Callable[[], str]] = {
     "statuses.md": statuses,
     "response.md": lambda: keys("response"),
     "resolved-scene.md": lambda: keys("resolved-scene"),
-    "quantities.md": quantities,
+    "quantities.md": lambda: table(
+        ("quantity", "unit", "what is compared"),
+        ((f"`{name}`", row.unit, line(row.meaning)) for name, row in QUANTITIES.items()),
+    ),
 }
 """What makes the text of each page."""
 

@@ -56,7 +56,7 @@ def test_every_place_has_a_new_quantity(scene, capsys):
             == status
         )
         assert f"  rise {error:13.3g}  " in capsys.readouterr().out
-    assert "| `rise` | length | rise of the tips over the length |" in generated.quantities()
+    assert "| `rise` | length | rise of the tips over the length |" in generated.PAGES["quantities.md"]()
     with pytest.raises(SystemExit):
         main(["compare", "--help"])
     assert "rise" in capsys.readouterr().out.rpartition("--max-error")[2].partition("--against")[0]
