@@ -86,9 +86,6 @@ class Claim:
     """A statement about the answer to a case."""
 
     name: str  # name of the model with its resolution
-    # statement, source: the case with its sizes and units, and the source of the reference values
-    statement: str
-    source: str
     quantities: tuple[Quantity, ...]  # what is compared, with the reference values
     allowance: Allowance  # allowed error of every quantity
     # returns a value for every quantity; raises `StoppedError` where there is no answer

@@ -161,8 +161,6 @@ def judged(problem: Problem) -> tuple[Case, list[Curve]]:
 def _claim(problem: Problem, trial: Trial, answers: Answers) -> Claim:
     return Claim(
         name=trial.label,
-        statement=problem.statement,
-        source=problem.source,
         quantities=problem.quantities,
         allowance=trial.allowance,
         measure=lambda: MEASURES[problem.measure](problem, answers),
