@@ -92,9 +92,18 @@ class Linear(NamedTuple):
     def rates(self, row: Real, velocity: Real) -> Real | None:
         """Rates of the unknowns (4,) at a velocity of the pin (2,), where a row (4,) has none; None where they are not determined."""
         matrix = np.vstack([self.slope.residual.T, row])
-        if not (np.all(np.isfinite(matrix)) and np.linalg.cond(matrix) < _SINGULAR):
-            return None
-        return np.asarray(np.linalg.solve(matrix, [*velocity, 0.0, 0.0]))
+        return _solved(matrix, np.array([*velocity, 0.0, 0.0]))
+
+
+@np.errstate(all="ignore")
+def _solved(matrix: Real, right: Real, largest: float = _SINGULAR) -> Real | None:
+    """Solution of equations that are scaled: beside the clamp they are as small as powers of the arc position; None where they are singular."""
+    columns = np.abs(matrix).max(axis=0)
+    rows = np.abs(matrix / columns).max(axis=1)
+    plain = matrix / columns / rows[:, None]
+    if not (np.all(np.isfinite(plain)) and np.linalg.cond(plain) < largest):
+        return None
+    return np.asarray(np.linalg.solve(plain, right / rows) / columns)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -164,9 +173,9 @@ class Cantilever:
                 np.append(linear.here.residual, value),
                 np.vstack([linear.slope.residual.T, row]),
             )
-            if not (z[3] > 0.0 and np.all(np.isfinite(matrix)) and np.linalg.det(matrix)):
+            change = _solved(matrix, -residual, np.inf) if z[3] > 0.0 else None
+            if change is None:
                 break
-            change = np.linalg.solve(matrix, -residual)
             size = float(np.max(np.abs(change) / (1.0 + np.abs(z))))
             if size < (_NOISE if np.max(np.abs(residual)) < _ROUND_OFF else _CONVERGED):
                 return self.linearise(z + change, pin), count

@@ -90,8 +90,9 @@ def test_pictures_and_motions_are_rendered(responses, tmp_path, monkeypatch, cap
     assert coloured(both) > 0.01
     height, width = imread(both).shape[:2]
     assert width > 1.5 * height
-    Path("mine.toml").write_text(to_toml(SCENE))
-    assert main(["view", "mine.toml", "--mesh", "16x1", "--out", "out"]) == 0
+    coarse = replace(SCENE, beams=tuple(replace(beam, mesh=(16, 1)) for beam in SCENE.beams))
+    Path("mine.toml").write_text(to_toml(coarse))
+    assert main(["view", "mine.toml", "--out", "out"]) == 0
     assert sorted(path.name for path in Path("out").iterdir()) == [".crossval", "view.gif", "view.png"]
     frames = []
     with Image.open("out/view.gif") as motion:
