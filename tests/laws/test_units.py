@@ -21,3 +21,14 @@ def test_a_contact_that_turns_a_beam_without_bending_it_slips_in_all_units() -> 
         found = answer(change.scene(scene("friction-12")), "mixed")
         assert found.completed
         assert [item.kind for item in found.events or () if item.kind != "pass-through"] == ["release"]
+
+
+@pytest.mark.parametrize("name", ["ks-cantilever", "special-37"])
+def test_powers_of_two_as_units_change_no_iteration(name: str) -> None:
+    """Every product is exact, so that a step or a fall which knows a unit is seen."""
+    own = scene(name)
+    counts = [
+        answer(one, "mixed").newton_iterations
+        for one in (own, Change(length=2.0**10, force=2.0**-12).scene(own))
+    ]
+    assert list(counts[0]) == list(counts[1])
