@@ -26,7 +26,7 @@ from comparisons.scene import Scene
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Change = tuple[Array, Array]
-"""Of the unknowns and the bubbles."""
+"""Changes of the unknowns and of the bubbles."""
 _INSIDE = 1.0 - 1e-9
 """Fraction of a part up to which points lie before its end."""
 

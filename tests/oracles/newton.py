@@ -23,6 +23,6 @@ def newton(residual: Callable[[Array], Array], z: Array, allowed: float = 1.0) -
         if not size <= allowed:
             return None
         z, allowed = z + change, size / 2.0
-        if size < 1e-10:
+        if size < 1e-10:  # the toggle's slender bars leave 1e-11 by round-off
             return z, matrix
     return None

@@ -53,7 +53,7 @@ def identity(_: Problem, answers: Answers) -> Sequence[float]:
 def greatest_load(problem: Problem, answers: Answers) -> Sequence[float]:
     """Read the greatest load and its place: of a pin that is raised, or of three-point bending, whose half is the same cantilever.
 
-    Of a pin with a corner both are read on the way there and on the way back.
+    A pin whose path has a corner turns back there: load and place are read on the way to the corner, then on the way back.
     """
     given, response, pin = problem.settings, answers.solved(draw=False), answers.scene.pins[-1]
     t, a, EI = response.load_parameter, pin.points[0][0], answers.scene.beams[0].EI
