@@ -11,8 +11,7 @@ from numpy.polynomial import Polynomial
 from tsm.beam import Beam, LineLoad
 from tsm.elements import ELEMENTS, EXACT, ElementType, Integrated
 from tsm.elements.properties import Array
-from tsm.elements.rod import Flexibility
-from tsm.elements.varying import Course
+from tsm.elements.rod import Course, Flexibility
 from tsm.stages import Increments
 
 

@@ -25,9 +25,7 @@ from tsm.state import State, Touch
 def with_touches(model: Model, state: State, touches: tuple[Touch | None, ...]) -> State:
     """State with other contacts."""
     after = replace(state, touches=touches)
-    for group in model.groups:
-        after = group.with_touches(state, after)
-    return after
+    return model.rods.with_touches(state, after) if model.rods else after
 
 
 def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...], past: float = 0.0) -> State:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from copy import copy
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tsm.elements.contact_law import crossing
 from tsm.elements.properties import Array
-from tsm.rods.layout import CUT, OWN
-from tsm.rods.records import CutElement
 from tsm.state import Touch
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ class Bordered(NamedTuple):
     # (equations + contact unknowns,), or 0
     condensed_residual: Array | float
     groups: tuple[Any, ...]  # tangents of the element groups
+    contacts: ContactBlock
 
 
 class Units:
@@ -64,9 +65,11 @@ class ContactBlock:
     """Unknowns and residuals of the contacts while the element groups enter them.
 
     ``right, below, corner``: border of the tangent, see `Bordered`.
-    ``residual, condensed_residual`` (contact unknowns,): residuals of the contacts, and their contribution
-        after the unknowns inside elements are eliminated.
+    ``residual, condensed_residual, by_load`` (contact unknowns,): residuals of the contacts, their contribution
+        after the unknowns inside elements are eliminated, and their derivative by loads along the elements.
     ``forces``: force on the beam of every closed pair.
+    ``blocks``: touched element of every closed pair, and derivatives over element (6), node (2) and the contact's
+        unknowns; of exact elements the rows of the contact, and the columns of element and node.
     ``pushed``: first degrees of freedom of the beam ends that touch, with the reaction (2,) on each.
     ``stiffest``: largest stiffness of a contact whose force follows from the displacements.
     ``crowded``: whether two nodes touch one element whose matrix knows a single contact.
@@ -77,90 +80,73 @@ class ContactBlock:
         self.right = np.zeros((model.equations + 1, model.border))
         self.below = np.zeros((model.border, model.equations + 1))
         self.corner = np.zeros((model.border, model.border))
-        self.residual = np.zeros(model.contact_unknowns)
-        self.condensed_residual = np.zeros(model.contact_unknowns)
+        self.residual, self.condensed_residual, self.by_load = np.zeros((3, model.contact_unknowns))
         self.forces: dict[int, tuple[float, float]] = {}
+        self.blocks: dict[int, tuple[int, Array]] = {}
         self.pushed: list[tuple[int, Array]] = []
-        self.coupled: list[tuple[PairModel, int, Array]] = []
         self.closed: dict[int, list[tuple[PairModel, Touch]]] = {}
         self.stiffest = 0.0
         self.crowded = False
 
+    def copy(self) -> ContactBlock:
+        """What the elements enter at a configuration, for their tangents to be added."""
+        other = copy(self)
+        other.right, other.below, other.corner = self.right.copy(), self.below.copy(), self.corner.copy()
+        other.blocks = self.blocks.copy()
+        return other
+
     def leave_open(self, pair: PairModel) -> None:
         """Decouple the unknowns of an open pair: 1 on the diagonal, zeros elsewhere."""
         if pair.slot >= 0:
-            slots = self._slots(pair)
+            slots = self.slots(pair)
             self.corner[slots, slots] = np.eye(pair.element_type.contact_unknowns)
 
-    def close(self, k: int, pair: PairModel, touch: Touch, gradient: Array, block: Array) -> None:
-        """Enter a closed pair."""
-        model, e = self.model, touch.element
-        self.forces[k] = (float(gradient[6]), float(gradient[7]))
+    def enter(self, k: int, pair: PairModel, force: tuple[float, float], rows: Any) -> None:
+        """Enter force and residuals of a closed pair."""
+        self.forces[k] = force
+        self.residual[pair.slots] += rows
         if pair.node >= 0:
-            self.pushed.append((3 * pair.node, gradient[6:8]))
+            self.pushed.append((3 * pair.node, np.array(force)))
+
+    def close(self, k: int, pair: PairModel, touch: Touch, gradient: Array, block: Array) -> None:
+        """Enter a closed pair on an element in closed form."""
+        model, e = self.model, touch.element
+        self.enter(k, pair, (float(gradient[6]), float(gradient[7])), gradient[8:])
+        self.blocks[k] = e, block
         others = self.closed.setdefault(e, [])
         if pair.slot < 0:
             self.stiffest = max(self.stiffest, float(np.abs(block[6:8, 6:8]).max()))
             self.crowded |= len(others) > 0
-            if pair.node >= 0:
-                self.coupled.append((pair, e, block))
         else:
-            slots, eq = self._slots(pair), model.element_equations[:, e]
+            slots, eq = self.slots(pair), model.element_equations[:, e]
             self.right[eq, slots], self.below[slots, eq] = block[:6, 8:], block[8:, :6]
             if pair.node >= 0:
                 eq = model.equation[3 * pair.node : 3 * pair.node + 2]
                 self.right[eq, slots], self.below[slots, eq] = block[6:8, 8:], block[8:, 6:8]
             self.corner[slots, slots] += block[8:, 8:]
-            self.residual[pair.slots] += gradient[8:]
             for other, earlier in others:
                 self._share(model.element[e], (other, earlier), (pair, touch))
         others.append((pair, touch))
 
-    def cut(self, contacts: dict[int, list[Any]], touches: tuple[Touch | None, ...]) -> None:
-        """Enter the residuals and forces of contacts that cut their elements."""
-        for k, rows in contacts.items():
-            pair, touch = self.model.pairs[k], touches[k]
-            assert touch is not None, "a cut is a closed contact"
-            self.residual[pair.slots] = rows
-            self.forces[k] = touch.force
-            if pair.node >= 0:
-                self.pushed.append((3 * pair.node, np.array(touch.force)))
-
-    def cut_element(self, part: CutElement, dofs: Array) -> None:
-        """Enter the tangent of the contacts that cut an element with given degrees of freedom."""
-        model, tangent = self.model, part.tangent
-        eq = model.equation[dofs]
-        own = [(model.pairs[k], slice(OWN + CUT * n, OWN + CUT * (n + 1))) for n, k in enumerate(part.pairs)]
-        for pair, rows in own:
-            slots = self._slots(pair)
-            self.right[eq, slots], self.below[slots, eq] = tangent[:OWN, rows], tangent[rows, :OWN]
-            self.condensed_residual[pair.slots] = tangent[rows, -1]
-            for other, columns in own:
-                self.corner[slots, self._slots(other)] = tangent[rows, columns]
-            if pair.node >= 0:
-                for i in range(2):
-                    equation = model.equation[3 * pair.node + i]
-                    self.right[equation, slots.start + i] += 1
-                    self.below[slots.start + i, equation] -= 1
-
     def _share(self, p: Any, first: tuple[PairModel, Touch], second: tuple[PairModel, Touch]) -> None:
         """Couple two contacts on one element: each force deflects the element at the other contact."""
-        (one, a), (two, b) = first, second
-        coupling = one.law.coupling
-        assert coupling is not None, "both have unknowns"
-        if coupling.friction is not None and (a.grip is not None or b.grip is not None):
-            rubs = (one.rub(a), two.rub(b))
-            gradient, block = coupling.friction.crossing(p, (a.xi, b.xi), a.force, b.force, rubs)
-        else:
-            gradient, block = coupling.crossing(p, (a.xi, b.xi), a.force, b.force)
-        rows = (one.slots, two.slots)
+        pairs, (a, b) = (first[0], second[0]), (first[1], second[1])
+        one, two = (_slip(pair, touch) for pair, touch in (first, second))
+        gradient, block = crossing(pairs[0].cross(p, a.xi, b.xi), p.l0, (a.force, b.force), (one, two))
         parts = (slice(0, 3), slice(3, 6))
-        for own, part in zip(rows, parts, strict=True):
-            self.residual[own] += gradient[part]
-        for pair_i, part_i in zip((one, two), parts, strict=True):
-            for pair_j, part_j in zip((one, two), parts, strict=True):
-                self.corner[self._slots(pair_i), self._slots(pair_j)] += block[part_i, part_j]
+        for pair_i, part_i in zip(pairs, parts, strict=True):
+            self.residual[pair_i.slots] += gradient[part_i]
+            for pair_j, part_j in zip(pairs, parts, strict=True):
+                self.corner[self.slots(pair_i), self.slots(pair_j)] += block[part_i, part_j]
 
-    def _slots(self, pair: PairModel) -> slice:
+    def slots(self, pair: PairModel) -> slice:
+        """Rows and columns of a pair's unknowns in the border."""
         start = pair.slot + self.model.border_dofs
         return slice(start, start + pair.element_type.contact_unknowns)
+
+
+def _slip(pair: PairModel, touch: Touch) -> tuple[float, float]:
+    """Sign of the last row, and the lean of the force, see `crossing`."""
+    if touch.grip is None:
+        return -1.0, 0.0
+    return float(touch.grip.held is None), pair.lean(touch.grip)

@@ -49,8 +49,8 @@ def initial_state(model: Model) -> State:
     count = len(model.pairs)
     none: tuple[Touch | None, ...] = (None,) * count
     start = State(load_parameter=0.0, q=q, touches=none, armed=(True,) * count)
-    for group in model.groups:
-        start = group.undeformed(start)
+    if model.rods:
+        start = model.rods.undeformed(start)
     touches: list[Touch | None] = []
     for pair in model.pairs:
         seen = pair.group.project(pair, start)

@@ -47,7 +47,7 @@ def power(newton: Newton, equilibrium: Equilibrium, drive: Drive) -> Array | Non
     the tangent is singular.
     """
     model, state, system = newton.model, equilibrium.state, equilibrium.system
-    by = rates(newton, state, system, drive)
+    by = rates(newton, system, drive)
     if by is None:
         return None
     spent = np.zeros(1 + len(model.pairs))
@@ -55,12 +55,9 @@ def power(newton: Newton, equilibrium: Equilibrium, drive: Drive) -> Array | Non
     spent[0] = system.nodal[model.fixed] @ q[model.fixed]
     q[model.free] = by.unknowns[: model.equations]
     spent[0] += model.loads.dot(state.load_parameter, q)
-    if model.along.loaded:
-        contacts = by.unknowns[model.equations :]
-        spent[0] += sum(
-            group.load_power(state, tangent, q, contacts)
-            for group, tangent in zip(model.groups, system.tangent.groups, strict=True)
-        )
+    if model.along.loaded and (rods := model.rods):
+        tangent = system.tangent.groups[rods.number]
+        spent[0] += rods.load_power(state, tangent, q, by.unknowns[model.equations :])
     for k, (fx, fy) in system.forces.items():
         if model.pairs[k].pin is not None:
             spent[0] += fx * drive.velocities[k][0] + fy * drive.velocities[k][1]

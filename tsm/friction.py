@@ -53,9 +53,9 @@ def cone(model: Model, state: State, system: Linearisation, k: int) -> float:
     return model.pairs[k].pair.friction * here.normal - abs(here.tangential)
 
 
-def rates(newton: Newton, state: State, system: Linearisation, drive: Drive) -> Rates | None:
+def rates(newton: Newton, system: Linearisation, drive: Drive) -> Rates | None:
     """Derivatives in the load parameter under a drive, None where the tangent is singular."""
-    solved = newton.assembler.solve(system, -newton.assembler.rate(state, drive))
+    solved = newton.assembler.solve(system, -newton.assembler.rate(system, drive))
     return None if solved is None else Rates(system, solved[:, 1], drive.stage)
 
 
@@ -73,7 +73,7 @@ def slip_rates(newton: Newton, equilibrium: Equilibrium, drive: Drive) -> dict[i
     """Rates of all pairs that slip, positive the way they slip; none where the tangent is singular."""
     state = equilibrium.state
     slipping = [(k, grip.slip) for k, grip in grips(state) if grip.slip]
-    by = rates(newton, state, equilibrium.system, drive) if slipping else None
+    by = rates(newton, equilibrium.system, drive) if slipping else None
     return {} if by is None else {k: slip * slip_rate(newton, state, by, k) for k, slip in slipping}
 
 
@@ -169,7 +169,7 @@ def _admissible(
 ) -> bool:
     """Whether the structure can go on with its contacts as they are stated; forces may leave their cones at the rates `leaving`."""
     model = newton.model
-    by = rates(newton, state, newton.assembler.linearise(state), drive)
+    by = rates(newton, newton.assembler.linearise(state), drive)
     if by is None:
         return not here
     for k, grip in grips(state):
@@ -201,8 +201,8 @@ def _grows(model: Model, k: int, here: Traction, by: Rates, grip: Grip) -> bool:
 def _row_rate(newton: Newton, slipping: State, by: Rates, k: int) -> float:
     """Derivative of ``F_t - sigma mu F_n``, times a positive number, along rates that do not hold it at zero."""
     model, slot = newton.model, newton.model.pairs[k].slot + 2
-    tangent, aside = newton.assembler.linearise(slipping).tangent, model.border_dofs
-    held = newton.assembler.rate(slipping)[model.equations + slot]
+    system, aside = newton.assembler.linearise(slipping), model.border_dofs
+    held, tangent = newton.assembler.rate(system)[model.equations + slot], system.tangent
     along = tangent.below[aside + slot, : model.equations] @ by.unknowns[: model.equations]
     row = held + along + tangent.corner[aside + slot, aside:] @ by.unknowns[model.equations :]
-    return float(row) * model.pairs[k].group.slip_sign
+    return float(row)

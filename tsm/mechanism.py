@@ -39,7 +39,7 @@ def mechanism(newton: Newton, equilibrium: Equilibrium, drive: Drive) -> bool:
         return False
     if _free(assembler, state, equilibrium.system):
         return True
-    by = rates(newton, state, equilibrium.system, drive) if idle else None
+    by = rates(newton, equilibrium.system, drive) if idle else None
     if by is None:
         return False
     for k, pair, touch in idle:

@@ -20,7 +20,6 @@ from tsm.elements.properties import Array, Properties
 from tsm.groups import GROUPS, ElementGroup, ExactGroup
 from tsm.ordering import block_order
 from tsm.pairs import BeamModel, PairModel
-from tsm.rods.assembly import Rods
 from tsm.scales import Sizes, joined_extents, sizes_of, units_of
 from tsm.stages import Increments
 from tsm.structure import Beam, Structure
@@ -66,8 +65,8 @@ class Model:
         self.structure, self.stages = structure, structure.stages
         self.along = Along(structure.beams, structure.line_loads, self.stages)
         self._place_beams(structure.beams)
-        self._sort_elements()
         self.gauss_nodes = gauss_nodes([(beam.beam, beam.kind) for beam in self.beams.values()])
+        self._sort_elements()
         self.supports, self.prescribed = held_components(self, structure.supports)
         self.fixed = np.array(sorted(self.prescribed), dtype=int)
         changes = motions(self, structure.supports)
@@ -235,10 +234,10 @@ class Model:
         """Group of a beam's elements."""
         return next(group for group in self.groups if beam.first in group.elements)
 
-    @property
-    def rods(self) -> Rods | None:
+    @cached_property
+    def rods(self) -> ExactGroup | None:
         """The exact elements, if any."""
-        return next((group.rods for group in self.groups if isinstance(group, ExactGroup)), None)
+        return next((group for group in self.groups if isinstance(group, ExactGroup)), None)
 
     def end_node(self, name: str) -> int:
         """Global number of the node at ``"beam.start"`` or ``"beam.end"``; behind a hinge, of the joint."""

@@ -131,8 +131,8 @@ class Newton:
     def potential(self, state: State) -> float:
         """Strain energy less the work of the dead loads."""
         work = self.model.loads.dot(state.load_parameter, state.q)
-        if self.model.along.loaded:
-            work += sum(group.load_work(state) for group in self.model.groups)
+        if self.model.along.loaded and self.model.rods:
+            work += self.model.rods.load_work(state)
         return self.assembler.energy(state) - work
 
     def balanced(self, equilibrium: Equilibrium) -> bool:
@@ -200,7 +200,7 @@ class Newton:
             if more is not None:
                 state, last = more, None
                 continue
-            step = self._step(state, system, across) if status is None else None
+            step = self._step(system, across) if status is None else None
             if step is None:
                 return Equilibrium(
                     state=state,
@@ -215,12 +215,12 @@ class Newton:
             last = taken if self.assembler.internal else None
         raise AssertionError("the last iteration returns")
 
-    def _step(self, state: State, system: Linearisation, across: Array | None) -> tuple[Array, float] | None:
+    def _step(self, system: Linearisation, across: Array | None) -> tuple[Array, float] | None:
         """Newton step of the unknowns and of the load parameter, None if the tangent is singular."""
         if across is None:
             solved = self.assembler.solve(system)
             return None if solved is None else (solved[:, 0], 0.0)
-        solved = self.assembler.solve(system, -self.assembler.rate(state))
+        solved = self.assembler.solve(system, -self.assembler.rate(system))
         if solved is None:
             return None
         back, rate = solved.T
@@ -342,13 +342,7 @@ class Newton:
         pair = self.model.pairs[k]
         if pair.slot < 0:
             return chord_owner(self.model, pair, state, touch)
-        dFx, dFy, ds, *turned = dz[pair.slots]
-        return replace(
-            touch,
-            xi=touch.xi + ds / self.model.element[touch.element].l0,
-            force=(touch.force[0] + dFx, touch.force[1] + dFy),
-            angle=touch.angle + sum(turned),
-        )
+        return pair.moved(touch, dz[pair.slots])
 
 
 def _alternates(owners: list[tuple[int, ...]]) -> bool:

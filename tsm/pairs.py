@@ -1,15 +1,31 @@
-"""Beams and contact pairs in the numbering of a model."""
+"""Beams and contact pairs in the numbering of a model, and the equations of a contact.
+
+Friction acts on a face at the distance ``lever`` from the axis, and a round pin of radius ``roll`` rolls on it; both are positive on the right.
+With the mean tangent T, its direction t at the angle phi, the section's angle theta, the shear angle ``psi = phi - theta`` and the mean turn
+theta'::
+
+    F_t = F . t,   F_n = side F . n                     force on the beam along T and across it
+    C = lever F_t                                       couple on the axis
+    v = A s' + lever psi' + roll phi'                   slip rate, A = |T| + lever theta' the length of the face per arc position
+    slip:   F_t = sigma mu F_n
+    stick:  (A + A*)/2 (s - s*) + lever (psi - psi*) + roll (phi - phi*) = 0
+
+What friction dissipates is ``F_t v``: the power of the node less that of the strain energy. The starred values are those in the held
+place. On the axis, under a sharp pin, the row is ``s = s*``. What the mean of A leaves out where a contact rolls, `tsm.rolling` takes into the
+held place.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 from tsm.elements import ClosedForm, ContactLaw, ElementType
-from tsm.elements.contact_law import Rub
-from tsm.elements.properties import Array
+from tsm.elements.contact_law import Friction, Here, Vector
+from tsm.elements.properties import Array, Properties, unwind
 from tsm.projection import arc_position
-from tsm.state import Grip, Touch
+from tsm.state import Grip, Place, Touch, Traction
 from tsm.structure import Beam, ContactPair, Pin
 
 if TYPE_CHECKING:
@@ -59,6 +75,17 @@ class PairModel:
         assert isinstance(self.element_type, ClosedForm), "an exact element is cut instead"
         return self.element_type.contact
 
+    def cross(self, p: Properties, xi: float, eta: float) -> tuple[Any, ...]:
+        """Deflection of an element at xi by a unit force at eta, see `ContactLaw.cross`."""
+        assert self.law.cross is not None, "the law has unknowns"
+        return self.law.cross(p, xi, eta)
+
+    @property
+    def friction(self) -> Friction:
+        """Friction of the contact law."""
+        assert self.law.friction is not None, "the law has friction, see `Model`"
+        return self.law.friction
+
     @property
     def reach(self) -> float:
         """Offset of the contact surface from the axis, at the start where it varies, positive to the right of the beam's direction."""
@@ -98,16 +125,60 @@ class PairModel:
         """Distance of a contact along the undeformed axis from the beam's start."""
         return arc_position(self.target, touch.element, touch.xi)
 
-    def rub(self, touch: Touch) -> Rub:
-        """State of the friction for the contact law, the travel counted from the element's start."""
-        grip, lean = touch.grip, self.lean(touch.grip) if touch.grip else 0.0
-        start = self.target.arcs[touch.element - self.target.first]
-        beam, radius = self.target.beam, self.pair.radius
-        rub = Rub(lean, None, beam.section.EI / beam.length**3, self.pair.offset - radius, radius)
-        if grip is None or grip.held is None:
-            return rub
-        held = grip.held
-        return rub._replace(held=held.arc - start, path=held.stretch, shear=held.shear, slope=held.direction)
+    def moved(self, touch: Touch, change: Sequence[Any]) -> Touch:
+        """Touch after a change of its unknowns: force (2), arc position and, of exact elements, angle."""
+        dFx, dFy, ds, *turned = change
+        return replace(
+            touch,
+            xi=touch.xi + ds / self.target.lengths[touch.element - self.target.first],
+            force=(touch.force[0] + dFx, touch.force[1] + dFy),
+            angle=touch.angle + sum(turned),
+        )
+
+    def face(self, here: Here) -> tuple[Vector, Vector]:
+        """Normal of the contact surface, to the right, and its direction times ``|T|``.
+
+        The surface is the envelope of circles with the offset o as radius about the points of the axis. With the direction t of T, its right
+        normal n, ``S = o'/|T|`` and ``C = sqrt(1 - S^2)``, its normal is ``C n - S t`` and its direction ``C t + S n``.
+        """
+        Tx, Ty = here.tangent
+        size = (Tx * Tx + Ty * Ty) ** 0.5
+        S = self.steep / size
+        C = (1 - S * S) ** 0.5
+        return ((C * Ty - S * Tx) / size, (-C * Tx - S * Ty) / size), (C * Tx + S * Ty, C * Ty - S * Tx)
+
+    def rows(self, grip: Grip | None, force: Any, here: Here, unit: float) -> tuple[Any, Any, Any]:
+        """Vector from the axis to the surface, and the last row of a contact: the force is normal to the surface, or leans in slip, or sticks.
+
+        With the lean c, which is 0 without friction, ``F . (T - c n)``; in stick `unit` times `slid`.
+        """
+        (Fx, Fy), (x, y), (Tx, Ty) = force, (0.0, 0.0), here.tangent
+        if self.pair.offset:
+            reach, ((nx, ny), (Tx, Ty)) = self.reach_at(here.arc), self.face(here)
+            x, y = reach * nx, reach * ny
+        if grip is not None and grip.held is not None:
+            return x, y, unit * self.slid(self.place(here), grip.held)
+        lean = self.lean(grip) if grip else 0.0
+        return x, y, (Fx - lean * Fy) * Tx + (Fy + lean * Fx) * Ty
+
+    def place(self, here: Here) -> Place:
+        """Where a contact with friction lies."""
+        Tx, Ty = here.tangent
+        size = (Tx * Tx + Ty * Ty) ** 0.5
+        return Place(here.arc, here.shear, here.direction, size + self.lever * here.turn)
+
+    def slid(self, here: Place, held: Place) -> Any:
+        """Path of the face along the node since it was held, by the trapezium: ``(A + A*)/2 (s - s*) + lever (psi - psi*) + roll (phi - phi*)``."""
+        rolled = self.lever * (here.shear - held.shear) + self.roll * unwind(here.direction - held.direction)
+        return (here.stretch + held.stretch) / 2 * (here.arc - held.arc) + rolled
+
+    def traction(self, force: Any, here: Here) -> Traction:
+        """Force along the mean tangent and across it, and where the contact lies."""
+        (Fx, Fy), (Tx, Ty) = force, here.tangent
+        size, place = (Tx * Tx + Ty * Ty) ** 0.5, Place(*(float(value) for value in self.place(here)))
+        return Traction(
+            float((Fx * Tx + Fy * Ty) / size), self.side * float((Fy * Tx - Fx * Ty) / size), place
+        )
 
     @property
     def slots(self) -> slice:

@@ -59,7 +59,7 @@ class PathTangent:
         assembler, model = self.newton.assembler, self.newton.model
         drive = assembler.drive(begin, end)
         if drive not in self._known:
-            solved = assembler.solve(self.system, -assembler.rate(self.state, drive))
+            solved = assembler.solve(self.system, -assembler.rate(self.system, drive))
             if solved is None or not np.isfinite(solved[:, 1]).all():
                 self._known[drive] = None
                 return None

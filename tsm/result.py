@@ -16,9 +16,9 @@ from tsm.deformation import Deformation, deformation
 from tsm.elements.properties import Array
 from tsm.events import Event, normal_force
 from tsm.friction import grips, traction
+from tsm.groups.shape import Stations
 from tsm.model import Model
 from tsm.newton import Equilibrium
-from tsm.rods.shape import Stations
 from tsm.state import State
 from tsm.status import Status
 from tsm.step import Step
@@ -174,14 +174,10 @@ class Result:
     @cached_property
     def integration_error(self) -> float:
         """Largest estimated error of the integration inside exact elements, see `Settings.integration_tolerance`; 0 without such elements."""
-        return max(
-            (
-                group.integration_error(forces)
-                for equilibrium in self.equilibria
-                for group, forces in zip(self.model.groups, equilibrium.system.groups, strict=True)
-            ),
-            default=0.0,
-        )
+        if (rods := self.model.rods) is None:
+            return 0.0
+        systems = (equilibrium.system.groups[rods.number] for equilibrium in self.equilibria)
+        return max((rods.integration_error(forces) for forces in systems), default=0.0)
 
     def shape(self, beam: str, k: int) -> Array:
         """Deformed nodes of a beam at accepted load parameter k: x, y, rotation; shape (elements + 1, 3)."""

@@ -18,10 +18,10 @@ import numpy as np
 
 from tsm.elements.properties import Array
 from tsm.groups import ExactGroup
+from tsm.groups.exact import RodBalance
+from tsm.groups.layout import OWN
+from tsm.groups.variation import Bordered, modes_at_least, variation
 from tsm.inertia import Symmetric, negatives
-from tsm.rods.layout import OWN
-from tsm.rods.records import RodBalance
-from tsm.rods.variation import Bordered, modes_at_least, variation
 from tsm.state import State
 from tsm.system import Assembler, Linearisation
 
@@ -139,7 +139,7 @@ def mode(assembler: Assembler, state: State, system: Linearisation) -> Mode | No
         if not (np.isfinite(x).all() and np.isfinite(left).all()):
             return None
         x, left = x / np.linalg.norm(x), left / np.linalg.norm(left)
-    rate = assembler.rate(state) * rows
+    rate = assembler.rate(system) * rows
     driven = abs(float(left @ rate)) / (float(np.linalg.norm(rate)) or 1.0)
     largest = x[np.abs(x).argmax()]
     return Mode(x=x / largest * columns, softness=abs(float(soft)), driven=driven)
@@ -210,7 +210,7 @@ def _with_variation(
     model, (group, balance), (units, multipliers) = assembler.model, exact, symmetric
     mixed = len(model.groups) > 1
     known = system.tangent.groups[group.number] if mixed or "tangent" in system.__dict__ else None
-    second = variation(group.rods, state, balance, known.transfer if known else None)
+    second = variation(group, state, balance, known.transfer if known else None)
     border, aside, before = model.border, model.border_dofs, 36 * len(model.closed)
     moments = [part.moments for part in second.bordered]
     angles = [part.slots.count(-1) - part.moments for part in second.bordered]

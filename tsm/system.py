@@ -47,6 +47,7 @@ class Linearisation:
     noise: float  # round-off of the residual by contact stiffness, ``4 eps k_c L``
     crowded: bool  # whether two nodes touch one element of the paper's, which knows one contact only
     groups: tuple[GroupForces, ...]  # forces of the element groups
+    state: State  # the configuration
     assemble: Callable[[], Bordered] = field(repr=False)
 
     @cached_property
@@ -116,13 +117,14 @@ class Assembler:
             noise=4 * _EPS * contacts.stiffest * model.length,
             crowded=contacts.crowded,
             groups=groups,
+            state=state,
             assemble=partial(self._tangent, state, groups, contacts, drag),
         )
 
     def _tangent(
-        self, state: State, groups: tuple[GroupForces, ...], contacts: ContactBlock, drag: Drag | None
+        self, state: State, groups: tuple[GroupForces, ...], entered: ContactBlock, drag: Drag | None
     ) -> Bordered:
-        model = self.model
+        model, contacts = self.model, entered.copy()
         tangents = tuple(
             group.tangent(state, forces, contacts) for group, forces in zip(model.groups, groups, strict=True)
         )
@@ -147,6 +149,7 @@ class Assembler:
             corner=contacts.corner,
             condensed_residual=condensed,
             groups=tangents,
+            contacts=contacts,
         )
 
     def _gather(self, values: list[Array]) -> Array:
@@ -164,22 +167,30 @@ class Assembler:
         velocities = tuple(pair.pin.velocity(begin, end) if pair.pin else still for pair in self.model.pairs)
         return Drive(velocities, stage_of(max(begin, end), self.model.stages))
 
-    def rate(self, state: State, drive: Drive | None = None) -> Array:
+    def rate(self, system: Linearisation, drive: Drive | None = None) -> Array:
         """Derivative of the residual in the load parameter, from loads, prescribed displacements and pin velocities (by default at the state)."""
-        model = self.model
-        drive = self.drive(state.load_parameter) if drive is None else drive
-        nodal, contacts = -model.loads.rows[drive.stage], np.zeros(model.contact_unknowns)
-        for pair, touch, velocity in zip(model.pairs, state.touches, drive.velocities, strict=True):
-            if touch is not None and pair.pin is not None:
-                forces, rows = pair.group.pin_rate(pair, touch, state, velocity)
-                nodal[model.dofs[:, touch.element]] += forces
-                if pair.slot >= 0:
-                    contacts[pair.slots] = rows
+        model, tangent = self.model, system.tangent
+        drive = self.drive(system.state.load_parameter) if drive is None else drive
+        q, contacts = self.prescribed_rate(drive.stage), tangent.contacts.by_load.copy()
+        nodal = -model.loads.rows[drive.stage]
+        for k, (element, block) in tangent.contacts.blocks.items():
+            pair, dofs = model.pairs[k], model.dofs[:, element]
+            node = slice(3 * pair.node, 3 * pair.node + 2)
+            moved = block[:, 6:8] @ (drive.velocities[k] if pair.pin else q[node])
+            moved[6:] += block[6:, :6] @ q[dofs]
+            nodal[dofs] += moved[:6]
+            if pair.node >= 0:
+                nodal[node] += moved[6:8]
+            contacts[pair.slots] += moved[8:]
         if model.along.loaded:
-            nodal = nodal + self._gather([group.load_rate(state, contacts) for group in model.groups])
+            nodal = nodal + self._gather([part.by_load for part in tangent.groups])
         if model.moves:
-            q = self.prescribed_rate(drive.stage)
-            nodal = nodal + self._gather([group.rate(state, q, contacts) for group in model.groups])
+            parts = zip(model.groups, tangent.groups, strict=True)
+            rates = [
+                np.einsum("ijn,jn->in", part.tangent.reshape(-1, *group.dofs.shape), q[group.dofs])
+                for group, part in parts
+            ]
+            nodal = nodal + self._gather(rates)
             if model.springs is not None:
                 nodal = nodal + model.springs.forces(q)
         return np.concatenate([nodal[model.free], contacts])
@@ -200,7 +211,10 @@ class Assembler:
         model, right, below, corner = self.model, contacts.right, contacts.below, contacts.corner
         right += np.bincount(self.scatter_right, values, self.size + 1)[:-1].reshape(right.shape)
         below += np.bincount(self.scatter_below, values, self.size + 1)[:-1].reshape(below.shape)
-        for pair, e, block in contacts.coupled:
+        for k, (e, block) in contacts.blocks.items():
+            pair = model.pairs[k]
+            if pair.slot >= 0 or pair.node < 0:
+                continue
             eq, node_eq = model.element_equations[:, e], model.equation[3 * pair.node : 3 * pair.node + 2]
             free = node_eq < model.equations
             unknown = (node_eq - model.banded)[free]
@@ -212,20 +226,7 @@ class Assembler:
         corner[model.border_dofs :, : model.border_dofs] = below[model.border_dofs :, bordered]
 
     def solve(self, system: Linearisation, *more: Array) -> Array | None:
-        """Solve the linear system.
-
-        Parameters
-        ----------
-        system : Linearisation
-            Residual and tangent.
-        more : ndarray, shape (equations + contact unknowns,)
-            Right-hand sides besides the residual's negative.
-
-        Returns
-        -------
-        ndarray, shape (equations + contact unknowns, 1 + right-hand sides) or None
-            The first column is the Newton step; None if the tangent is singular.
-        """
+        """Newton step (equations + contact unknowns,), then the solutions for further right-hand sides, as columns; None if the tangent is singular."""
         model = self.model
         banded, border, count = model.banded, model.border, 1 + len(more)
         rhs = np.empty((banded, count + border), order="F")

@@ -66,5 +66,5 @@ def test_the_tangent_is_the_derivative(name):
             ]
             apart = [newton.assembler.linearise(end).residual for end in ends]
             measured = (apart[0] - apart[1]) / 2e-5 / model.row_units
-            expected = matrix @ way + dt * newton.assembler.rate(state) / model.row_units
+            expected = matrix @ way + dt * newton.assembler.rate(system) / model.row_units
             assert measured == pytest.approx(expected, rel=1e-6, abs=1e-6 * np.abs(expected).max())

@@ -1,6 +1,6 @@
 """Beam elements and their contact, in one registry."""
 
-from tsm.elements.contact_law import ContactLaw, Coupling
+from tsm.elements.contact_law import ContactLaw
 from tsm.elements.element_type import ClosedForm, ElementType, Integrated
 from tsm.elements.kinds.exact import EXACT
 from tsm.elements.kinds.mixed import MIXED, MIXED_NO_BOW
@@ -19,7 +19,6 @@ __all__ = [
     "TIMOSHENKO",
     "ClosedForm",
     "ContactLaw",
-    "Coupling",
     "ElementType",
     "Integrated",
 ]

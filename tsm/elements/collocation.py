@@ -20,7 +20,9 @@ class Collocation(NamedTuple):
     # ``f @ ends``: integral over the interval, and its integral: ``int f`` and ``int (1 - x) f``; shape
     # (p, 2)
     ends: Array
-    twice: Array  # ``once @ once``, less half of what makes it vanish at the far end: see `rod`; shape (p, p)
+    # half, twice: ``once`` and ``once @ once``, less half of what they are at the far end: see `rod`; shape (p, p)
+    half: Array
+    twice: Array
     # ``legendre @ f``: coefficients of the polynomial over the Legendre polynomials; shape (p, p)
     legendre: Array
     # stations, barycentric: 0 and the Gauss nodes, with their barycentric weights
@@ -61,6 +63,7 @@ def collocation(order: int) -> Collocation:
         w=w,
         once=once,
         ends=np.stack([w, far], axis=1),
+        half=once - np.outer(c, w) / 2,
         twice=once @ once - np.outer(c, far) / 2,
         legendre=to_legendre,
         stations=stations,

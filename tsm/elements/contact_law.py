@@ -6,36 +6,23 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from tsm.elements.properties import Array, Properties
 
-UPPER = [(a, b) for a in range(7) for b in range(a, 7)]
-"""The 28 entries of the upper triangle of a matrix over ``dx, dy, theta_i, theta_j, F_x, F_y, xi``, row by row."""
+Vector = tuple[Any, Any]
 
 
-class Surface(NamedTuple):
-    """Where a contact meets a beam."""
+class Here(NamedTuple):
+    """What a contact sees of its beam. The numbers may be complex, or arrays of them: rows are differentiated by complex steps."""
 
-    side: float  # +1 where the node comes from the right, -1 from the left
-    offset: float  # distance of the contacting node from the axis
-
-
-class Rub(NamedTuple):
-    """State of a contact with friction."""
-
-    lean: float  # ``sigma mu side`` in slip, with the sign sigma of the slip rate; 0 in stick
-    held: float | None  # arc position at which the stick began, from the element's start; None in slip
-    unit: float  # stiffness ``EI/L^2/L`` that makes the row of a stick a force
-    face: float = 0.0  # distance of the face, on which friction acts, from the axis; ``offset - radius``
-    radius: float = 0.0  # radius of a round pin, which does not turn
-    # path, shear, slope: where the contact is held: length of the face per arc position, shear angle and
-    # slope angle, see `Friction.hold`. Without face and radius they do not matter
-    path: float = 1.0
-    shear: float = 0.0
-    slope: float = 0.0
-    # change of the mean tangent by other contacts on the element, the sum of `Friction.tilt` times their
-    # forces. Only `Friction.split` and `Friction.slip` take it; `Friction.crossing` has its part in the
-    # rows
-    tilt: tuple[Any, Any] = (0.0, 0.0)
+    arc: Any  # arc position on the beam
+    tangent: Vector  # mean tangent T, per undeformed length
+    shear: (
+        Any  # psi, the angle from the section's normal to T; this and what follows matter with friction only
+    )
+    direction: Any  # phi, the angle of T
+    turn: Any  # mean theta', per undeformed length
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,46 +42,59 @@ class ContactLaw:
     # ``(p, x, lever, xi, force, side, offset) -> float``: contribution of the contact to the strain energy
     # in equilibrium
     energy: Callable[[Properties, Any, Any, Any, Any, float, float], float]
-    # further functions of a law whose force and arc position are unknowns; None if the force follows from
-    # the displacements
-    coupling: Coupling | None = None
+    # ``(p, xi, eta) -> (6,)``: deflection of the element at xi by a unit force at eta, and its derivatives as `crossing` takes
+    # them, of a law whose force and arc position are unknowns; None if the force follows from the displacements
+    cross: Callable[[Properties, Any, Any], tuple[Any, ...]] | None = None
+    friction: Friction | None = None  # the same law with friction; None if the law has none
 
     @property
     def unknowns(self) -> int:
         """Unknowns of a closed contact: force (2) and arc position, or none."""
-        return 3 if self.coupling else 0
-
-
-@dataclass(frozen=True, kw_only=True)
-class Coupling:
-    """A contact law with unknowns: two contacts on one element, and friction."""
-
-    # ``(p, xi, eta) -> number``: deflection of the element at xi by a unit force at eta
-    dent: Callable[[Properties, Any, Any], Any]
-    # ``(p, (xi, eta), force, force) -> (gradient, tangent)``: coupling of two contacts on one element, over
-    # force (2) and arc position of the first contact, then of the second
-    crossing: Callable[[Properties, tuple[Any, Any], Any, Any], tuple[Array, Array]]
-    friction: Friction | None = None  # the law with friction; None if the law has none
+        return 3 if self.cross else 0
 
 
 @dataclass(frozen=True, kw_only=True)
 class Friction:
     """Coulomb friction in a contact law whose force and arc position are unknowns."""
 
-    # ``(p, x, lever, xi, force, surface, rub) -> (residual, tangent)`` as `ContactLaw.response`, without a
-    # symmetric tangent
-    response: Callable[[Properties, Any, Any, Any, Any, Surface, Rub], tuple[Array, Array]]
-    # ``(p, x, xi, force, surface, rub) -> (F_t, F_n, s)``: forces along the beam and across it, and the arc
-    # position from the element's start
-    split: Callable[[Properties, Any, Any, Any, Surface, Rub], tuple[Any, Any, Any]]
-    # ``(p, x, xi, force, surface, rub) -> form (11,)``: slip rate as a linear form, ``F_t`` times which is
-    # the dissipated power
-    slip: Callable[[Properties, Any, Any, Any, Surface, Rub], Array]
-    # ``(p, x, xi, force, surface, rub) -> Rub``: state of a stick that begins here
-    hold: Callable[[Properties, Any, Any, Any, Surface, Rub], Rub]
-    # as `ContactLaw.energy`, of the arguments of `response`
-    energy: Callable[[Properties, Any, Any, Any, Any, Surface, Rub], float]
-    # ``(p, (xi, eta), force, force, (rub, rub)) -> (residual, tangent)`` as `Coupling.crossing`
-    crossing: Callable[[Properties, tuple[Any, Any], Any, Any, tuple[Rub, Rub]], tuple[Array, Array]]
-    # ``(p, xi, eta) -> number``: change of the mean tangent at xi by a unit force at eta
-    tilt: Callable[[Properties, Any, Any], Any]
+    # ``(p, x, xi, force, lever, start) -> loaded``: the element, whose end i has the arc position `start`, under a force on its
+    # face; `loaded` has ``here``, ``force`` and ``energy``, all with complex steps
+    load: Callable[[Properties, Any, Any, Vector, float, float], Any]
+    # ``(loaded, lever, rows, l0) -> (residual, tangent)`` as `ContactLaw.response`, without a symmetric tangent
+    response: Callable[[Any, Vector, tuple[Any, Any, Any], float], tuple[Array, Array]]
+    # ``(value, l0) -> (7,)``: derivatives of what has complex steps by chord (2), end rotations (2), force (2) and arc position
+    slip: Callable[[Any, float], Array]
+
+
+def crossing(
+    cross: tuple[Any, ...],
+    l0: float,
+    forces: tuple[Any, Any],
+    slips: tuple[tuple[float, float], tuple[float, float]],
+) -> tuple[Array, Array]:
+    """Coupling of two contacts on one element, over force (2) and arc position of the first, then of the second: each dents it at the other.
+
+    ``cross``: deflection at the first by a unit force at the second, derivatives in both positions, and the second ones. ``slips``: sign
+    of the third row and lean c of the force. Without friction (-1, 0), it is the gradient and Hessian of ``-C F_1 . F_2``. In slip (1, c)
+    the row has the slope of the other contact's dent across the leaning force ``F' = (F_x - c F_y, F_y + c F_x)``; in stick (0, 0) it
+    has none. The couples on a face do not dent the element at the other contact here, and the force along the beam dents it as if it were across.
+    """
+    C, dx, de, dxx, dxe, dee = cross
+    slope, bend = (dx / l0, de / l0), ((dxx, dxe), (dxe, dee))
+    residual, tangent = np.zeros(6), np.zeros((6, 6))
+    for own, other in ((0, 1), (1, 0)):
+        row, column, (way, c) = 3 * own, 3 * other, slips[own]
+        (Fx, Fy), (Gx, Gy) = forces[own], forces[other]
+        dot = (Fx - c * Fy) * Gx + (Fy + c * Fx) * Gy
+        residual[row : row + 3] = -C * Gx, -C * Gy, way * slope[own] * dot
+        tangent[[row, row + 1], [column, column + 1]] = -C
+        for k in range(2):
+            tangent[row : row + 3, 3 * k + 2] = (
+                -slope[k] * Gx,
+                -slope[k] * Gy,
+                way * bend[own][k] * dot / l0**2,
+            )
+        steep = way * slope[own]
+        tangent[row + 2, row : row + 2] = steep * (Gx + c * Gy), steep * (Gy - c * Gx)
+        tangent[row + 2, column : column + 2] = steep * (Fx - c * Fy), steep * (Fy + c * Fx)
+    return residual, tangent

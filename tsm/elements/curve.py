@@ -2,20 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 from tsm.elements.properties import Properties, chord_rotation, tangent_of, unwind
-
-
-class Jet(NamedTuple):
-    """A value with first and second derivatives in ``(dx, dy, theta_i, theta_j, xi)``.
-
-    `gradient` has those five entries, `hessian` the fifteen of the upper triangle, row by row.
-    """
-
-    value: Any
-    gradient: tuple[Any, ...]
-    hessian: tuple[Any, ...]
 
 
 class Curve:
@@ -29,6 +18,9 @@ class Curve:
         self.dx, self.dy = p.dx0 + (x[3] - x[0]), p.dy0 + (x[4] - x[1])
         turn = chord_rotation(p.dx0 * self.dy - p.dy0 * self.dx, p.dx0 * self.dx + p.dy0 * self.dy)
         theta_i, theta_j = unwind(x[2] - turn), unwind(x[5] - turn)
+        square = self.dx * self.dx + self.dy * self.dy
+        # derivatives of the chord's angle
+        self.turn_x, self.turn_y = -self.dy / square, self.dx / square
         self.near = (1 + p.Phi / 2) / (1 + p.Phi)
         self.far = -(p.Phi / 2) / (1 + p.Phi)
         self.shear_strain = self.far * (theta_i + theta_j)
@@ -56,67 +48,50 @@ class Curve:
         step = (px * tx + py * ty) / (tx * tx + ty * ty + ddw * (py * dx - px * dy))
         return step, (px, py), (tx, ty)
 
-    def deflection_jet(self, xi: Any) -> Jet:
-        """Return w with its derivatives."""
+    def deflection_slope(self, xi: Any) -> tuple[Any, tuple[Any, ...]]:
+        """Return w and its derivatives in ``(dx, dy, theta_i, theta_j, xi)``."""
         eta = 1 - xi
-        return self._blend(
-            (xi * eta * eta, -xi * xi * eta),
-            (eta * (1 - 3 * xi), xi * (3 * xi - 2)),
-            (6 * xi - 4, 6 * xi - 2),
-        )
+        w, turn, *by = self._blend((xi * eta * eta, -xi * xi * eta), (eta * (1 - 3 * xi), xi * (3 * xi - 2)))
+        return w, (turn * self.turn_x, turn * self.turn_y, *by)
 
-    def slope_angle_jet(self, xi: Any) -> Jet:
-        """Angle of the tangent from the x axis with its derivatives."""
-        eta = 1 - xi
-        slope, g, h = self._blend(
-            (eta * (1 - 3 * xi), xi * (3 * xi - 2)), (6 * xi - 4, 6 * xi - 2), (6.0, 6.0)
-        )
-        turn_x, turn_y, turn_xx, turn_xy = self._turn()
-        angle = chord_rotation(self.dy + slope * self.dx, self.dx - slope * self.dy)
-        scale = 1 / (1 + slope * slope)
-        bend = 2 * slope * scale * scale
-        pairs = [(i, j) for i in range(5) for j in range(i, 5)]
-        hessian = [scale * value - bend * g[i] * g[j] for value, (i, j) in zip(h, pairs, strict=True)]
-        hessian[0] += turn_xx
-        hessian[1] += turn_xy
-        hessian[5] -= turn_xx
-        gradient = (scale * g[0] + turn_x, scale * g[1] + turn_y, scale * g[2], scale * g[3], scale * g[4])
-        return Jet(angle, gradient, tuple(hessian))
-
-    def shear_strain_jet(self) -> Jet:
-        """Shear strain of the element with its derivatives."""
-        far, (gx, gy, gxx, gxy) = self.far, self._turn()
-        hessian = [0.0] * 15
-        hessian[0], hessian[1], hessian[5] = -2 * far * gxx, -2 * far * gxy, 2 * far * gxx
-        return Jet(self.shear_strain, (-2 * far * gx, -2 * far * gy, far, far, 0.0), tuple(hessian))
-
-    def _turn(self) -> tuple[Any, Any, Any, Any]:
-        """Derivatives of the chord's angle: x, y, xx = -yy, xy."""
-        dx, dy = self.dx, self.dy
-        l2 = dx * dx + dy * dy
-        gx, gy = -dy / l2, dx / l2
-        return gx, gy, -2 * gx * gy, gx * gx - gy * gy
-
-    def _blend(self, h: Any, dh: Any, ddh: Any) -> Jet:
-        """Jet of ``h_i(xi) tan s_i + h_j(xi) tan s_j``."""
-        near, far, a, b = self.near, self.far, self.tan_i, self.tan_j
+    def deflection_bend(self, xi: Any) -> tuple[Any, ...]:
+        """Second derivatives of w: the fifteen of the upper triangle, row by row."""
+        eta, near, far, a, b = 1 - xi, self.near, self.far, self.tan_i, self.tan_j
         both = near + far
         da, db = 1 + a * a, 1 + b * b
-        i, j = h[0] * da, h[1] * db
+        i, j = xi * eta * eta * da, -xi * xi * eta * db
         ii, jj = 2 * a * i, 2 * b * j
-        si, sj = dh[0] * da, dh[1] * db
+        si, sj = eta * (1 - 3 * xi) * da, xi * (3 * xi - 2) * db
         turn, slid = -both * (i + j), -both * (si + sj)
         with_i, with_j = -both * (near * ii + far * jj), -both * (far * ii + near * jj)
         twice = both * both * (ii + jj)
-        gx, gy, gxx, gxy = self._turn()
-        return Jet(
-            h[0] * a + h[1] * b,
-            (turn * gx, turn * gy, near * i + far * j, far * i + near * j, dh[0] * a + dh[1] * b),
-            (
-                twice * gx * gx + turn * gxx, twice * gx * gy + turn * gxy, with_i * gx, with_j * gx, slid * gx,
-                twice * gy * gy - turn * gxx, with_i * gy, with_j * gy, slid * gy,
-                near * near * ii + far * far * jj, near * far * (ii + jj), near * si + far * sj,
-                far * far * ii + near * near * jj, far * si + near * sj,
-                ddh[0] * a + ddh[1] * b,
-            ),
+        gx, gy = self.turn_x, self.turn_y
+        gxx, gxy = -2 * gx * gy, gx * gx - gy * gy
+        return (
+            twice * gx * gx + turn * gxx, twice * gx * gy + turn * gxy, with_i * gx, with_j * gx, slid * gx,
+            twice * gy * gy - turn * gxx, with_i * gy, with_j * gy, slid * gy,
+            near * near * ii + far * far * jj, near * far * (ii + jj), near * si + far * sj,
+            far * far * ii + near * near * jj, far * si + near * sj,
+            (6 * xi - 4) * a + (6 * xi - 2) * b,
         )  # fmt: skip
+
+    def slope_angle(self, xi: Any) -> tuple[Any, tuple[Any, ...]]:
+        """Angle of the tangent from the x axis, and its derivatives in ``(dx, dy, theta_i, theta_j, xi)``."""
+        inside = 6 * xi
+        slope, turn, *by = self._blend(((1 - xi) * (1 - 3 * xi), xi * (3 * xi - 2)), (inside - 4, inside - 2))
+        angle = chord_rotation(self.dy + slope * self.dx, self.dx - slope * self.dy)
+        scale = 1 / (1 + slope * slope)
+        turn = 1 + scale * turn
+        return angle, (turn * self.turn_x, turn * self.turn_y, *(scale * part for part in by))
+
+    def shear_strain_slope(self) -> tuple[Any, ...]:
+        """Derivatives of the shear strain in ``(dx, dy, theta_i, theta_j)``."""
+        far = self.far
+        return -2 * far * self.turn_x, -2 * far * self.turn_y, far, far
+
+    def _blend(self, h: tuple[Any, Any], dh: tuple[Any, Any]) -> tuple[Any, Any, Any, Any, Any]:
+        """``h_i(xi) tan s_i + h_j(xi) tan s_j`` and its derivatives by the chord's angle, both rotations, and xi."""
+        near, far, a, b = self.near, self.far, self.tan_i, self.tan_j
+        i, j = h[0] * (1 + a * a), h[1] * (1 + b * b)
+        turn = -(near + far) * (i + j)
+        return h[0] * a + h[1] * b, turn, near * i + far * j, far * i + near * j, dh[0] * a + dh[1] * b

@@ -107,7 +107,7 @@ class ClosedForm(ElementType):
     @property
     def rubs(self) -> bool:
         """Whether its contact law has friction."""
-        return self.contact.coupling is not None and self.contact.coupling.friction is not None
+        return self.contact.friction is not None
 
     @property
     def on_varying(self) -> Integrated | None:

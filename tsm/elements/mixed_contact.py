@@ -29,18 +29,22 @@ from typing import Any
 
 import numpy as np
 
-from tsm.elements.contact_law import UPPER
 from tsm.elements.curve import Curve
 from tsm.elements.properties import Array, Properties
+from tsm.elements.varied import derivatives, plain, varied
 
 # element displacements (6), node (2), force (2), xi  ->  dx, dy, theta_i, theta_j, F_x, F_y, xi
 REDUCE = np.zeros((7, 11))
 REDUCE[0, [0, 3]] = REDUCE[1, [1, 4]] = -1, 1
 REDUCE[[2, 3, 4, 5, 6], [2, 5, 8, 9, 10]] = 1
 """The seven quantities of a contact from the eleven unknowns."""
-# the same spread over the eleven
+# the upper triangle of a matrix over them, row by row, spread over the eleven
 _SPREAD = np.array(
-    [(np.outer(REDUCE[a], REDUCE[b]) + (a != b) * np.outer(REDUCE[b], REDUCE[a])).ravel() for a, b in UPPER]
+    [
+        (np.outer(REDUCE[a], REDUCE[b]) + (a != b) * np.outer(REDUCE[b], REDUCE[a])).ravel()
+        for a in range(7)
+        for b in range(a, 7)
+    ]
 )
 LEVER = np.zeros((11, 11))
 LEVER[[0, 8, 1, 9], [8, 0, 9, 1]] = 1
@@ -59,33 +63,32 @@ def response(
     to element (6), node (2), force (2) and arc position ``xi l0``; ``tangent`` (11, 11), its derivative,
     symmetric.
     """
-    gradient, hessian = jet(p, x, xi, force, side, offset)
-    full = -(gradient @ REDUCE)
-    Fx, Fy = force
-    full[0] -= Fx
-    full[1] -= Fy
-    full[6] += Fx
-    full[7] += Fy
-    full[8] -= lever[0]
-    full[9] -= lever[1]
+    gradient, hessian = _sharp(p, x, xi, force)
     tangent = -(hessian @ _SPREAD).reshape(11, 11) - LEVER
+    if offset:
+        dx, dy, theta_i, theta_j, *loads, place = varied((x[3] - x[0], x[4] - x[1], x[2], x[5], *force, xi))
+        surface = _surface(p, (0.0, 0.0, theta_i, dx, dy, theta_j), place, loads)
+        gradient = gradient - side * offset * plain(surface)
+        tangent = tangent + REDUCE.T @ (side * offset * derivatives(surface)) @ REDUCE
+    Fx, Fy = force
+    full = -(gradient @ REDUCE) + np.array([-Fx, -Fy, 0, 0, 0, 0, Fx, Fy, -lever[0], -lever[1], 0])
     full[10] /= p.l0
     tangent[10] /= p.l0
     tangent[:, 10] /= p.l0
     return full, tangent
 
 
-def jet(p: Properties, x: Any, xi: Any, force: Any, side: Any, offset: Any) -> tuple[Array, Array]:
-    """First and second derivatives of ``F . (p(xi) - x_i) + C(xi) F.F/2`` in chord, end rotations, force and xi.
+def _sharp(p: Properties, x: Any, xi: Any, force: Any) -> tuple[Array, Array]:
+    """First and second derivatives of ``F . (p(xi) - x_i) + C(xi) F.F/2`` without offset in chord, end rotations, force and xi.
 
-    Returns ``gradient`` (7, ...), with respect to ``dx, dy, theta_i, theta_j`` of the element, force (2) and
-    xi; ``hessian`` (28, ...), upper triangle of its derivative, row by row.
+    Returns ``gradient`` (7,), with respect to ``dx, dy, theta_i, theta_j`` of the element, force (2) and xi;
+    ``hessian`` (28,), upper triangle of its derivative, row by row.
     """
     curve = Curve(p, x)
     dx, dy, (Fx, Fy) = curve.dx, curve.dy, force
-    C, dC, ddC, dddC = compliance(p, xi)
-    w, (wx, wy, wi, wj, ws), h = curve.deflection_jet(xi)
-    hxx, hxy, hxi, hxj, hxs, hyy, hyi, hyj, hys, hii, hij, his, hjj, hjs, hss = h
+    C, dC, ddC = compliance(p, xi)
+    w, (wx, wy, wi, wj, ws) = curve.deflection_slope(xi)
+    hxx, hxy, hxi, hxj, hxs, hyy, hyi, hyj, hys, hii, hij, his, hjj, hjs, hss = curve.deflection_bend(xi)
     a, half = Fy * dx - Fx * dy, (Fx * Fx + Fy * Fy) / 2
     gradient = np.array(
         [
@@ -111,79 +114,27 @@ def jet(p: Properties, x: Any, xi: Any, force: Any, side: Any, offset: Any) -> t
             a * hss + ddC * half,
         ]
     )  # fmt: skip
-    if offset:
-        on_surface = _surface(curve, xi, force, (dC, ddC, dddC), p.l0)
-        gradient = gradient - side * offset * on_surface[0]
-        hessian = hessian - side * offset * on_surface[1]
     return gradient, hessian
 
 
-def _surface(curve: Curve, xi: Any, force: Any, dC: tuple[Any, Any, Any], l0: Any) -> tuple[Array, Array]:
-    """Gradient and Hessian of ``F . m(phi + psi)``, to second order in the slope psi of the load's own dent.
+def _surface(p: Properties, x: Any, xi: Any, force: Any) -> Array:
+    """Gradient (7, ...) of ``F . m(phi + psi)``, to second order in the slope psi of the load's own dent; in the order of `_sharp`.
 
     `m` is the unit normal at the slope angle phi of the unloaded curve, ``psi = b F.m`` with ``b = C'/(2 l0)``; with
     ``A = F.m``, ``T = F.t`` the expression is ``A - b A T - b^2 A^3/2``, whose derivative in b vanishes, as it must, where
-    the force is normal to the loaded curve. In the order of `response`.
+    the force is normal to the loaded curve.
     """
-    phi, (px, py, pi, pj, ps), h = curve.slope_angle_jet(xi)
-    b, db, ddb = (value / (2 * l0) for value in dC)
+    phi, by = Curve(p, x).slope_angle(xi)
+    b, db = (value / (2 * p.l0) for value in compliance(p, xi)[1:])
     c, s = np.cos(phi), np.sin(phi)
     A, T = force[1] * c - force[0] * s, force[0] * c + force[1] * s
     bA = b * A
     by_phi = -T - b * (A * A - T * T) + 1.5 * bA * bA * T
-    by_phi_phi = -A + 4 * bA * T + 1.5 * bA * b * (A * A - 2 * T * T)
-    by_b, by_b_phi = -A * (T + bA * A), T * T - A * A + 3 * bA * A * T
+    px, py, pi, pj, ps = (by_phi * part for part in by)
     # with the force: m = (-s, c), t = (c, s)
-    along, across = -b * A, 1 - b * T - 1.5 * bA * bA
+    along, across = -bA, 1 - b * T - 1.5 * bA * bA
     fx, fy = along * c - across * s, along * s + across * c
-    along, across = -1 + 2 * b * T + 1.5 * bA * bA, -2 * bA + 3 * bA * b * T
-    mx, my = along * c - across * s, along * s + across * c
-    along, across = -db * A, -db * (T + 3 * bA * A)
-    sx, sy = along * c - across * s, along * s + across * c
-    both, square = -b, -3 * b * bA
-    slid = db * by_b_phi
-    gradient = np.array([by_phi * px, by_phi * py, by_phi * pi, by_phi * pj, fx, fy, by_phi * ps + db * by_b])
-    hxx, hxy, hxi, hxj, hxs, hyy, hyi, hyj, hys, hii, hij, his, hjj, hjs, hss = h
-    bx, by, bi, bj = by_phi_phi * px, by_phi_phi * py, by_phi_phi * pi, by_phi_phi * pj
-    bs = by_phi_phi * ps + slid
-    hessian = np.array(
-        [
-            bx * px + by_phi * hxx, bx * py + by_phi * hxy, bx * pi + by_phi * hxi, bx * pj + by_phi * hxj,
-            px * mx, px * my, px * bs + by_phi * hxs,
-            by * py + by_phi * hyy, by * pi + by_phi * hyi, by * pj + by_phi * hyj,
-            py * mx, py * my, py * bs + by_phi * hys,
-            bi * pi + by_phi * hii, bi * pj + by_phi * hij, pi * mx, pi * my, pi * bs + by_phi * his,
-            bj * pj + by_phi * hjj, pj * mx, pj * my, pj * bs + by_phi * hjs,
-            (square * s - 2 * both * c) * s, both * (c * c - s * s) - square * c * s, ps * mx + sx,
-            (square * c + 2 * both * s) * c, ps * my + sy,
-            (bs + slid) * ps + by_phi * hss + ddb * by_b - db * db * A * A * A,
-        ]
-    )  # fmt: skip
-    return gradient, hessian
-
-
-def crossing(p: Properties, xi: tuple[Any, Any], first: Any, second: Any) -> tuple[Array, Array]:
-    """Gradient and Hessian of ``-C12 F_1 . F_2``, the coupling of two contacts on one element.
-
-    ``xi``: positions of both contacts; or arrays over many elements, as all the others, with the contacts in
-    the same order on each. ``first, second``: forces on the beam. Returns ``gradient`` (6, ...), with respect
-    to force (2) and arc position of the first, then of the second contact; ``tangent`` (6, 6, ...), its
-    derivative.
-    """
-    C, dx, de, dxx, dxe, dee = cross_compliance(p, *xi)
-    l0 = p.l0
-    (ax, ay), (bx, by) = first, second
-    dot = ax * bx + ay * by
-    gradient = -np.array([C * bx, C * by, dx * dot / l0, C * ax, C * ay, de * dot / l0])
-    upper = np.zeros((6, *gradient.shape), dtype=gradient.dtype)
-    upper[[0, 1], [3, 4]] = C
-    upper[:2, 2] = np.array([bx, by]) * dx / l0
-    upper[:2, 5] = np.array([bx, by]) * de / l0
-    upper[2, 3:5] = np.array([ax, ay]) * dx / l0
-    upper[3:5, 5] = np.array([ax, ay]) * de / l0
-    upper[2, 5] = dxe * dot / l0**2
-    upper[2, 2], upper[5, 5] = dxx * dot / (2 * l0**2), dee * dot / (2 * l0**2)
-    return gradient, -(upper + upper.swapaxes(0, 1))
+    return np.array([px, py, pi, pj, fx, fy, ps - db * A * (T + bA * A)])
 
 
 def cross_compliance(p: Properties, xi: Any, eta: Any) -> tuple[Any, Any, Any, Any, Any, Any]:
@@ -218,19 +169,19 @@ def energy(p: Properties, x: Any, lever: Any, xi: Any, force: Any, side: float, 
     curve = Curve(p, x)
     Fx, Fy = force
     w = curve.deflection(xi)[0]
-    C, dC, _, _ = compliance(p, xi)
+    C, dC, _ = compliance(p, xi)
     value = Fx * (lever[0] + xi * curve.dx - w * curve.dy) + Fy * (lever[1] + xi * curve.dy + w * curve.dx)
     value += C * (Fx * Fx + Fy * Fy) / 2
     if offset:
-        phi = curve.slope_angle_jet(xi).value
+        phi, _ = curve.slope_angle(xi)
         A, T = Fy * np.cos(phi) - Fx * np.sin(phi), Fx * np.cos(phi) + Fy * np.sin(phi)
         bA = dC / (2 * p.l0) * A
         value -= side * offset * (A - bA * T - bA * bA * A / 2)
     return -float(value)
 
 
-def compliance(p: Properties, xi: Any) -> tuple[Any, Any, Any, Any]:
-    """Deflection at xi by a unit force there, both ends clamped, and its three derivatives in xi."""
+def compliance(p: Properties, xi: Any) -> tuple[Any, Any, Any]:
+    """Deflection at xi by a unit force there, both ends clamped, and its two derivatives in xi."""
     scale = p.l0**3 / (3 * p.EI * (1 + p.Phi))
     z, dz = xi * (1 - xi), 1 - 2 * xi
     linear, square = p.Phi * (1 + p.Phi) / 4, p.Phi / 4
@@ -239,10 +190,4 @@ def compliance(p: Properties, xi: Any) -> tuple[Any, Any, Any, Any]:
         scale * z * (z * z + square * z + linear),
         scale * slope * dz,
         scale * (bend * dz * dz - 2 * slope),
-        scale * 6 * dz * (dz * dz - bend),
     )
-
-
-def dent(p: Properties, xi: Any, eta: Any) -> Any:
-    """Deflection at xi by a unit force at eta, both ends clamped."""
-    return cross_compliance(p, xi, eta)[0]

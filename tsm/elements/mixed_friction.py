@@ -13,17 +13,10 @@ compliance of `mixed_contact`, and with ``z = xi (1 - xi)`` ::
 
     A = z l0/EA,    K = l0^2/(2 EI (1 + Phi)) z^2 (1 - 2 xi),    R = l0/(EI (1 + Phi)) z (1 + Phi - 3 z)
 
-Without friction a force has no component along the beam, and ``C F`` is the same as ``C F_n n``. The rows are
-
-- the nodal loads ``F . dp/dx + M dtheta/dx + dE/dx``;
-- the node at ``r - side offset n(T)``, the offset being h and the radius of a round pin;
-- in slip ``F_t = sigma mu F_n``, which is ``F . T = c (T_x F_y - T_y F_x)`` with the lean ``c = sigma mu side``;
-- in stick ``(A_s + A_s*)/2 (s - s*) + side h (psi - psi*) + side radius (phi - phi*) = 0``, where psi = phi - theta is the shear angle,
-  ``A_s = |T| + side h theta'`` the length of the face per arc position, and * the value in the held place, see `tsm.rolling`.
-
-The mean tangent is ``T = dp/ds + (dC/ds F_n n + ..)/2 + M rho n``, with the slope rho that a unit couple makes. These parts are such that
-``F . T + M theta' = d(F . p + M theta + E)/ds``. So the work of the node less the nodal work and the change of E is F_t times the slip,
-whose rate is ``A_s ds/dt + side h dpsi/dt + side radius dphi/dt``: what friction dissipates.
+Without friction a force has no component along the beam, and ``C F`` is the same as ``C F_n n``. The nodal loads are
+``F . dp/dx + M dtheta/dx + dE/dx``, and the mean tangent is ``T = dp/ds + (dC/ds F_n n + ..)/2 + M rho n``, with the slope rho that a unit couple
+makes. These parts are such that ``F . T + M theta' = d(F . p + M theta + E)/ds``. So the work of the node less the nodal work and the change of E
+is F_t times the slip of `tsm.pairs`: what friction dissipates.
 """
 
 from __future__ import annotations
@@ -33,10 +26,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tsm.elements.contact_law import Friction, Rub, Surface
+from tsm.elements.contact_law import Friction, Here, Vector
 from tsm.elements.curve import Curve
-from tsm.elements.mixed_contact import LEVER, REDUCE, compliance, cross_compliance
-from tsm.elements.properties import Array, Properties, chord_rotation, unwind
+from tsm.elements.mixed_contact import LEVER, REDUCE, compliance
+from tsm.elements.properties import Array, Properties, chord_rotation
 from tsm.elements.varied import derivatives, plain, varied
 
 _ITERATIONS = 50
@@ -44,152 +37,49 @@ _LAST = 1e-15
 """Relative change at which an iteration ends."""
 
 
-Pair = tuple[Any, Any]
-
-
 class Loaded(NamedTuple):
     """An element under the force and couple of a contact; arrays (8,), see `varied`."""
 
-    xi: Any  # position
-    force: Pair  # force F on the beam
-    tangent: Pair  # mean tangent T, per undeformed length
-    stretch: Any  # |T|
-    place: Pair  # point r of the axis from the element's end i
+    here: Here
+    force: Vector  # force F on the beam
+    place: Vector  # point r of the axis from the element's end i
     nodal: tuple[Any, ...]  # loads on chord and end rotations
     energy: Any  # strain energy E by the contact
-    curvature: Any  # theta', per undeformed length
-    shear: Any  # psi, the angle from the section's normal to T
-    slope: Any  # phi, the angle of T
 
 
-def response(
-    p: Properties, x: Any, lever: Any, xi: Any, force: Any, surface: Surface, rub: Rub
-) -> tuple[Array, Array]:
+def response(loaded: Loaded, lever: Vector, rows: tuple[Any, Any, Any], l0: float) -> tuple[Array, Array]:
     """Residual of a contact with friction and its derivative.
 
-    ``surface``: side and offset of the contact. ``rub``: state of the friction. Returns ``residual`` (11,),
-    rows of element (6), node (2), force (2) and arc position; ``tangent`` (11, 11), its derivative, not
-    symmetric.
+    ``lever``: ``x_i - x_c``, from the contacting node to the element's end i. ``rows``: vector from the axis to
+    the surface, and the last row. Returns ``residual`` (11,), rows of element (6), node (2), force (2) and arc
+    position; ``tangent`` (11, 11), its derivative, not symmetric.
     """
-    beam = _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face)
-    (Fx, Fy), (Tx, Ty), (rx, ry) = beam.force, beam.tangent, beam.place
-    reach = surface.side * surface.offset
-    if reach:
-        rx, ry = rx + reach * (Ty / beam.stretch), ry - reach * (Tx / beam.stretch)
-    if rub.held is None:
-        last = rub.lean * (Fy * Tx - Fx * Ty) - Fx * Tx - Fy * Ty
-    else:
-        last = rub.unit * _crept(beam, p.l0, surface.side, rub)
-    rows = np.array([*(-load for load in beam.nodal), -rx, -ry, last])
-    at_node = np.array([*(-part for part in force), 0, 0, 0, 0, *force, *(-part for part in lever), 0])
-    tangent = REDUCE.T @ _by_arc(rows, p.l0) @ REDUCE - LEVER
-    return plain(rows) @ REDUCE + at_node, tangent
+    (rx, ry), (px, py, last) = loaded.place, rows
+    stacked = np.array([*(-load for load in loaded.nodal), -rx - px, -ry - py, last])
+    force = plain(loaded.force)
+    at_node = np.array([*-force, 0, 0, 0, 0, *force, *(-part for part in lever), 0])
+    return plain(stacked) @ REDUCE + at_node, REDUCE.T @ by_arc(stacked, l0) @ REDUCE - LEVER
 
 
-def _by_arc(values: Any, l0: float) -> Array:
-    """Derivatives with the arc position in place of xi."""
+def by_arc(values: Any, l0: float) -> Array:
+    """Derivatives (..., 7) with the arc position in place of xi."""
     rates = derivatives(values)
     rates[..., 6] /= l0
     return rates
 
 
-def split(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> tuple[Any, Any, Any]:
-    """Force along the beam, force across it, positive where the contact pushes, and arc position from the element's start."""
-    beam = _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face)
-    (Fx, Fy), (Tx, Ty), size = force, *_tilted(beam, rub)
-    return (Fx * Tx + Fy * Ty) / size, surface.side * (Fy * Tx - Fx * Ty) / size, xi * p.l0
-
-
-def slip(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> Array:
-    """Slip rate as a linear form over the eleven unknowns: the force F_t on it is the power that friction dissipates."""
-    beam = _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face)
-    form = _by_arc(surface.side * (rub.face * beam.shear + rub.radius * beam.slope), p.l0)
-    form[6] += _tilted(beam, rub)[1] + surface.side * rub.face * plain(beam.curvature)
-    rate: Array = form @ REDUCE
-    return rate
-
-
-def tilt(p: Properties, xi: Any, eta: Any) -> Any:
-    """Change of the mean tangent at xi by a unit force at eta, per undeformed length, in the direction of the force."""
-    return cross_compliance(p, xi, eta)[1] / p.l0
-
-
-def hold(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> Rub:
-    """State of the friction where a stick begins, here and now."""
-    beam = _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face)
-    path, shear, slope = plain(
-        [beam.stretch + surface.side * rub.face * beam.curvature, beam.shear, beam.slope]
-    )
-    return rub._replace(lean=0.0, held=xi * p.l0, path=path, shear=shear, slope=slope)
-
-
-def energy(p: Properties, x: Any, _lever: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> Any:
-    """Contribution of the contact to the strain energy."""
-    return plain(_loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face).energy)
-
-
-def crossing(
-    p: Properties, xi: tuple[Any, Any], first: Any, second: Any, rubs: tuple[Rub, Rub]
-) -> tuple[Array, Array]:
-    """Coupling of two contacts on one element, as `mixed_contact.crossing`, with friction.
-
-    The third row of a contact in slip has the slope of the other contact's dent across its leaning force
-    ``F' = (F_x - c F_y, F_y + c F_x)``; in stick it has none. The couples on a face do not dent the element at the other contact here,
-    and the force along the beam dents it as if it were across.
-    """
-    C, dx, de, dxx, dxe, dee = cross_compliance(p, *xi)
-    l0 = p.l0
-    forces = (first, second)
-    slope, bend = (dx / l0, de / l0), ((dxx, dxe), (dxe, dee))
-    residual = np.zeros(6, dtype=np.result_type(C, *first, *second))
-    tangent = np.zeros((6, 6), dtype=residual.dtype)
-    for own, other in ((0, 1), (1, 0)):
-        row, column = 3 * own, 3 * other
-        (Fx, Fy), (Gx, Gy) = forces[own], forces[other]
-        residual[row : row + 2] = -C * Gx, -C * Gy
-        tangent[[row, row + 1], [column, column + 1]] = -C
-        for k in range(2):
-            tangent[row : row + 2, 3 * k + 2] = -slope[k] * Gx, -slope[k] * Gy
-        if rubs[own].held is not None:
-            continue
-        c = rubs[own].lean
-        dot = (Fx - c * Fy) * Gx + (Fy + c * Fx) * Gy
-        residual[row + 2] = -slope[own] * dot
-        tangent[row + 2, row : row + 2] = -slope[own] * (Gx + c * Gy), -slope[own] * (Gy - c * Gx)
-        tangent[row + 2, column : column + 2] = -slope[own] * (Fx - c * Fy), -slope[own] * (Fy + c * Fx)
-        for k in range(2):
-            tangent[row + 2, 3 * k + 2] = -bend[own][k] * dot / l0**2
-    return residual, tangent
-
-
-def _tilted(beam: Loaded, rub: Rub) -> tuple[tuple[Any, Any], Any]:
-    """Mean tangent with the deflection by other contacts on the element, and its length."""
-    Tx, Ty = (part + more for part, more in zip(plain(beam.tangent), rub.tilt, strict=True))
-    return (Tx, Ty), np.sqrt(Tx * Tx + Ty * Ty)
-
-
-def _crept(beam: Loaded, l0: float, side: float, rub: Rub) -> Any:
-    """Path of the face along the node since the stick began."""
-    crept = beam.xi * l0 - rub.held
-    if not rub.face and not rub.radius:
-        return crept
-    path = beam.stretch + side * rub.face * beam.curvature
-    rolled = side * (rub.face * (beam.shear - rub.shear) + rub.radius * unwind(beam.slope - rub.slope))
-    return (path + rub.path) / 2 * crept + rolled
-
-
 @lru_cache(maxsize=16)
-def _loaded(p: Properties, x: tuple[Any, ...], xi: Any, force: tuple[Any, Any], lever: float) -> Loaded:
-    """The element under a contact's force and couple, see the module's text.
+def load(p: Properties, x: tuple[Any, ...], xi: Any, force: Vector, lever: float, start: float) -> Loaded:
+    """The element, whose end i has the arc position `start`, under a contact's force and couple, see the module's text.
 
     Solution, margins and energies ask for the same one in turn. The derivatives with the arc position take the axes n and t of the unloaded curve with them, which turn by its curvature.
     """
-    moved, part, (Fx, Fy) = varied(x, xi, force)
-    curve, l0 = Curve(p, moved), p.l0
+    dx, dy, theta_i, theta_j, Fx, Fy, part = varied((x[3] - x[0], x[4] - x[1], x[2], x[5], *force, xi))
+    curve, l0 = Curve(p, (0.0, 0.0, theta_i, dx, dy, theta_j)), p.l0
     dx, dy = curve.dx, curve.dy
-    w, (wx, wy, wi, wj, slope) = curve.deflection_jet(part)[:2]
-    phi, (*phi_x, bend) = curve.slope_angle_jet(part)[:2]
-    gamma, (*gamma_x, _) = curve.shear_strain_jet()[:2]
+    w, (wx, wy, wi, wj, slope) = curve.deflection_slope(part)
+    phi, (*phi_x, bend) = curve.slope_angle(part)
+    gamma, gamma_x = curve.shear_strain, curve.shear_strain_slope()
     slope, bend = slope / l0, bend / l0
     c, s = np.cos(phi), np.sin(phi)
     N, S = Fy * c - Fx * s, Fx * c + Fy * s
@@ -209,19 +99,20 @@ def _loaded(p: Properties, x: tuple[Any, ...], xi: Any, force: tuple[Any, Any], 
     nodal = (part * Fx + arm * wx + w * Fy, part * Fy + arm * wy - w * Fx, arm * wi, arm * wj)
     kink = chord_rotation(Ty * c - Tx * s, Tx * c + Ty * s)
     return Loaded(
-        xi=part,
+        here=Here(
+            arc=start + part * l0,
+            tangent=T,
+            shear=gamma + kink - a.K * N - a.R * M,
+            direction=phi + kink,
+            turn=bend + a.kappa * N + a.R_s * M / 2,
+        ),
         force=(Fx, Fy),
-        tangent=T,
-        stretch=np.sqrt(Tx * Tx + Ty * Ty),
         place=(part * dx - w * dy + along * c - across * s, part * dy + w * dx + along * s + across * c),
         nodal=tuple(
             load + (by_phi + M) * turn - M * strain
             for load, turn, strain in zip(nodal, phi_x, gamma_x, strict=True)
         ),
         energy=(a.C * N * N + a.A * S * S + a.R * M * M) / 2 + a.K * N * M,
-        curvature=bend + a.kappa * N + a.R_s * M / 2,
-        shear=gamma + kink - a.K * N - a.R * M,
-        slope=phi + kink,
     )
 
 
@@ -257,7 +148,7 @@ def _flexibility(p: Properties, xi: Any) -> Flexibility:
     )
 
 
-def _couple(force: Pair, free: Pair, sloped: Pair, lever: float) -> tuple[Any, Pair]:
+def _couple(force: Vector, free: Vector, sloped: Vector, lever: float) -> tuple[Any, Vector]:
     """Couple ``M = lever F . T/|T|`` and the mean tangent ``T = free + M sloped``, by Newton's method.
 
     A step more than the numbers need gives the derivatives those of the solution.
@@ -274,7 +165,7 @@ def _couple(force: Pair, free: Pair, sloped: Pair, lever: float) -> tuple[Any, P
     return M, (free[0] + M * sloped[0], free[1] + M * sloped[1])
 
 
-def _couple_step(M: Any, force: Pair, free: Pair, sloped: Pair, lever: float) -> Any:
+def _couple_step(M: Any, force: Vector, free: Vector, sloped: Vector, lever: float) -> Any:
     """Step of Newton's method for the couple."""
     (Fx, Fy), (slope_x, slope_y) = force, sloped
     Tx, Ty = free[0] + M * slope_x, free[1] + M * slope_y
@@ -285,7 +176,5 @@ def _couple_step(M: Any, force: Pair, free: Pair, sloped: Pair, lever: float) ->
     return (along * lever / size - M) / (1 - across * lever / size * turn)
 
 
-FRICTION = Friction(
-    response=response, split=split, slip=slip, hold=hold, energy=energy, crossing=crossing, tilt=tilt
-)
+FRICTION = Friction(load=load, response=response, slip=by_arc)
 """Friction of the contact law whose force and arc position are unknowns."""

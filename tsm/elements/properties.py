@@ -33,8 +33,10 @@ def chord_rotation(cross: Any, dot: Any) -> Any:
         return math.atan2(cross, dot)
     if not np.iscomplexobj(cross):
         return np.arctan2(cross, dot)
-    step = (np.imag(cross) * np.real(dot) - np.real(cross) * np.imag(dot)) / np.real(dot**2 + cross**2)
-    return np.arctan2(np.real(cross), np.real(dot)) + 1j * step
+    # an imaginary part is a step
+    c, d = cross.real, dot.real
+    angle: Any = np.arctan2(c, d) + 1j * ((cross.imag * d - c * dot.imag) / (c * c + d * d))
+    return angle
 
 
 def unwind(angle: Any) -> Any:

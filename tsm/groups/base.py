@@ -10,10 +10,10 @@ import numpy as np
 from tsm.contact_block import ContactBlock
 from tsm.elements.properties import Array
 from tsm.projection import Projection
-from tsm.rods.shape import Stations
 from tsm.state import State, Touch, Traction
 
 if TYPE_CHECKING:
+    from tsm.groups.shape import Stations
     from tsm.model import Model
     from tsm.pairs import BeamModel, PairModel
 
@@ -45,6 +45,10 @@ class GroupTangent(Protocol):
     def condensed_residual(self) -> Array:
         """Contribution of the inner residual to the residual after the inner unknowns are eliminated, shape (n, e)."""
 
+    @property
+    def by_load(self) -> Array:
+        """Derivative of the residual in the load parameter, by loads along the elements, shape (n, e)."""
+
 
 class Change(NamedTuple):
     """Change of a configuration."""
@@ -67,12 +71,10 @@ class ElementGroup(ABC):
     ``internal``: whether an element has a force and a moment as degrees of freedom, and further unknowns
         inside, which are eliminated.
     ``past_node``: part of an element's length by which a contact may lie past its end.
-    ``slip_sign``: sign of the row of slip: of the row, in ``F_t - sigma mu F_n``.
     """
 
     internal: ClassVar[bool]
     past_node: ClassVar[float]
-    slip_sign: ClassVar[float]
 
     def __init__(self, model: Model, number: int, elements: Array, dofs: Array) -> None:
         self.model, self.number, self.elements, self.dofs = model, number, elements, dofs
@@ -86,28 +88,6 @@ class ElementGroup(ABC):
         """Tangent where the forces are known; the tangents of the contacts are entered in their block."""
 
     @abstractmethod
-    def rate(self, state: State, q: Array, contacts: Array) -> Array:
-        """Change (n, e) of the forces with the degrees of freedom; what belongs to the contacts' rows is added to `contacts`."""
-
-    def load_rate(self, _state: State, _contacts: Array) -> Array:
-        """Change (n, e) of the forces with the load parameter, by loads along the elements; the contacts' rows change in `contacts`."""
-        return np.zeros(self.dofs.shape)
-
-    def load_work(self, _state: State) -> float:
-        """Work of the loads along the elements, as large as they are at the state, on the displacements to the state."""
-        return 0.0
-
-    def load_power(self, _state: State, _tangent: Any, _dofs: Array, _contacts: Array) -> float:
-        """Work of the loads along the elements at rates of all degrees of freedom and of the contacts' unknowns."""
-        return 0.0
-
-    @abstractmethod
-    def pin_rate(
-        self, pair: PairModel, touch: Touch, state: State, velocity: tuple[float, float]
-    ) -> tuple[Array, Array]:
-        """Change of the nodal forces (6,) of the touched element, and of the contact's rows, as the pin moves."""
-
-    @abstractmethod
     def traction(self, k: int, state: State, forces: Any) -> Traction:
         """Force and place of closed pair k, which has friction."""
 
@@ -118,14 +98,6 @@ class ElementGroup(ABC):
     @abstractmethod
     def energy(self, state: State) -> float:
         """Strain energy of elements and contacts in equilibrium."""
-
-    def undeformed(self, state: State) -> State:
-        """State with the unknowns inside straight elements, without contacts."""
-        return state
-
-    def with_touches(self, _before: State, after: State) -> State:
-        """State `after`, whose contacts differ from `before`, with inner unknowns that fit its contacts."""
-        return after
 
     def with_change(self, _before: State, after: State, _tangent: Any, _change: Change) -> State:
         """State `after` a change, with the unknowns inside changed too."""
@@ -150,10 +122,6 @@ class ElementGroup(ABC):
     def inaccurate(self, _forces: Any, _tolerance: float) -> bool:
         """Whether the finest integration inside the elements does not suffice."""
         return False
-
-    def integration_error(self, _forces: Any) -> float:
-        """Estimated error of the integration inside the elements, see `Settings.integration_tolerance`."""
-        return 0.0
 
     @abstractmethod
     def project(self, pair: PairModel, state: State) -> Projection:

@@ -10,10 +10,13 @@ import numpy as np
 from tsm.contact_block import ContactBlock
 from tsm.elements import beam as beam_element
 from tsm.elements.axis import PointForce, deflected_axes
-from tsm.elements.contact_law import Friction, Rub, Surface
+from tsm.elements.contact_law import Here
 from tsm.elements.curve import Curve
+from tsm.elements.mixed_contact import REDUCE
 from tsm.elements.properties import Array, Properties
+from tsm.elements.varied import plain
 from tsm.groups.base import ElementGroup
+from tsm.groups.shape import Stations
 from tsm.projection import (
     AT_NODE,
     PROJECTED,
@@ -24,8 +27,7 @@ from tsm.projection import (
     project_on_chords,
     slide,
 )
-from tsm.rods.shape import Stations
-from tsm.state import Place, State, Touch, Traction
+from tsm.state import State, Touch, Traction
 
 if TYPE_CHECKING:
     from tsm.pairs import BeamModel, PairModel
@@ -55,13 +57,17 @@ class ClosedFormForces(NamedTuple):
         """Zero: there is no inner residual."""
         return np.zeros_like(self.nodal)
 
+    @property
+    def by_load(self) -> Array:
+        """Zero: there is no load along the elements."""
+        return np.zeros_like(self.nodal)
+
 
 class ClosedFormGroup(ElementGroup):
     """Elements in closed form; their contacts follow the contact law of their element type."""
 
     internal = False
     past_node = AT_NODE
-    slip_sign = -1.0
 
     def forces(self, state: State, contacts: ContactBlock) -> ClosedFormForces:
         """Forces and tangents of elements and contacts."""
@@ -72,7 +78,7 @@ class ClosedFormGroup(ElementGroup):
                 contacts.leave_open(pair)
                 continue
             place = self.model.place[touch.element]
-            gradient, block = self.contact(pair, touch, state)
+            gradient, block = self.contact(k, pair, touch, state)
             if pair.slot < 0:
                 force[:, place] = tangent[:, place] = 0.0
             force[:, place] += gradient[:6]
@@ -84,90 +90,66 @@ class ClosedFormGroup(ElementGroup):
         """Tangent, which is known with the forces."""
         return forces
 
-    def rate(self, state: State, q: Array, _contacts: Array) -> Array:
-        """Change (6, e) of the forces with the nodal displacements."""
-        _, tangent = beam_element.response(self.model.coefficients, state.q[self.dofs])
-        rate: Array = np.einsum("ijn,jn->in", tangent.reshape(6, 6, -1), q[self.dofs])
-        return rate
-
-    def pin_rate(
-        self, pair: PairModel, touch: Touch, state: State, velocity: tuple[float, float]
-    ) -> tuple[Array, Array]:
-        """Change of the nodal forces of the touched element, and of the contact's rows, as the pin moves."""
-        _, block = self.contact(pair, touch, state)
-        moved = block[:, 6:8] @ np.array(velocity)
-        return moved[:6], moved[8:]
-
     def traction(self, k: int, state: State, _forces: ClosedFormForces) -> Traction:
         """Force and place of a contact with friction."""
-        pair, touch, friction = self._rubbed(k, state)
-        p, x, _ = self._lever(pair, touch.element, state)
-        surface, rub = Surface(pair.side, pair.pair.offset), self._tilted(k, state)
-        tangential, normal, _ = friction.split(p, x, touch.xi, touch.force, surface, rub)
-        here = friction.hold(p, x, touch.xi, touch.force, surface, rub)
-        arc = pair.arc_position(touch)
-        place = Place(arc, float(here.shear), float(here.slope), float(here.path))
-        return Traction(float(tangential), float(normal), place)
+        loaded, tilted = self._loaded(k, state)
+        pair, here = self.model.pairs[k], Here(*(plain(value) for value in loaded.here))
+        place = pair.traction(plain(loaded.force), here).place
+        return pair.traction(plain(loaded.force), here._replace(tangent=tilted))._replace(place=place)
 
     def slip_rate(
         self, k: int, state: State, _tangent: ClosedFormForces, dofs: Array, contacts: Array
     ) -> float:
         """Slip rate of a contact."""
-        pair, touch, friction = self._rubbed(k, state)
-        p, x, _ = self._lever(pair, touch.element, state)
-        surface = Surface(pair.side, pair.pair.offset)
-        form = friction.slip(p, x, touch.xi, touch.force, surface, self._tilted(k, state))
+        pair, touch, (loaded, tilted) = self.model.pairs[k], state.touches[k], self._loaded(k, state)
+        assert touch is not None, "a contact with friction is closed"
+        angles = pair.lever * loaded.here.shear + pair.roll * loaded.here.direction
+        form = pair.friction.slip(angles, self.model.element[touch.element].l0)
+        form[6] += np.hypot(*tilted) + pair.lever * plain(loaded.here.turn)
         own = np.concatenate([dofs[self.model.dofs[:, touch.element]], [0.0, 0.0], contacts[pair.slots]])
-        return float(form @ own)
+        return float(form @ REDUCE @ own)
 
-    def _rubbed(self, k: int, state: State) -> tuple[PairModel, Touch, Friction]:
+    def _loaded(self, k: int, state: State) -> tuple[Any, Any]:
+        """Element under a contact with friction, and the mean tangent there, turned by the other contacts on the element."""
         pair, touch = self.model.pairs[k], state.touches[k]
         assert touch is not None, "a contact with friction is closed"
-        return pair, touch, self._rubbed_law(pair)
-
-    def _tilted(self, k: int, state: State) -> Rub:
-        """State of the friction, with the turn of the tangent by the other contacts on the same element."""
-        pair, touch, friction = self._rubbed(k, state)
-        p, x, y = self.model.element[touch.element], 0.0, 0.0
+        e, p = touch.element, self.model.element[touch.element]
+        x, start = tuple(state.q[self.model.dofs[:, e]].tolist()), pair.target.arcs[e - pair.target.first]
+        loaded = pair.friction.load(p, x, touch.xi, touch.force, pair.lever, start)
+        tilted = plain(loaded.here.tangent)
         for n, other in enumerate(state.touches):
-            if other is not None and n != k and other.element == touch.element:
-                part = friction.tilt(p, touch.xi, other.xi)
-                x, y = x + part * other.force[0], y + part * other.force[1]
-        return pair.rub(touch)._replace(tilt=(x, y))
-
-    def _rubbed_law(self, pair: PairModel) -> Friction:
-        friction = pair.law.coupling.friction if pair.law.coupling else None
-        assert friction is not None, "the law has friction, see `Model`"
-        return friction
+            if other is not None and n != k and other.element == e:
+                tilted = tilted + pair.cross(p, touch.xi, other.xi)[1] / p.l0 * np.array(other.force)
+        return loaded, tilted
 
     def energy(self, state: State) -> float:
-        """Strain energy of elements and contacts."""
+        """Strain energy of elements and contacts in equilibrium."""
         total = float(beam_element.energy(self.model.coefficients, state.q[self.dofs]).sum())
         for k, pair in self.model.pairs_of(self):
-            if (touch := state.touches[k]) is None:
+            touch = state.touches[k]
+            if touch is None:
                 continue
             p, x, lever = self._lever(pair, touch.element, state)
-            coupling = pair.law.coupling
             if touch.grip is not None:
-                friction, surface = self._rubbed_law(pair), Surface(pair.side, pair.pair.offset)
-                total += friction.energy(p, x, lever, touch.xi, touch.force, surface, pair.rub(touch))
+                total += float(plain(self._loaded(k, state)[0].energy))
             else:
                 total += pair.law.energy(p, x, lever, touch.xi, touch.force, pair.side, pair.pair.offset)
             for other in state.touches[:k]:
-                if coupling and other is not None and other.element == touch.element:
+                if pair.law.cross and other is not None and other.element == touch.element:
                     dot = touch.force[0] * other.force[0] + touch.force[1] * other.force[1]
                     # the Lagrangian of each contact without friction holds it once, in equilibrium
                     times = 1 - (touch.grip is None) - (other.grip is None)
-                    total += times * coupling.dent(p, touch.xi, other.xi) * dot
+                    total += times * pair.cross(p, touch.xi, other.xi)[0] * dot
         return total
 
-    def contact(self, pair: PairModel, touch: Touch, state: State) -> tuple[Array, Array]:
+    def contact(self, k: int, pair: PairModel, touch: Touch, state: State) -> tuple[Array, Array]:
         """Gradient and tangent of a closed contact, see `ContactLaw.response`."""
         p, x, lever = self._lever(pair, touch.element, state)
-        if touch.grip is not None:
-            friction, surface = self._rubbed_law(pair), Surface(pair.side, pair.pair.offset)
-            return friction.response(p, x, lever, touch.xi, touch.force, surface, pair.rub(touch))
-        return pair.law.response(p, x, lever, touch.xi, touch.force, pair.side, pair.pair.offset)
+        if touch.grip is None:
+            return pair.law.response(p, x, lever, touch.xi, touch.force, pair.side, pair.pair.offset)
+        loaded, _ = self._loaded(k, state)
+        rows = pair.rows(touch.grip, loaded.force, loaded.here, self.model.stick_stiffness)
+        return pair.friction.response(loaded, lever, rows, p.l0)
 
     def _lever(
         self, pair: PairModel, element: int, state: State
@@ -192,10 +174,10 @@ class ClosedFormGroup(ElementGroup):
             e, xi = slide(target.lengths, e, xi - step)
             if abs(step) < PROJECTED:
                 break
-        element, coupling = target.first + e, pair.law.coupling
+        element = target.first + e
         for touch in state.touches:
-            if coupling and touch is not None and touch.element == element:
-                dent = coupling.dent(model.element[element], xi, touch.xi)
+            if pair.law.cross and touch is not None and touch.element == element:
+                dent = pair.cross(model.element[element], xi, touch.xi)[0]
                 px, py = px + dent * touch.force[0], py + dent * touch.force[1]
         height = (py * tx - px * ty) / math.hypot(tx, ty)
         beyond = overshoot(target, arc_position(target, element, xi))

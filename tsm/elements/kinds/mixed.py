@@ -2,18 +2,15 @@
 
 from tsm.elements import mixed_contact
 from tsm.elements.beam import bowed_coefficients, linear_coefficients
-from tsm.elements.contact_law import ContactLaw, Coupling
+from tsm.elements.contact_law import ContactLaw
 from tsm.elements.element_type import ClosedForm, Integrated
 from tsm.elements.mixed_friction import FRICTION
 
 LAW = ContactLaw(
     response=mixed_contact.response,
     energy=mixed_contact.energy,
-    coupling=Coupling(
-        dent=mixed_contact.dent,
-        crossing=mixed_contact.crossing,
-        friction=FRICTION,
-    ),
+    cross=mixed_contact.cross_compliance,
+    friction=FRICTION,
 )
 """The contact law whose force and arc position are unknowns."""
 

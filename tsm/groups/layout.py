@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tsm.elements.properties import Array
-from tsm.elements.rod import INPUTS
+from tsm.elements.rod import ARC, INPUTS, LOAD
 from tsm.state import Cuts
 
 OWN = 9
@@ -47,24 +47,26 @@ def layout(count: int, cuts: Cuts) -> Layout:
 def chain(count: int) -> tuple[Array, Array, Array]:
     """Constant matrices of an element with `count` cuts.
 
-    Returns ``inputs`` (count + 1, 7, unknowns + 1), inputs of the segments by the element's unknowns, the
-    moments at the cuts left open; ``tangent`` (unknowns, unknowns + 1), tangent, all but the rows of arrival
-    and of the contacts; ``selectors`` (count, 6, unknowns + 1), angle, force before (x, y), contact force (x,
-    y) and arc position of every cut by the unknowns.
+    The last two of n columns are the load parameter, and the constant 1 for the inner residual. Returns
+    ``inputs`` (count + 1, 9, n), inputs of the segments by the element's unknowns, the moments at the cuts
+    left open; ``tangent`` (unknowns, n), all but the rows of arrival and of the contacts; ``selectors``
+    (count, 8, n), angle, force before (x, y), contact force (x, y), arc position, moment before, left open,
+    and load parameter of every cut.
     """
     unknowns = OWN + CUT * count
-    inputs = np.zeros((count + 1, INPUTS, unknowns + 1))
-    inputs[:, 3, 3] = inputs[:, 4, 4] = inputs[:, 6, -1] = 1
+    inputs = np.zeros((count + 1, INPUTS, unknowns + 2))
+    inputs[:, 3, 3] = inputs[:, 4, 4] = inputs[:, 6, -1] = inputs[:, LOAD, -2] = 1
     inputs[0, 0, 2] = inputs[0, 1, 5] = inputs[-1, 2, 8] = 1
-    selectors = np.zeros((count, 6, unknowns + 1))
+    selectors = np.zeros((count, 8, unknowns + 2))
+    selectors[:, 7, -2] = 1
     for k in range(count):
         own = OWN + CUT * k
         selectors[k, [0, 3, 4, 5], [own + 3, own, own + 1, own + 2]] = 1
         selectors[k, 1:3] = inputs[k, 3:5]
         inputs[k + 1 :, 3, own] = inputs[k + 1 :, 4, own + 1] = -1
         inputs[k, 5, own + 2] = inputs[k, 2, own + 3] = inputs[k + 1, 0, own + 3] = 1
-        inputs[k + 1, 5, own + 2] = -1
-    tangent = np.zeros((unknowns, unknowns + 1))
+        inputs[k + 1, 5, own + 2], inputs[k + 1, ARC, own + 2] = -1, 1
+    tangent = np.zeros((unknowns, unknowns + 2))
     tangent[:OWN, :OWN] = FIXED
     tangent[6:8] = inputs[-1, 3:5]
     tangent[3, 6] = tangent[4, 7] = 0

@@ -7,27 +7,25 @@ Between two loads the force n is constant and the positions follow from it, so a
 and a contact ``- F . (r + reach nu - x_c)``. The modes of a segment whose angles are held at both ends, under constant n, solve
 ``EI eta'' = f_phi eta``: none where ``- f_phi h^2/EI < pi^2`` everywhere (Sturm). Longer segments are divided, so every mode
 shows in the matrix; each component of n and F takes one negative eigenvalue of it, and the rest is the index. The rows of
-`tsm.rods.assembly` say the same in another form, which is not symmetric.
+`tsm.groups.exact` say the same in another form, which is not symmetric.
 """
 
 from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from tsm.elements import rod
 from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array
-from tsm.rods.assembly import Rods, profile_of, touch_of
-from tsm.rods.contact_rows import Explicit, by_selectors, leaning, turned
-from tsm.rods.layout import COLUMNS, CUT, OWN
-from tsm.rods.records import RodBalance
-from tsm.rods.shape import plain_shape
-from tsm.rods.varying import VaryingRods
-from tsm.rods.varying_variation import hessians
+from tsm.elements.rod import Segments
+from tsm.groups.cut import Cut
+from tsm.groups.exact import Entry, ExactGroup, RodBalance
+from tsm.groups.layout import COLUMNS, CUT, OWN
+from tsm.groups.shape import plain_shape, profile_of
 from tsm.state import State
 
 _LONGEST = 7.0
@@ -71,7 +69,7 @@ class _Pieces(NamedTuple):
 
     counts: Array  # pieces of every segment; shape (s,)
     short: Array  # those that keep their moment; shape (p,)
-    # second derivatives of G over the inputs of `rod`, or of `varying`, without what is constant; the
+    # second derivatives of G over the inputs of `rod` without what is constant; the
     # moment is an input of short pieces only; shape (p, 6, 6) or (p, 7, 7)
     hessian: Array
 
@@ -88,14 +86,14 @@ def modes_at_least(balance: RodBalance) -> int:
     arrival of its end takes away.
     """
     segments, field = balance.entry.segments, balance.entry.field
-    falling = (field.gq * field.q - field.N * field.turn) * _square(segments)
+    falling = -field.slope * _square(segments)
     most = np.sqrt(np.maximum(falling.max(axis=1), 0.0)) / _PIECE
     if not most.sum() > _MOST:
         return 0
     return int((np.sqrt(np.maximum(falling.min(axis=1), 0.0)) / math.pi).sum())
 
 
-def _square(segments: Any) -> Array:
+def _square(segments: Segments) -> Array:
     """``h^2/EI``, by which a falling coefficient is multiplied; where EI varies it is ``(int ds/EI)^2 EI``, of shape (s, p)."""
     length, bend = segments.length, segments.flexibility.bend
     square: Array = length * length * bend
@@ -104,13 +102,15 @@ def _square(segments: Any) -> Array:
     return square
 
 
-def variation(rods: Rods, state: State, balance: RodBalance, transfer: Array | None = None) -> Variation:
+def variation(
+    group: ExactGroup, state: State, balance: RodBalance, transfer: Array | None = None
+) -> Variation:
     """Second variation at a state in equilibrium.
 
     ``balance``: their residual there. ``transfer`` (s, 4, 7), optional: transfer of the segments, see
     `rod.Condensed`, where it is known.
     """
-    pieces = _pieces(rods, state, balance, transfer)
+    pieces = _pieces(group, state, balance, transfer)
     place, pairs = balance.entry.place, dict(profile_of(state).cuts)
     begin = np.cumsum(pieces.counts) - pieces.counts
     divided = {int(place.owner[s]) for s in np.flatnonzero(pieces.counts > 1)} if pieces.divided else set()
@@ -120,7 +120,7 @@ def variation(rods: Rods, state: State, balance: RodBalance, transfer: Array | N
         tangent[:] = _PULL
         tangent[:, COLUMNS[:, None], COLUMNS] += pieces.hessian[begin[place.first], :5, :5]
         tangent = _without_force(tangent)
-    bordered = tuple(_bordered(rods, state, balance, pieces, e, pairs.get(e, ())) for e in many)
+    bordered = tuple(_bordered(group, balance, pieces, e, pairs.get(e, ())) for e in many)
     for part in bordered:
         tangent[part.element] = part.matrix[:OWN, :OWN]
     return Variation(tangent, bordered)
@@ -141,94 +141,111 @@ def _without_force(tangent: Array) -> Array:
     return tangent
 
 
-def _pieces(rods: Rods, state: State, balance: RodBalance, transfer: Array | None) -> _Pieces:
+def _pieces(group: ExactGroup, state: State, balance: RodBalance, transfer: Array | None) -> _Pieces:
     entry = balance.entry
     segments, field, start, moment, end = entry.segments, entry.field, entry.start, entry.moment, entry.end
-    arrival, gain = balance.arrival, entry.gain
-    length, whole = segments.length[:, 0], rods.length[entry.place.owner]
-    falling = ((field.gq * field.q - field.N * field.turn) * _square(segments)).max(axis=1)
-    counts = np.ones(len(length), dtype=int)
+    whole = group.length[entry.place.owner]
+    falling = (-field.slope * _square(segments)).max(axis=1)
+    counts = np.ones(len(whole), dtype=int)
     if falling.max() > _LONGEST:
         long = falling > _LONGEST
         counts[long] = np.ceil(np.sqrt(falling[long]) / _PIECE).astype(int)
-        segments, start, moment, end = _divided(rods, state, balance, counts)
-        field, transfer = rods.field(segments), None
-        length, whole = segments.length[:, 0], np.repeat(whole, counts)
-        arrival, gain = rods.arrive(segments, field, start, moment, end), field.sums[0, :, 0] * length
+        segments, start, moment, end = _divided(group, state, entry, counts)
+        field, transfer, whole = rod.field(segments), None, np.repeat(whole, counts)
     if transfer is None:
-        transfer = rods.condense(segments, field, arrival, moment).transfer
+        arrival = rod.arrival(segments, field, start, moment, end)
+        transfer = rod.condense(segments, field, arrival, moment).transfer
+    length = segments.length[:, 0]
+    ends = np.concatenate([start, end, moment, moment + field.sums[0, :, :1] * segments.length], axis=1).T
     short = length < _SHORT * whole
-    if isinstance(rods, VaryingRods):
-        moments = np.stack([moment[:, 0], moment[:, 0] + gain])
-        ends = np.stack([np.stack([start[:, 0], end[:, 0]]), moments])
-        hessian, with_moment = hessians(rods, segments, ends, transfer, state.load_parameter)
-        hessian[short] = with_moment[short]
-        return _Pieces(counts, short, hessian)
-    bent = (moment[:, 0] + gain) * segments.flexibility.bend[:, 0]
-    hessian = _hessian(transfer, bent)
+    hessian = _hessians(group, segments, ends, transfer, state.load_parameter, eliminated=1)
     if short.any():
-        hessian[short] = _hessian_with_moment(transfer[short], bent[short])
+        own = _hessians(group, segments, ends, transfer, state.load_parameter, eliminated=0)
+        hessian[short] = own[short]
     return _Pieces(counts, short, hessian)
 
 
-def _divided(rods: Rods, state: State, balance: RodBalance, count: Array) -> tuple[Any, Array, Array, Array]:
+def _divided(
+    group: ExactGroup, state: State, entry: Entry, count: Array
+) -> tuple[Segments, Array, Array, Array]:
     """Equal pieces of the segments, with their angles and moments at the ends."""
-    entry, own = balance.entry, np.repeat(np.arange(len(count)), count)
-    shape, nodes = plain_shape(rods, state, entry), collocation(entry.segments.angle.shape[1]).c
+    whole, own = entry.segments, np.repeat(np.arange(len(count)), count)
+    shape, nodes = plain_shape(group, state, entry), collocation(whole.angle.shape[1]).c
     inside, ends = [], []
     for s, parts in enumerate(count.tolist()):
         sigma = (np.arange(parts)[:, None] + nodes) / parts
         inside.append(shape.within(s, sigma.ravel()).angle.reshape(sigma.shape))
         at = shape.within(s, np.arange(parts + 1) / parts)
         ends.append(np.stack([at.angle[:-1], at.moment[:-1], at.angle[1:]], axis=1))
-    flexibility = rod.Flexibility(*(value[own] for value in entry.segments.flexibility))
-    length = entry.segments.length[own] / count[own, None]
-    segments: Any = rod.Segments(flexibility, entry.segments.force[:, own], length, np.concatenate(inside))
-    if isinstance(rods, VaryingRods):
-        part = np.arange(len(own)) - (np.cumsum(count) - count)[own]
-        begin = entry.segments.begin[own] + part[:, None] * length
-        segments = segments._replace(force=entry.segments.constant[:, own])
-        segments = rods.placed(entry.segments.owner[own], begin, segments, state.load_parameter)
+    length = whole.length[own] / count[own, None]
+    part = np.arange(len(own)) - (np.cumsum(count) - count)[own]
+    segments = Segments(
+        flexibility=rod.Flexibility(*(value[own] for value in whole.flexibility)),
+        force=whole.constant[:, own],
+        length=length,
+        angle=np.concatenate(inside),
+        constant=whole.constant[:, own],
+        owner=whole.owner[own],
+        begin=whole.begin[own] + part[:, None] * length,
+        curvature=whole.curvature[own],
+    )
     start, moment, end = np.concatenate(ends).T[:, :, None]
-    return segments, start, moment, end
+    return group.placed(segments, state.load_parameter), start, moment, end
 
 
-def _hessian(transfer: Array, bent: Array) -> Array:
-    """Hessians of G (s, 6, 6) over the inputs of segments: the moment at the start is that with which the angle arrives.
+def _hessians(
+    group: ExactGroup,
+    segments: Segments,
+    ends: Array,
+    transfer: Array,
+    load_parameter: float,
+    eliminated: int,
+) -> Array:
+    """Hessians of G over the inputs of segments, (s, 6, 6), or (s, 7, 7) with the arc position of the start where a course varies.
 
-    The second derivative in the length follows from ``dG/dh = - m^2/2EI - N - N^2/2EA - Q^2/2GA`` at the end.
+    ``ends`` (4, s): angles, then moments, at both ends. ``eliminated``: 1 where the moment at the start is that
+    with which the angle arrives; 0 for the Hessian of ``G*(m, phi_j, n, h) - m phi_i``, whose extremum in m is G,
+    with the moment as an input; it is regular at ``h = 0``. With ``H = m^2/2EI + k0 m + N + N^2/2EA + Q^2/2GA`` it is
+    ``dG/dh = - H(a + h)`` and ``dG/da = H(a) - H(a + h)``. Along the arc H changes with what it has at both ends, and
+    explicitly by ``(1/EI)' m^2/2 + (1/EA)' N^2/2 + (1/GA)' Q^2/2 - q . r'``.
     """
+    course, by = segments.course, transfer[:, :, [0, 1, 2, 3, 4, 5, *([rod.ARC] if segments.course else [])]]
     with np.errstate(all="ignore"):
-        moment = transfer[:, 0, :6] / -transfer[:, 0, 1, None]
-        arriving = transfer[:, 1:, :6] + transfer[:, 1:, 1, None] * moment[:, None, :]
-    hessian = np.empty((len(transfer), 6, 6))
-    hessian[:, 0], hessian[:, 2] = -moment, arriving[:, 0]
-    np.negative(arriving[:, 1:], out=hessian[:, 3:5])
-    hessian[:, 1] = hessian[:, :, 1] = 0.0
-    hessian[:, 5, :5] = hessian[:, :5, 5]
-    hessian[:, 5, 5] = -bent * hessian[:, 2, 5]
-    return hessian
-
-
-def _hessian_with_moment(transfer: Array, bent: Array) -> Array:
-    """Hessians of ``G*(m, phi_j, n, h) - m phi_i``, whose extremum in m is G, with the moment as an input; regular at ``h = 0``."""
-    angle = transfer[:, 0, :6] / -transfer[:, 0, 0, None]
-    angle[:, 0] = 0.0
-    arriving = transfer[:, 1:, :6] + transfer[:, 1:, 0, None] * angle[:, None, :]
-    hessian = np.zeros((len(transfer), 6, 6))
-    hessian[:, 1], hessian[:, 2], hessian[:, 3:5] = angle, arriving[:, 0], -arriving[:, 1:]
-    hessian[:, :, 0] = 0.0
-    hessian[:, 0, 1] = hessian[:, 1, 0] = -1.0
-    hessian[:, 5, :5] = hessian[:, :5, 5]
-    hessian[:, 5, 5] = -bent * hessian[:, 2, 5]
+        given = by[:, 0] / -by[:, 0, eliminated, None]
+        if not eliminated:
+            given[:, 0] = 0.0
+        arriving = by[:, 1:] + by[:, 1:, eliminated, None] * given[:, None, :]
+    hessian = np.zeros((len(by), by.shape[2], by.shape[2]))
+    hessian[:, 1 - eliminated] = -given if eliminated else given
+    hessian[:, 2], hessian[:, 3:5] = arriving[:, 0], -arriving[:, 1:]
+    hessian[:, :, eliminated] = 0.0
+    if not eliminated:
+        hessian[:, 0, 1] = hessian[:, 1, 0] = -1.0
+    hessian[:, 5:, :5] = hessian[:, :5, 5:].transpose(0, 2, 1)
+    if course is None:
+        hessian[:, 5, 5] = -ends[3] * segments.flexibility.bend[:, 0] * hessian[:, 2, 5]
+        return hessian
+    arcs = np.concatenate([segments.begin, segments.begin + segments.length], axis=1)
+    course = group.course(segments.owner, arcs, load_parameter)
+    (nx, ny), angles, moments = segments.constant - course.resultant, ends[:2].T, ends[2:].T
+    c, s = np.cos(angles), np.sin(angles)
+    N, Q, (stretch, shear, bend) = nx * c + ny * s, ny * c - nx * s, course.flexibility
+    along, across, (qx, qy), (e, u, b) = 1 + stretch * N, shear * Q, course.load, course.slope
+    own = (b * moments**2 + e * N**2 + u * Q**2) / 2
+    own -= qx * (along * c - across * s) + qy * (along * s + across * c)
+    turn = bend * moments + segments.curvature
+    change = Q[:, 0] * (1 + (stretch - shear) * N)[:, 0] if not eliminated else turn[:, 0]
+    hessian[:, 5, 5] = -turn[:, 1] * hessian[:, 2, 5] - own[:, 1]
+    hessian[:, 5, 6] = hessian[:, 6, 5] = -turn[:, 1] * hessian[:, 2, 6] - own[:, 1]
+    hessian[:, 6, 6] = change * given[:, 6] + own[:, 0] + hessian[:, 5, 6]
     return hessian
 
 
 def _bordered(
-    rods: Rods, state: State, balance: RodBalance, pieces: _Pieces, element: int, pairs: tuple[int, ...]
+    group: ExactGroup, balance: RodBalance, pieces: _Pieces, element: int, pairs: tuple[int, ...]
 ) -> Bordered:
     """Matrix of an element of several pieces; its stations are the contacts and where a segment is divided."""
-    place, model = balance.entry.place, rods.model
+    place, model = balance.entry.place, group.model
     first, last = int(place.first[element]), int(place.last[element])
     counts = tuple(pieces.counts[first : last + 1].tolist())
     begin = int(pieces.counts[:first].sum())
@@ -237,11 +254,8 @@ def _bordered(
     fixed, inputs, directions = _stations(counts, short, pieces.hessian.shape[1])
     matrix = fixed + (inputs.transpose(0, 2, 1) @ (pieces.hessian[own] @ inputs)).sum(axis=0)
     for n, k in enumerate(pairs):
-        pair, touch = model.pairs[k], touch_of(state, k)
-        if pair.reach:
-            arc = rods.slopes(state, k, balance)[0] if isinstance(rods, VaryingRods) else None
-            face = pair.reach_at(pair.arc_position(touch)), pair.steep
-            matrix += _surface(touch.force, balance.tangents[k], face, directions[n], arc)
+        if model.pairs[k].reach:
+            matrix += _surface(balance.entry.cuts[k], directions[n])
     slots = [slot for k in pairs for slot in range(model.pairs[k].slot, model.pairs[k].slot + CUT)]
     slots += [-1] * (len(matrix) - OWN - len(slots))
     return Bordered(element, _without_force(matrix), slots, sum(short))
@@ -253,8 +267,8 @@ def _stations(counts: tuple[int, ...], short: tuple[bool, ...], width: int) -> t
 
     Returns ``fixed`` (n, n), second derivatives of ``n . (r_j - r_i) - sum F . (r_j - x_c)``;
     ``inputs`` (pieces, width, n), inputs of the pieces by the element's unknowns; only short pieces have a
-    moment. The seventh is the arc position of the start; ``directions`` (contacts, 6, n), angle, force
-    before, contact force and arc position of every contact by the same.
+    moment. The seventh is the arc position of the start; ``directions`` (contacts, 8, n), angle, force
+    before, contact force, arc position, and zeros of every contact by the same.
     """
     contacts, pieces = len(counts) - 1, sum(counts)
     own_angle = OWN + CUT * contacts
@@ -262,7 +276,7 @@ def _stations(counts: tuple[int, ...], short: tuple[bool, ...], width: int) -> t
     rows = np.eye(own_moment + sum(short))
     fixed, inputs = np.zeros_like(rows), np.zeros((pieces, width, len(rows)))
     fixed[:OWN, :OWN] = _PULL
-    directions = np.zeros((contacts, 6, len(rows)))
+    directions = np.zeros((contacts, 8, len(rows)))
     force, angle, arc, piece = rows[3:5].copy(), rows[2], np.zeros(len(rows)), 0
     for segment, count in enumerate(counts):
         own, ahead = OWN + CUT * segment, segment < contacts
@@ -279,43 +293,21 @@ def _stations(counts: tuple[int, ...], short: tuple[bool, ...], width: int) -> t
         arc = ends
         if ahead:
             fixed[[own, own + 1, 6, 7], [6, 7, own, own + 1]] -= 1
-            directions[segment] = [rows[own + 3], *force, *rows[own : own + 3]]
+            directions[segment, :6] = [rows[own + 3], *force, *rows[own : own + 3]]
             force -= rows[own : own + 2]
     return fixed, inputs, directions
 
 
-def _surface(
-    force: tuple[float, float],
-    tangents: tuple[rod.Tangent, rod.Tangent],
-    face: tuple[float, float],
-    selectors: Array,
-    by_arc: Array | None,
-) -> Array:
-    """Second derivatives of ``- reach F . nu``, where F is parallel to nu, the normal to the right of the sum of the tangent vectors.
+def _surface(cut: Cut, selectors: Array) -> Array:
+    """Second derivatives of ``- reach F . nu``, where F is parallel to nu, the normal of the surface, to the right of the beam.
 
-    With beta the angle of the sum and tau its direction, ``d nu = tau d beta`` and ``d^2 nu = tau d^2 beta - nu d beta^2``. Where the
-    offset changes along the beam, nu is the normal of the face and leans from the normal of the axis.
+    With beta the angle of its direction tau, ``d nu = tau d beta`` and ``d^2 nu = tau d^2 beta - nu d beta^2``.
     """
-    reach, steep = face
-    if steep:
-        explicit = None if by_arc is None else Explicit(np.outer(by_arc, selectors[5]), selectors[5])
-        leant, F = leaning(tangents, steep), np.array(force)
-        turn = turned(leant, by_selectors(tangents, selectors[:5], explicit))
-        both = reach * np.outer(leant.along @ selectors[3:5], turn)
-        both += steep * np.outer(leant.normal @ selectors[3:5], selectors[5])
-        envelope: Array = reach * (leant.normal @ F) * np.outer(turn, turn) - both - both.T
-        return envelope
-    before, after = tangents
-    tx, ty = before.vector[0] + after.vector[0], before.vector[1] + after.vector[1]
-    (xx, xy, yy), (ax, ay, aa) = before.compliance, after.compliance
-    turned_x = [before.turned[0] + after.turned[0], xx + ax, xy + ay, -ax, -ay]
-    turned_y = [before.turned[1] + after.turned[1], xy + ay, yy + aa, -ay, -aa]
-    size = math.hypot(tx, ty)
-    turn = (tx * np.array(turned_y) - ty * np.array(turned_x)) / size**2 @ selectors[:5]
-    if by_arc is not None:
-        turn = turn + (tx * by_arc[1] - ty * by_arc[0]) / size**2 * selectors[5]
-    along = np.array([tx, ty]) / size @ selectors[3:5]
-    across = (force[0] * ty - force[1] * tx) / size
-    both = np.outer(along, turn)
-    surface: Array = -reach * (both + both.T - across * np.outer(turn, turn))
-    return surface
+    pair, force, reach = cut.pair, np.array(cut.touch.force), cut.pair.reach_at(cut.here.arc)
+    normal, along = np.array(pair.face(cut.here))
+    along /= np.hypot(*along)
+    turn = along @ cut.derivatives(1.0, selectors)[:2] / reach
+    both = reach * np.outer(along @ selectors[3:5], turn)
+    both += pair.steep * np.outer(normal @ selectors[3:5], selectors[5])
+    envelope: Array = reach * (normal @ force) * np.outer(turn, turn) - both - both.T
+    return envelope

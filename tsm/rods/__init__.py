@@ -1,1 +1,0 @@
-"""Exact elements: the Reissner rod's equations from load to load."""
