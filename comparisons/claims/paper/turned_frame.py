@@ -14,8 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from tsm.elements import cantilever
-from tsm.elements.chord_contact import INSIDE
+from tsm.elements.kinds.paper import INSIDE, cantilever
 from tsm.elements.properties import Array, Properties
 
 NAME = "euler-bernoulli-cantilever, turned frame"
@@ -36,7 +35,7 @@ def contact(p: Properties, x: Array, lever: Any) -> tuple[Array, Array]:
     t, n = frame(p, x)
     d, r = np.array([p.dx0, p.dy0]) + (x[3:5] - x[:2]), -np.asarray(lever)
     xi = min(max(t @ r / p.l0, INSIDE), 1 - INSIDE)
-    K, _ = cantilever.euler_bernoulli(p, xi)
+    K = cantilever(p, xi)
     Yj, Yc, Mj = K @ np.array([n @ d, n @ r, x[5] - x[2]])
     length = np.sqrt(d @ d)
     du = d - np.array([p.dx0, p.dy0])

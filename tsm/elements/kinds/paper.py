@@ -1,32 +1,260 @@
-"""The elements of the paper, corrected and as printed."""
+"""The elements of the paper, corrected and as printed. Their contact force is a stiffness times a deflection and normal to the chord.
+
+The basic system is simply supported on the chord, with the element edge forces ``S = [N, M_i, M_j, Y_c]`` ([P] (3)). The contact point
+has the distances a and b from the ends, measured on the chord as parts of l0. The nodal forces are ``U = J S``, with J the transposed
+derivative of the basic deformations. The tangent is ``J (dS/dv) J^T + dJ S + J (dS/da) da``. [P] does not state its last part, which
+makes Newton's method quadratic while the node slides. The tangent is not symmetric.
+
+The stiffness has powers of a and b in its denominators. The paper calls the loss of accuracy beside a node the critical area.
+
+The second element has another basic system, a cantilever clamped at end i. Its frame has x along the tangent at end i and y across it. The
+element edge forces ``[Y_j, Y_c, M_j]`` belong to the deflections y_j of end j and y_c of the contact point and to the rotation of end j, all
+measured from the tangent at end i ([P] (7), Fig. 4). [P] prints no J. To first order in the rotations, this frame is the frame of the chord
+turned by theta_i, so that ::
+
+    [y_j, y_c, theta_j]_cantilever = T [theta_i, theta_j, y_c]_chord,    T = [[-l0, 0, 0], [-a, 0, 1], [-1, 1, 0]]
+
+and ``S = T^T K T v``. In exact arithmetic this is the element of [P] (5); only the round-off differs. Transformation and stiffness are
+therefore applied one after the other, as the basic system states them, and not multiplied out.
+
+The matrices as printed are to see what their misprints do, see tsm/elements/errata.md. Each is the corrected matrix except for the misprinted
+entries, which mix dimensions: what these elements do depends on the unit of length. Lengths on the chord are measured as in the corrected
+elements, as parts of l0, so that the misprints are the only difference.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
-from tsm.elements import as_printed, cantilever, chord_contact
+import numpy as np
+
 from tsm.elements.beam import linear_coefficients
-from tsm.elements.chord_contact import ElementForce, simply_supported
+from tsm.elements.contact_law import ContactLaw
 from tsm.elements.element_type import ClosedForm
+from tsm.elements.properties import Array, Properties, chord_rotation, unwind
+from tsm.elements.varied import STEP
+
+Matrix = Callable[[Properties, Any], Array]
+"""Matrix at a given ``xi = a/l0``: the stiffness of a basic system, or T."""
+
+ElementForce = Callable[[Properties, Any, Array], tuple[Array, Array, Array]]
+"""Element force equation: from ``xi`` and ``v = [theta_i, theta_j, y_c]`` to ``S = [M_i, M_j, Y_c]``, dS/dv, dS/da."""
+
+INSIDE = 1e-15
+"""Least distance of a contact point from the ends of the element, over its length: at the ends K is infinite."""
+
+# element displacements (6), node (2)  ->  r = x_c - x_i, chord d, theta_i, theta_j
+_REDUCE = np.zeros((6, 8))
+_REDUCE[0, [0, 6]] = _REDUCE[1, [1, 7]] = -1, 1
+_REDUCE[2, [0, 3]] = _REDUCE[3, [1, 4]] = -1, 1
+_REDUCE[4, 2] = _REDUCE[5, 5] = 1
 
 
-def _element(name: str, source: str, force: ElementForce, **more: Any) -> ClosedForm:
-    return ClosedForm(
-        name=name, source=source, coefficients=linear_coefficients, contact=chord_contact.law(force), **more
+def euler_bernoulli(p: Properties, xi: Any) -> Array:
+    """Matrix of [P] (5)-(6), corrected, over ``[theta_i, theta_j, y_c]``.
+
+    `timoshenko` at ``Psi = 0``; ``M_i-theta_j`` is ``-EI/l0``. The shear number of the element is not read.
+    """
+    l0, k = p.l0, p.EI / p.l0
+    a, b = xi * l0, (1 - xi) * l0
+    iy, jy = l0 * l0 / (a * a * b), l0 * l0 / (a * b * b)
+    K: Array = k * np.array(
+        [
+            [4 + 3 * b / a, -1, -3 * iy],
+            [-1, 4 + 3 * a / b, 3 * jy],
+            [-3 * iy, 3 * jy, 3 * iy * jy],
+        ]
     )
+    return K
+
+
+def timoshenko(p: Properties, xi: Any) -> Array:
+    """Matrix of [P] (9)-(12), corrected, over ``[theta_i, theta_j, y_c]``.
+
+    ``M_i-theta_j`` is ``(9 Psi (l0^2 - ab) - Omega) k_c``; as printed it mixes dimensions. ``Psi = 0`` gives the
+    Euler-Bernoulli element (5)-(6).
+    """
+    l0 = p.l0
+    Psi = p.Phi * l0 * l0 / 12
+    a, b = xi * l0, (1 - xi) * l0
+    z, square = a * b, 108 * Psi * Psi
+    omega = _omega(p, xi)
+    kc = p.EI / (l0 * omega)
+    ij = 9 * Psi * (l0 * l0 - z) - omega
+    iy, jy = -3 * l0 * (b * l0 + 6 * Psi), 3 * l0 * (a * l0 + 6 * Psi)
+    K: Array = kc * np.array(
+        [
+            [4 * omega + 3 * z * b * b - square, ij, iy],
+            [ij, 4 * omega + 3 * z * a * a - square, jy],
+            [iy, jy, 3 * l0 * l0 * (l0 * l0 + 12 * Psi) / z],
+        ]
+    )
+    return K
+
+
+def _omega(p: Properties, xi: Any) -> Any:
+    Psi, z = p.Phi * p.l0 * p.l0 / 12, xi * p.l0 * ((1 - xi) * p.l0)
+    return z * z + 3 * Psi * (p.l0 * p.l0 + z) + 36 * Psi * Psi
+
+
+def cantilever(p: Properties, xi: Any) -> Array:
+    """Matrix of [P] (7)-(8), corrected, over ``[y_j, y_c, theta_j]``.
+
+    The brackets of [P] (7) times ``k_b = 3 EI/(l a^3 b^3)``, with ``-a^2 l (a + 3b)`` for Y_j-y_c and
+    ``+a^2 b l^2`` for Y_c-theta_j. The shear number of the element is not read.
+    """
+    l0, k = p.l0, 3 * p.EI
+    a, b = xi * l0, (1 - xi) * l0
+    jc = -(a + 3 * b) / (a * b**3)
+    jt = -(a + 2 * b) / (l0 * b * b)
+    ct = l0 / (a * b * b)
+    K: Array = k * np.array(
+        [
+            [(a + 4 * b) / (l0 * b**3), jc, jt],
+            [jc, l0**3 / (a * b) ** 3, ct],
+            [jt, ct, (3 * a + 4 * b) / (3 * l0 * b)],
+        ]
+    )
+    return K
+
+
+def transformation(p: Properties, xi: Any) -> Array:
+    """Matrix T that takes the deformations of the beam simply supported on the chord to the deformations of the cantilever."""
+    return np.array([[-p.l0, 0, 0], [-xi * p.l0, 0, 1], [-1, 1, 0]])
+
+
+def euler_bernoulli_as_printed(p: Properties, xi: Any) -> Array:
+    """Matrix of [P] (5)-(6): ``(9 l0^2 - a^2 b^2)/(a^2 b^2) k_a`` for M_i-theta_j."""
+    K, l0, a, b = euler_bernoulli(p, xi), p.l0, xi * p.l0, (1 - xi) * p.l0
+    K[0, 1] = K[1, 0] = (9 * l0 * l0 / (a * b) ** 2 - 1) * p.EI / l0
+    return K
+
+
+def cantilever_as_printed(p: Properties, xi: Any) -> Array:
+    """Matrix of [P] (7)-(8): ``k_b = 3 EI/(a^3 b^3)``, ``-a^2 b`` for Y_c-theta_j.
+
+    Without the ``1/l`` that k_b lacks, Y_j-y_c is right as printed, Y_c-theta_j has the wrong sign and lacks a length, and
+    the others have a length too much.
+    """
+    misprint = [[p.l0, 1, p.l0], [1, p.l0, -1 / p.l0], [p.l0, -1 / p.l0, p.l0]]
+    K: Array = np.array(misprint) * cantilever(p, xi)
+    return K
+
+
+def timoshenko_as_printed(p: Properties, xi: Any) -> Array:
+    """Matrix of [P] (9)-(12): ``(9 (l0^2 - b Psi) - Omega) k_c`` for M_i-theta_j."""
+    K, l0, omega = timoshenko(p, xi), p.l0, _omega(p, xi)
+    printed = 9 * (l0 * l0 - (1 - xi) * l0 * p.Phi * l0 * l0 / 12)
+    K[0, 1] = K[1, 0] = (printed - omega) * p.EI / (l0 * omega)
+    return K
+
+
+def force_equation(stiffness: Matrix, basis: Matrix | None = None) -> ElementForce:
+    """Element force equation of a stiffness, over other deformations than v where there is a `basis` T."""
+
+    def at(p: Properties, xi: Any, v: Array) -> tuple[Array, Array]:
+        K = stiffness(p, xi)
+        if basis is None:
+            return K @ v, K
+        T = basis(p, xi)
+        return (K @ (T @ v)) @ T, T.T @ K @ T
+
+    def element_force(p: Properties, xi: Any, v: Array) -> tuple[Array, Array, Array]:
+        along, _ = at(p, xi.real + 1j * STEP, v.real)
+        return *at(p, xi, v), along.imag / (STEP * p.l0)
+
+    return element_force
+
+
+def response(
+    element_force: ElementForce, p: Properties, x: Any, lever: Any, side: float, offset: float
+) -> tuple[Array, Array]:
+    """Forces and exact tangent of an element together with the node that touches it.
+
+    ``lever``: ``x_i - x_c``, from the contacting node to the element's end i. ``side``: +1 where the node
+    comes from the right, -1 from the left. ``offset``: distance of the contact surface from the axis. Returns
+    ``force`` (8,), on the element (6) and the node (2); ``tangent`` (8, 8), its derivative.
+    """
+    (dx, dy), (rx, ry) = (p.dx0 + (x[3] - x[0]), p.dy0 + (x[4] - x[1])), (-lever[0], -lever[1])
+    length = np.sqrt(dx * dx + dy * dy)
+    t = np.array([dx, dy]) / length
+    n = np.array([-t[1], t[0]])
+    turn = chord_rotation(p.dx0 * dy - p.dy0 * dx, p.dx0 * dx + p.dy0 * dy)
+    y = n[0] * rx + n[1] * ry
+    xi = (dx * rx + dy * ry) / (dx * dx + dy * dy)
+    if not INSIDE <= xi.real <= 1 - INSIDE:
+        xi = min(max(xi.real, INSIDE), 1 - INSIDE)
+    du, dv = x[3] - x[0], x[4] - x[1]
+    elongation = (2 * (p.dx0 * du + p.dy0 * dv) + du * du + dv * dv) / (length + p.l0)
+    deformation = np.array([unwind(x[2] - turn), unwind(x[5] - turn), y + side * offset])
+    S, K, slope = element_force(p, xi, deformation)
+    N = p.EA / p.l0 * elongation
+
+    B = np.zeros((3, 6), dtype=S.dtype)
+    B[:2, 2:4] = -n / length
+    B[0, 4] = B[1, 5] = 1
+    B[2, :2], B[2, 2:4] = n, -xi * n
+    stretch = np.zeros(6, dtype=S.dtype)
+    stretch[2:4] = t
+    slide = np.zeros(6, dtype=S.dtype)
+    slide[:2], slide[2:4] = t / length, (y * n - xi * length * t) / length**2
+
+    nn, tn = np.outer(n, n), np.outer(t, n)
+    tn = tn + tn.T
+    geometric = np.zeros((6, 6), dtype=S.dtype)
+    geometric[2:4, 2:4] = (
+        N / length * nn + (S[0] + S[1]) / length**2 * tn + S[2] * (xi * tn / length - y * nn / length**2)
+    )
+    geometric[:2, 2:4] = -S[2] / length * np.outer(t, n)
+    geometric[2:4, :2] = geometric[:2, 2:4].T
+
+    force = N * stretch + S @ B
+    tangent = p.EA / p.l0 * np.outer(stretch, stretch) + B.T @ K @ B + geometric
+    tangent += np.outer(slope @ B, p.l0 * slide)
+    return force @ _REDUCE, _REDUCE.T @ tangent @ _REDUCE
+
+
+def law(element_force: ElementForce) -> ContactLaw:
+    """Contact law of an element force equation: the force is normal to the chord and follows from the displacements."""
+
+    def respond(
+        p: Properties, x: Any, lever: Any, _xi: Any, _force: Any, side: float, offset: float
+    ) -> tuple[Array, Array]:
+        try:
+            with np.errstate(all="ignore"):
+                return response(element_force, p, x, lever, side, offset)
+        except ArithmeticError:
+            # plain numbers raise where arrays overflow or divide by zero
+            return np.full(8, np.nan), np.full((8, 8), np.nan)
+
+    def energy(p: Properties, x: Any, lever: Any, xi: Any, force: Any, side: float, offset: float) -> float:
+        """Energy of the spring between node and element, ``(F.F)^2/(2 F.K F)``."""
+        gradient, tangent = respond(p, x, lever, xi, force, side, offset)
+        F = gradient[6:8]
+        return float(F @ F) ** 2 / (2 * float(F @ tangent[6:8, 6:8] @ F) or 1.0)
+
+    return ContactLaw(response=respond, energy=energy)
+
+
+def _element(
+    name: str, source: str, stiffness: Matrix, basis: Matrix | None = None, **more: Any
+) -> ClosedForm:
+    contact = law(force_equation(stiffness, basis))
+    return ClosedForm(name=name, source=source, coefficients=linear_coefficients, contact=contact, **more)
 
 
 TIMOSHENKO = _element(
     "timoshenko",
     "[P] (9)-(12), corrected",
-    simply_supported(chord_contact.timoshenko),
+    timoshenko,
     colour="#0072B2",
     marker="^",
 )
 EULER_BERNOULLI_SIMPLE = _element(
     "euler-bernoulli-simple",
     "[P] (5)-(6), corrected",
-    simply_supported(chord_contact.euler_bernoulli),
+    euler_bernoulli,
     sheared=False,
     colour="#D55E00",
     marker="o",
@@ -34,7 +262,8 @@ EULER_BERNOULLI_SIMPLE = _element(
 EULER_BERNOULLI_CANTILEVER = _element(
     "euler-bernoulli-cantilever",
     "[P] (7)-(8), corrected",
-    cantilever.clamped(cantilever.euler_bernoulli),
+    cantilever,
+    transformation,
     sheared=False,
     colour="#E69F00",
     marker="s",
@@ -45,14 +274,14 @@ _PRINTED = (
     _element(
         "timoshenko-as-printed",
         "[P] (9)-(12) with its misprints",
-        simply_supported(as_printed.timoshenko),
+        timoshenko_as_printed,
         variant=True,
         colour=TIMOSHENKO.colour,
     ),
     _element(
         "euler-bernoulli-simple-as-printed",
         "[P] (5)-(6) with its misprint",
-        simply_supported(as_printed.euler_bernoulli),
+        euler_bernoulli_as_printed,
         sheared=False,
         variant=True,
         colour=EULER_BERNOULLI_SIMPLE.colour,
@@ -60,7 +289,8 @@ _PRINTED = (
     _element(
         "euler-bernoulli-cantilever-as-printed",
         "[P] (7)-(8) with its misprints",
-        cantilever.clamped(as_printed.euler_bernoulli_cantilever),
+        cantilever_as_printed,
+        transformation,
         sheared=False,
         variant=True,
         colour=EULER_BERNOULLI_CANTILEVER.colour,
