@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
 AT_NODE = 1e-9
 """Part of an element's length that a contact may lie past its end: at a node, round-off would send it back and forth for ever."""
-PROJECTIONS, PROJECTED = 20, 1e-14
-"""Newton steps of a projection at most, and the step at which the closest point is found."""
 
 
 class Projection(NamedTuple):

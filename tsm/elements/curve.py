@@ -36,18 +36,6 @@ class Curve:
             (6 * xi - 4) * a + (6 * xi - 2) * b,
         )
 
-    def approach(self, xi: Any, rx: Any, ry: Any) -> tuple[Any, tuple[Any, Any], tuple[Any, Any]]:
-        """Newton step from xi towards the point of the curve that is closest to a node.
-
-        ``rx, ry``: vector from the node to the element's end i. Returns what
-        to take from xi, the vector from the node to the curve at xi, and the tangent there.
-        """
-        (w, dw, ddw), dx, dy = self.deflection(xi), self.dx, self.dy
-        px, py = rx + xi * dx - w * dy, ry + xi * dy + w * dx
-        tx, ty = dx - dw * dy, dy + dw * dx
-        step = (px * tx + py * ty) / (tx * tx + ty * ty + ddw * (py * dx - px * dy))
-        return step, (px, py), (tx, ty)
-
     def deflection_slope(self, xi: Any) -> tuple[Any, tuple[Any, ...]]:
         """Return w and its derivatives in ``(dx, dy, theta_i, theta_j, xi)``."""
         eta = 1 - xi

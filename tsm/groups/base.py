@@ -9,13 +9,18 @@ import numpy as np
 
 from tsm.contact_block import ContactBlock
 from tsm.elements.properties import Array
-from tsm.projection import Projection
+from tsm.projection import Projection, slide
 from tsm.state import State, Touch, Traction
 
 if TYPE_CHECKING:
     from tsm.groups.shape import Stations
     from tsm.model import Model
     from tsm.pairs import BeamModel, PairModel
+
+_STEPS, _PROJECTED = 30, 1e-14
+"""Newton steps of a projection at most, and the step, in lengths of an element, at which the closest point is found."""
+_PARTS = 33
+"""Longest step, as a part of an element's length."""
 
 
 class GroupForces(Protocol):
@@ -128,8 +133,41 @@ class ElementGroup(ABC):
         """Closest point of the deflected axis to the pair's node, with the dents of the contacts that are closed."""
 
     @abstractmethod
+    def point(self, element: int, arc: float, state: State) -> tuple[Array, Array, Array]:
+        """Point (2,) of the axis at an arc position within an element, tangent per arc, and the tangent's derivative, without dents."""
+
     def end(self, pair: PairModel, state: State, *, last: bool) -> tuple[Array, Array]:
         """Vector from a pair's node to the start of its beam, or to its end if `last`, and a tangent there."""
+        target = pair.target
+        element, arc = (target.last, target.lengths[-1]) if last else (target.first, 0.0)
+        position, tangent, _ = self.point(element, arc, state)
+        return position - self.model.node_position(pair, state.q, state.load_parameter), tangent
+
+    def closest(self, pair: PairModel, state: State, e: int, arc: float) -> tuple[int, float, Array, Array]:
+        """Closest point by Newton's method from an arc position within element e of the pair's beam.
+
+        The axis goes on along its tangents beyond the ends of the beam. Returns the number of the element on the
+        beam, the position on it, the vector from the node to the point, and the tangent.
+        """
+        target, steep = pair.target, pair.side * pair.steep
+        node = np.array(self.model.node_position(pair, state.q, state.load_parameter))
+        for _ in range(_STEPS):
+            l0 = target.lengths[e]
+            inside = min(max(arc, 0.0), l0)
+            position, tangent, bend = self.point(target.first + e, inside, state)
+            apart = position + (arc - inside) * tangent - node
+            slope = float(tangent @ tangent) + (float(bend @ apart) if inside == arc else 0.0)
+            along = float(apart @ tangent)
+            if steep:
+                distance = float(np.hypot(*apart))
+                slope, along = slope - steep * along / distance, along - steep * distance
+            step = along / slope if slope > 0 else 0.0
+            arc -= min(max(step, -l0 / _PARTS), l0 / _PARTS)
+            e, place = slide(target.lengths, e, arc / l0)
+            arc = place * target.lengths[e]
+            if abs(step) < _PROJECTED * l0:
+                break
+        return e, place, apart, tangent
 
     @abstractmethod
     def direction(self, touch: Touch, q: Array) -> tuple[float, float]:

@@ -17,16 +17,7 @@ from tsm.elements.properties import Array, Properties
 from tsm.elements.varied import plain
 from tsm.groups.base import ElementGroup
 from tsm.groups.shape import Stations
-from tsm.projection import (
-    AT_NODE,
-    PROJECTED,
-    PROJECTIONS,
-    Projection,
-    arc_position,
-    overshoot,
-    project_on_chords,
-    slide,
-)
+from tsm.projection import AT_NODE, Projection, arc_position, overshoot, project_on_chords
 from tsm.state import State, Touch, Traction
 
 if TYPE_CHECKING:
@@ -161,33 +152,32 @@ class ClosedFormGroup(ElementGroup):
         start_x, start_y = model.element_start[element]
         return model.element[element], x, (start_x + x[0] - cx, start_y + x[1] - cy)
 
+    def point(self, element: int, arc: float, state: State) -> tuple[Array, Array, Array]:
+        """Point of the curve, its tangent, and the tangent's derivative."""
+        model, p = self.model, self.model.element[element]
+        x = state.q[model.dofs[:, element]].tolist()
+        curve, xi, (start_x, start_y) = Curve(p, x), arc / p.l0, model.element_start[element]
+        (w, dw, ddw), dx, dy = curve.deflection(xi), curve.dx, curve.dy
+        position = np.array([start_x + x[0] + xi * dx - w * dy, start_y + x[1] + xi * dy + w * dx])
+        tangent, bend = np.array([dx - dw * dy, dy + dw * dx]), ddw * np.array([-dy, dx])
+        return position, tangent / p.l0, bend / p.l0**2
+
     def project(self, pair: PairModel, state: State) -> Projection:
         """Closest point. The chords give the owner, and Newton's method on the owner's curve gives the point."""
-        target, q, model = pair.target, state.q, self.model
-        node = model.node_position(pair, q, state.load_parameter)
-        positions = model.coordinates[target.nodes] + q.reshape(-1, 3)[target.nodes, :2]
+        target, model = pair.target, self.model
+        node = model.node_position(pair, state.q, state.load_parameter)
+        positions = model.coordinates[target.nodes] + state.q.reshape(-1, 3)[target.nodes, :2]
         owner, places = project_on_chords(positions, np.array(node))
-        e, xi = int(owner), float(places[owner])
-        for _ in range(PROJECTIONS):
-            p, x, lever = self._lever(pair, target.first + e, state)
-            step, (px, py), (tx, ty) = Curve(p, x).approach(xi, *lever)
-            e, xi = slide(target.lengths, e, xi - step)
-            if abs(step) < PROJECTED:
-                break
+        start = float(places[owner]) * target.lengths[owner]
+        e, xi, apart, (tx, ty) = self.closest(pair, state, owner, start)
         element = target.first + e
         for touch in state.touches:
             if pair.law.cross and touch is not None and touch.element == element:
                 dent = pair.cross(model.element[element], xi, touch.xi)[0]
-                px, py = px + dent * touch.force[0], py + dent * touch.force[1]
-        height = (py * tx - px * ty) / math.hypot(tx, ty)
+                apart = apart + dent * np.array(touch.force)
+        height = (apart[1] * tx - apart[0] * ty) / math.hypot(tx, ty)
         beyond = overshoot(target, arc_position(target, element, xi))
-        return Projection(element, xi, pair.side * height - pair.pair.offset, beyond)
-
-    def end(self, pair: PairModel, state: State, *, last: bool) -> tuple[Array, Array]:
-        """The ends of the first or last element's curve."""
-        p, x, lever = self._lever(pair, pair.target.last if last else pair.target.first, state)
-        _, apart, tangent = Curve(p, x).approach(float(last), *lever)
-        return np.array(apart), np.array(tangent)
+        return Projection(element, xi, float(pair.side * height - pair.pair.offset), beyond)
 
     def direction(self, touch: Touch, q: Array) -> tuple[float, float]:
         """Chord of the touched element."""

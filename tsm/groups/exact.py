@@ -38,7 +38,7 @@ from tsm.groups.shape import (
     truncation,
     undeformed,
 )
-from tsm.projection import PROJECTED, Projection, arc_position, overshoot, slide
+from tsm.projection import Projection, arc_position, overshoot
 from tsm.state import Cuts, Profile, State, Touch, Traction
 
 if TYPE_CHECKING:
@@ -51,8 +51,6 @@ _UNDEFORMED_ORDER = 24
 """Gauss nodes of an undeformed element."""
 _SAMPLES = 33
 """Points of an element in the search for the nearest one."""
-_STEPS = 30
-"""Largest number of Newton steps of a projection."""
 _POINTS, _LINES = 100, 60
 """Intervals in which a beam is drawn, and short lines along it, at least 10 and 4 for an element."""
 
@@ -455,9 +453,10 @@ class ExactGroup(ElementGroup):
         moved = replace(state, load_parameter=t, q=state.q + step * dofs, touches=touches, profile=angle)
         return float(self.load_work(moved).imag / STEP)
 
-    def _axis(self, shape: RodShape, element: int, arc: float) -> tuple[Array, Array, Array]:
-        """Position of an element's axis at an arc position, tangent vector r', and its derivative along the arc."""
-        at, section = shape.at(element, np.array([arc])), self.section(element, arc, 0.0)
+    def point(self, element: int, arc: float, state: State) -> tuple[Array, Array, Array]:
+        """Point of an element's axis at an arc position, tangent vector r', and its derivative along the arc."""
+        place = int(self.model.place[element])
+        at, section = deflected(self, state)[0].at(place, np.array([arc])), self.section(place, arc, 0.0)
         turn = section.bend * at.moment[0] + section.curvature
         angle = at.angle[0] + 1j * STEP * turn
         axis = np.array(rod.tangent(section.stretch, section.shear, at.force[0].tolist(), angle))
@@ -465,50 +464,25 @@ class ExactGroup(ElementGroup):
 
     def project(self, pair: PairModel, state: State) -> Projection:
         """Closest point, the last ones found at the same state kept."""
-        shape, closest = deflected(self, state)
-        if pair.slot not in closest:
-            closest[pair.slot] = self._project(pair, state, shape)
-        return closest[pair.slot]
+        _, known = deflected(self, state)
+        if pair.slot not in known:
+            known[pair.slot] = self._project(pair, state)
+        return known[pair.slot]
 
-    def _project(self, pair: PairModel, state: State, shape: RodShape) -> Projection:
+    def _project(self, pair: PairModel, state: State) -> Projection:
         """Nearest of the points along the axis, and Newton's method from there."""
-        model, target, steep = self.model, pair.target, pair.side * pair.steep
-        node = np.array(model.node_position(pair, state.q, state.load_parameter))
-        first, xi = int(model.place[target.first]), np.linspace(0, 1, _SAMPLES)
-        points = (
-            np.array([shape.at(first + e, xi * l0).position for e, l0 in enumerate(target.lengths)]) - node
-        )
+        target, xi = pair.target, np.linspace(0, 1, _SAMPLES)
+        node = self.model.node_position(pair, state.q, state.load_parameter)
+        points = self.axes(target, state, None, xi) - node
         nearest = np.argmin(np.einsum("emi,emi->em", points, points))
         e, sample = divmod(int(nearest), _SAMPLES)
-        arc = float(xi[sample]) * target.lengths[e]
-        for _ in range(_STEPS):
-            l0 = target.lengths[e]
-            inside = min(max(arc, 0.0), l0)
-            position, tangent, bend = self._axis(shape, first + e, inside)
-            apart = position + (arc - inside) * tangent - node
-            slope = float(tangent @ tangent) + (float(bend @ apart) if inside == arc else 0.0)
-            along = float(apart @ tangent)
-            if steep:
-                distance = float(np.hypot(*apart))
-                slope, along = slope - steep * along / distance, along - steep * distance
-            step = along / slope if slope > 0 else 0.0
-            arc -= min(max(step, -l0 / _SAMPLES), l0 / _SAMPLES)
-            e, place = slide(target.lengths, e, arc / l0)
-            arc = place * target.lengths[e]
-            if abs(step) < PROJECTED * l0:
-                break
+        e, place, apart, tangent = self.closest(pair, state, e, float(xi[sample]) * target.lengths[e])
         height = float(apart[1] * tangent[0] - apart[0] * tangent[1]) / float(np.hypot(*tangent))
         arc = arc_position(target, target.first + e, place)
-        if steep:
+        if pair.steep:
             height = math.copysign(float(np.hypot(*apart)), height)
         gap = pair.side * height - pair.side * pair.reach_at(arc)
         return Projection(target.first + e, place, gap, overshoot(target, arc))
-
-    def end(self, pair: PairModel, state: State, *, last: bool) -> tuple[Array, Array]:
-        """The ends of the deflected axis."""
-        element, arc = (pair.target.last, pair.target.lengths[-1]) if last else (pair.target.first, 0.0)
-        position, tangent, _ = self._axis(deflected(self, state)[0], int(self.model.place[element]), arc)
-        return position - self.model.node_position(pair, state.q, state.load_parameter), tangent
 
     def direction(self, touch: Touch, _q: Array) -> tuple[float, float]:
         """Direction of the section's normal at the contact."""
@@ -531,7 +505,7 @@ class ExactGroup(ElementGroup):
         """Intervals in which an element is drawn."""
         return max(10, math.ceil(_POINTS / elements))
 
-    def axes(self, beam: BeamModel, state: State, _forces: RodBalance, xi: Array) -> Array:
+    def axes(self, beam: BeamModel, state: State, _forces: Any, xi: Array) -> Array:
         """Deflected axes of the elements of a beam, shape (elements, m, 2)."""
         (shape, _), first = deflected(self, state), int(self.model.place[beam.first])
         return np.array([shape.at(first + e, xi * l0).position for e, l0 in enumerate(beam.lengths)])
