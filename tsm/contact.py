@@ -16,6 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from tsm.elements.properties import Array
+from tsm.groups.shape import recut
 from tsm.model import Model
 from tsm.pairs import BeamModel, PairModel
 from tsm.projection import project_on_chords, slide
@@ -25,7 +26,7 @@ from tsm.state import State, Touch
 def with_touches(model: Model, state: State, touches: tuple[Touch | None, ...]) -> State:
     """State with other contacts."""
     after = replace(state, touches=touches)
-    return model.rods.with_touches(state, after) if model.rods else after
+    return recut(model.rods, state, after) if model.rods else after
 
 
 def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...], past: float = 0.0) -> State:

@@ -8,6 +8,7 @@ import numpy as np
 
 from tsm.contact import chord_owner, with_touches
 from tsm.events import ROUND_OFF, EventKind
+from tsm.groups.shape import undeformed
 from tsm.model import Model
 from tsm.pairs import PairModel
 from tsm.projection import Projection
@@ -50,7 +51,7 @@ def initial_state(model: Model) -> State:
     none: tuple[Touch | None, ...] = (None,) * count
     start = State(load_parameter=0.0, q=q, touches=none, armed=(True,) * count)
     if model.rods:
-        start = model.rods.undeformed(start)
+        start = undeformed(model.rods, start)
     touches: list[Touch | None] = []
     for pair in model.pairs:
         seen = pair.group.project(pair, start)

@@ -18,8 +18,8 @@ import numpy as np
 
 from tsm.elements.properties import Array
 from tsm.groups import ExactGroup
-from tsm.groups.exact import RodBalance
 from tsm.groups.layout import OWN
+from tsm.groups.rods import RodBalance
 from tsm.groups.variation import Bordered, modes_at_least, variation
 from tsm.inertia import Symmetric, negatives
 from tsm.state import State

@@ -120,7 +120,7 @@ def test_two_slips(monkeypatch):
 
 def test_inaccurate(monkeypatch):
     """Two turns ask for more Gauss nodes than are allowed."""
-    monkeypatch.setattr("tsm.groups.shape.MOST_NODES", 14)
+    monkeypatch.setattr("tsm.groups.exact.MOST_NODES", 14)
     load = tsm.Load(beam="b", end="end", moment=4 * np.pi * SECTION.EI)
     result = tsm.solve(cantilever(element="exact", load=load), steps(16), throw=False)
     assert result.integration_error <= 1e-9

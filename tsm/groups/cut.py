@@ -6,17 +6,22 @@ the force ``n - F/2``, and the mean turn, which is that under the moment ``m - C
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tsm.contact_block import ContactBlock
 from tsm.elements import rod
 from tsm.elements.contact_law import Here
 from tsm.elements.properties import Array, cosine, sine
 from tsm.elements.rod import Course
 from tsm.elements.varied import derivatives, varied
+from tsm.groups.layout import CUT, OWN, chain
 from tsm.pairs import PairModel
 from tsm.state import Touch
+
+if TYPE_CHECKING:
+    from tsm.groups.rods import Rods
 
 
 class Section(NamedTuple):
@@ -59,6 +64,17 @@ class Cut(NamedTuple):
         return by
 
 
+class CutElement(NamedTuple):
+    """Tangent of an element with contacts over n columns: its unknowns, those of the contacts, the load parameter, the inner residual."""
+
+    element: int  # counted over the exact elements
+    pairs: tuple[int, ...]  # its contact pairs in order of arc position
+    slots: list[int]  # positions of their unknowns among those of all contacts
+    tangent: Array  # shape (9 + 4 k, n)
+    inputs: Array  # inputs of the segments by the same columns; shape (k + 1, 7 or 9, n)
+    slip: dict[int, Array]  # by pair with friction: its slip rate as a linear form; shape (n,)
+
+
 def seen(pair: PairModel, section: Section, at: Any, held: tuple[Any, ...]) -> tuple[Here, Any]:
     """What a contact sees, and the couple; ``held``: where the section is known, from which it varies."""
     angle, nx, ny, Fx, Fy, arc, moment, load = at
@@ -80,3 +96,49 @@ def seen(pair: PairModel, section: Section, at: Any, held: tuple[Any, ...]) -> t
     slant = np.arctan((c * T[1] - s * T[0]) / (c * T[0] + s * T[1]))
     couple = pair.lever * (Fx * T[0] + Fy * T[1]) / (T[0] * T[0] + T[1] * T[1]) ** 0.5
     return Here(arc, T, slant, angle + slant, turn + bend * (moment - couple / 2)), couple
+
+
+def cut_element(element: int, cuts: dict[int, Cut], transfer: Array, unit: float) -> CutElement:
+    """Tangent of an element from its contacts by pair, and from the transfer (k + 1, 4, 7 or 9) of its segments."""
+    count = len(cuts)
+    inputs, tangent, selectors = (part.copy() for part in chain(count))
+    inputs = inputs[:, : transfer.shape[2]]
+    moved, slip = tangent[3:5].copy(), {}
+    for n, (k, cut) in enumerate(cuts.items()):
+        row = OWN + CUT * n
+        out = transfer[n] @ inputs[n]
+        moved += out[2:]
+        inputs[n + 1, 1] = selectors[n, 6] = out[1]
+        by = cut.derivatives(unit, selectors[n])
+        tangent[row : row + 2], tangent[row + 2], tangent[row + 3] = moved + by[:2], by[2], out[0]
+        if cut.touch.grip is not None:
+            inputs[n + 1, 1] -= by[3]
+            slip[k] = cut.pair.place(cut.here).stretch * selectors[n, 5] + by[4]
+    out = transfer[count] @ inputs[count]
+    tangent[3:5] = moved + out[2:]
+    tangent[3, 6] = tangent[4, 7] = -1
+    tangent[5], tangent[8] = out[0], out[1]
+    slots = [cut.pair.slot + i for cut in cuts.values() for i in range(CUT)]
+    return CutElement(element, tuple(cuts), slots, tangent, inputs, slip)
+
+
+def enter(part: CutElement, group: Rods, contacts: ContactBlock) -> None:
+    """Enter the tangent of the contacts that cut an element."""
+    model, dofs, tangent = group.model, group.dofs[:, part.element], part.tangent
+    eq = model.equation[dofs]
+    own = [(model.pairs[k], slice(OWN + CUT * n, OWN + CUT * (n + 1))) for n, k in enumerate(part.pairs)]
+    for k, (pair, rows) in zip(part.pairs, own, strict=True):
+        slots = contacts.slots(pair)
+        contacts.right[eq, slots], contacts.below[slots, eq] = tangent[:OWN, rows], tangent[rows, :OWN]
+        contacts.condensed_residual[pair.slots] = tangent[rows, -1]
+        contacts.by_load[pair.slots] = tangent[rows, -2]
+        for other, columns in own:
+            contacts.corner[slots, contacts.slots(other)] = tangent[rows, columns]
+        block = np.zeros((8 + CUT, 8))
+        block[8:, :6], block[8:10, 6:8] = tangent[rows, [0, 1, 2, 6, 7, 8]], -np.eye(2)
+        contacts.blocks[k] = int(group.elements[part.element]), block
+        if pair.node >= 0:
+            for i in range(2):
+                equation = model.equation[3 * pair.node + i]
+                contacts.right[equation, slots.start + i] += 1
+                contacts.below[slots.start + i, equation] -= 1

@@ -1,364 +1,43 @@
-"""Exact elements: the rod's equations are integrated from contact to contact.
-
-An element is cut at its contacts. Its unknowns are the nodes' displacements, the internal force n and moment m at its start, and
-for every contact the force F, the arc position and the section's angle there; between cuts the force is n less the contact
-forces before. Its equations are arrival at the end node and, at every cut, position and direction of the contact and arrival of
-the angle. The angles inside the segments are eliminated (`tsm.elements.rod`) and kept in the state.
-"""
+"""Exact elements: their state, and the deflected axis."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tsm.contact_block import ContactBlock
 from tsm.elements import rod
-from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array
-from tsm.elements.rod import Arrival, Course, Field, Flexibility, Segments
 from tsm.elements.varied import STEP
-from tsm.groups.base import Change, ElementGroup
-from tsm.groups.cut import Cut, Section, seen
-from tsm.groups.layout import COLUMNS, CUT, FIXED, OWN, ROWS, Layout, chain, layout
-from tsm.groups.shape import (
-    RodShape,
-    Stations,
-    alike,
-    angles_at,
-    deflected,
-    finer,
-    inaccurate,
-    pieces,
-    profile_of,
-    recut,
-    touch_of,
-    truncation,
-    undeformed,
-)
+from tsm.groups.base import Change
+from tsm.groups.layout import layout
+from tsm.groups.rods import RodBalance, Rods, RodTangent
+from tsm.groups.shape import Stations, deflected, pieces, profile_of, resampled, truncation
 from tsm.projection import Projection, arc_position, overshoot
-from tsm.state import Cuts, Profile, State, Touch, Traction
+from tsm.state import Profile, State, Touch
 
 if TYPE_CHECKING:
-    from tsm.model import Model
     from tsm.pairs import BeamModel, PairModel
 
-_KEPT = 16
-"""Divisions into segments whose constants are kept."""
-_UNDEFORMED_ORDER = 24
-"""Gauss nodes of an undeformed element."""
+MOST_NODES = 256
+"""Largest number of Gauss nodes of a segment."""
+_AT_ONCE = 4
+"""Least number of nodes that are added."""
+_FALL = 100.0
+"""Expected ratio of the errors with two nodes more."""
+_UNRESOLVED = 1.0
+"""Estimated error with a fixed number of nodes at which the mesh is too coarse: the error of a bent cantilever is then 3e-3. Boundary layers
+under strong tension exceed it, though their elements hardly turn."""
 _SAMPLES = 33
 """Points of an element in the search for the nearest one."""
 _POINTS, _LINES = 100, 60
 """Intervals in which a beam is drawn, and short lines along it, at least 10 and 4 for an element."""
 
 
-class Entry(NamedTuple):
-    """Where the segments of a state begin and end."""
-
-    place: Layout  # elements of the segments
-    segments: Segments
-    field: Field  # the rod's equations in them
-    start: Array  # start, end, moment: angles at both ends, moment at the start; shape (s, 1)
-    end: Array
-    moment: Array
-    gain: Array  # moment at the end minus moment at the start; shape (s,)
-    vector: Array  # vector from start to end; shape (2, s)
-    cuts: dict[int, Cut]  # the contacts, by pair; without friction, once forces are asked for
-
-
-class RodBalance(NamedTuple):
-    """Residual of the exact elements."""
-
-    entry: Entry  # the segments
-    arrival: Arrival  # their residuals
-    nodal: Array  # forces on node i, arrival at node j, forces on node j; shape (9, r)
-    inside: float  # largest residual inside [rad]
-
-    @property
-    def ends(self) -> Array:
-        """Forces and moments at both ends of the elements, shape (6, r)."""
-        ends: Array = self.nodal[[0, 1, 2, 6, 7, 8]]
-        return ends
-
-
-class CutElement(NamedTuple):
-    """Tangent of an element with contacts over n columns: its unknowns, those of the contacts, the load parameter, the inner residual."""
-
-    element: int  # counted over the exact elements
-    pairs: tuple[int, ...]  # its contact pairs in order of arc position
-    tangent: Array  # shape (9 + 4 k, n)
-    inputs: Array  # inputs of the segments by the same columns; shape (k + 1, 7 or 9, n)
-    slip: dict[int, Array]  # by pair with friction: its slip rate as a linear form; shape (n,)
-
-
-class RodTangent(NamedTuple):
-    """Tangent of the exact elements."""
-
-    # contribution of the inner residual to the residual after the inner unknowns are eliminated; shape (9, r)
-    condensed_residual: Array
-    tangent: Array  # derivative of the residual, row by row; shape (81, r)
-    by_load: Array  # derivative of the residual in the load parameter; shape (9, r)
-    cut: tuple[CutElement, ...]  # elements with contacts, whose first nine rows and columns are above too
-    inner: Array  # derivatives of the angles inside by the inputs of the segments; shape (s, p, i)
-    transfer: Array  # derivatives of their outputs, see `rod.Condensed`; shape (s, 4, i)
-
-
-class _Owned(NamedTuple):
-    """Constants of the elements, one for every segment."""
-
-    place: Layout  # the segments
-    dofs: Array  # degrees of freedom of the elements; shape (9, s)
-    angles: Array  # angles of the undeformed elements at both ends; shape (2, s)
-    length: Array  # their length; shape (s,)
-    flexibility: Flexibility
-    curvature: Array  # shape (s, 1)
-
-
-class ExactGroup(ElementGroup):
-    """The exact elements of a model, r of them. ``dofs`` (9, r) are node i, force and moment, node j."""
-
-    internal = True
-    past_node = 0.0
-
-    def __init__(self, model: Model, number: int, elements: Array, dofs: Array) -> None:
-        super().__init__(model, number, elements, dofs)
-        along = model.along
-        self.varies, self.nodes = bool(along.varies[elements].any()), model.gauss_nodes
-        self.near, self.far = model.coordinates[model.element_nodes[elements].T].transpose(0, 2, 1)
-        self.angles, self.length = np.stack([along.start, along.end])[:, elements], along.length[elements]
-        self.natural = along.curvature[elements]
-        zero = np.zeros((len(elements), 1))
-        self.flexibility = along.course(elements, zero, *np.zeros((2, 2, 0, len(elements)))).flexibility
-        self._constants: dict[Cuts, _Owned] = {}
-        self.memo: tuple[State, RodShape, dict[int, Projection]] | None = None
-
-    def course(self, owner: Array, arc: Array, load_parameter: Any) -> Course:
-        """What varies at arc positions (s, p) within elements (s,), counted over the exact ones."""
-        along, elements, t = self.model.along, self.elements[owner], load_parameter.real
-        at, rate = (part[:, :, elements] for part in (along.resultants.at(t), along.resultants.rate(t)))
-        if load_parameter.imag:
-            at = at + 1j * load_parameter.imag * rate
-        return along.course(elements, arc / self.length[owner, None], at, rate)
-
-    def undeformed_angle(self, element: Any, arc: Array) -> Any:
-        """Angle of the undeformed axis of elements at arc positions within them."""
-        return self.angles[0][element] + self.natural[element] * arc
-
-    def section(self, element: int, arc: Any, load_parameter: float) -> Section:
-        """Section of an element at an arc position within it."""
-        if self.varies:
-            course = self.course(np.array([element]), np.array([[arc]]), load_parameter)
-            stretch, shear, bend = (value.item() for value in course.flexibility)
-            return Section(stretch, shear, bend, float(self.natural[element]), course)
-        stretch, shear, bend = (value[element, 0].item() for value in self.flexibility)
-        return Section(stretch, shear, bend, 0.0, None)
-
-    def _owned(self, cuts: Cuts) -> _Owned:
-        if cuts not in self._constants:
-            if len(self._constants) == _KEPT:
-                self._constants.clear()
-            place = layout(len(self.length), cuts)
-            own = place.owner
-            self._constants[cuts] = _Owned(
-                place, self.dofs[:, own], self.angles[:, own], self.length[own],
-                Flexibility(*(value[own] for value in self.flexibility)), self.natural[own, None],
-            )  # fmt: skip
-        return self._constants[cuts]
-
-    def enter(self, state: State) -> Entry:
-        """Cut the elements at their contacts and evaluate the rod's equations inside."""
-        profile = profile_of(state)
-        place, dofs, (angle0, angle1), length, flexibility, curvature = self._owned(profile.cuts)
-        q = state.q[dofs]
-        length, begin = length.astype(q.dtype), np.zeros(len(length), q.dtype)
-        force, start, end, moment = q[3:5, :, None], q[2] + angle0, q[8] + angle1, q[5]
-        for element, pairs in profile.cuts:
-            s = int(place.first[element])
-            for k in pairs:
-                touch = touch_of(state, k)
-                begin[s + 1] = touch.xi * self.length[element]
-                length[s] = begin[s + 1] - begin[s]
-                end[s] = start[s + 1] = touch.angle
-                s += 1
-                force[0, s, 0] = force[0, s - 1, 0] - touch.force[0]
-                force[1, s, 0] = force[1, s - 1, 0] - touch.force[1]
-            length[s] = self.length[element] - begin[s]
-        segments = self.placed(
-            Segments(
-                flexibility,
-                force,
-                length[:, None],
-                profile.angle,
-                force,
-                place.owner,
-                begin[:, None],
-                curvature,
-            ),
-            state.load_parameter,
-        )
-        field = rod.field(segments)
-        gain, *vector = field.sums[:, :, 0] * length
-        cuts: dict[int, Cut] = {}
-        for element, pairs in profile.cuts:
-            for s, k in enumerate(pairs, int(place.first[element])):
-                moment[s + 1] = moment[s] + gain[s]
-                if touch_of(state, k).grip is not None:
-                    cuts[k] = self._cut(state, k, s, segments, moment[s + 1])
-                    moment[s + 1] = moment[s + 1] - cuts[k].couple
-        start, end, moment = (part[:, None] for part in (start, end, moment))
-        return Entry(place, segments, field, start, end, moment, gain, np.array(vector), cuts)
-
-    def placed(self, segments: Segments, load_parameter: float) -> Segments:
-        """Segments with what varies along them, from those with the constant part of their forces."""
-        if not self.varies:
-            return segments
-        nodes = collocation(segments.angle.shape[1]).c
-        course = self.course(segments.owner, segments.begin + segments.length * nodes, load_parameter)
-        return segments._replace(
-            flexibility=course.flexibility, force=segments.constant - course.resultant, course=course
-        )
-
-    def _cut(self, state: State, k: int, s: int, segments: Segments, moment: Any) -> Cut:
-        """Contact at the end of segment s, with the moment before it."""
-        pair, touch = self.model.pairs[k], touch_of(state, k)
-        element, t = int(segments.owner[s]), state.load_parameter
-        section = self.section(element, segments.begin[s + 1, 0], t)
-        at = (
-            touch.angle, *segments.constant[:, s, 0].tolist(), *touch.force, pair.arc_position(touch), moment, t
-        )  # fmt: skip
-        return Cut(s, pair, touch, section, at, *seen(pair, section, at, at))
-
-    def forces(self, state: State, contacts: ContactBlock) -> RodBalance:
-        """Residual of the elements and of the contacts that cut them."""
-        for k, pair in self.model.pairs_of(self):
-            if state.touches[k] is None:
-                contacts.leave_open(pair)
-        entry = self.enter(state)
-        arrival = rod.arrival(entry.segments, entry.field, entry.start, entry.moment, entry.end)
-        q = state.q[self.dofs]
-        first, last = entry.place.first, entry.place.last
-        residual = np.empty_like(q)
-        residual[0:3] = -q[3:6]
-        residual[3:5] = (self.near - self.far) + (q[0:2] - q[6:8]) + entry.vector[:, first]
-        residual[5] = arrival.end_residual[last]
-        residual[6:8] = entry.segments.constant[:, last, 0]
-        if self.varies:
-            residual[6:8] -= self._resultant(state)
-        residual[8] = entry.moment[last, 0] + entry.gain[last]
-        for element, pairs in profile_of(state).cuts:
-            x, y = (self.near[:, element] + q[:2, element]).tolist()
-            for s, k in enumerate(pairs, int(first[element])):
-                if k not in entry.cuts:
-                    entry.cuts[k] = self._cut(state, k, s, entry.segments, entry.moment[s + 1, 0])
-                cut = entry.cuts[k]
-                dx, dy = entry.vector[:, cut.s].tolist()
-                x, y = x + dx, y + dy
-                cx, cy = self.model.node_position(cut.pair, state.q, state.load_parameter)
-                px, py, row = cut.pair.rows(
-                    cut.touch.grip, cut.touch.force, cut.here, self.model.stick_stiffness
-                )
-                contacts.enter(
-                    k, cut.pair, cut.touch.force, (x - cx + px, y - cy + py, row, arrival.end_residual[cut.s])
-                )
-                residual[3:5, element] += entry.vector[:, cut.s + 1]
-        return RodBalance(entry, arrival, residual, float(np.abs(arrival.inside).max()))
-
-    def tangent(self, state: State, forces: RodBalance, contacts: ContactBlock) -> RodTangent:
-        """Tangent of the elements and of the contacts that cut them."""
-        entry = forces.entry
-        condensed = rod.condense(entry.segments, entry.field, forces.arrival, entry.moment)
-        first = entry.place.first
-        tangent = np.empty((len(first), OWN, OWN), dtype=state.q.dtype)
-        tangent[:] = FIXED
-        transfer = condensed.transfer[first]
-        tangent[:, ROWS[:, None], COLUMNS] = transfer[:, :, :5]
-        condensed_residual, by_load = np.zeros((2, *forces.nodal.shape))
-        condensed_residual[ROWS] = transfer[:, :, 6].T
-        if self.varies:
-            by_load[ROWS] = transfer[:, :, rod.LOAD].T
-        cut = tuple(
-            self._cut_element(e, pairs, entry, condensed.transfer) for e, pairs in profile_of(state).cuts
-        )
-        for part in cut:
-            e, own = part.element, part.tangent[:OWN]
-            tangent[e], by_load[:, e], condensed_residual[:, e] = own[:, :OWN], own[:, -2], own[:, -1]
-            self._enter(part, contacts)
-        if self.varies:
-            by_load[6:8] = -self._resultant(state, rate=True)
-        return RodTangent(
-            condensed_residual,
-            tangent.reshape(len(first), -1).T,
-            by_load,
-            cut,
-            condensed.inner,
-            condensed.transfer,
-        )
-
-    def _cut_element(self, element: int, pairs: tuple[int, ...], entry: Entry, transfer: Array) -> CutElement:
-        first, count = int(entry.place.first[element]), len(pairs)
-        inputs, tangent, selectors = (part.copy() for part in chain(count))
-        inputs = inputs[:, : transfer.shape[2]]
-        moved, slip = tangent[3:5].copy(), {}
-        for n, k in enumerate(pairs):
-            row, cut = OWN + CUT * n, entry.cuts[k]
-            out = transfer[first + n] @ inputs[n]
-            moved += out[2:]
-            inputs[n + 1, 1] = selectors[n, 6] = out[1]
-            by = cut.derivatives(self.model.stick_stiffness, selectors[n])
-            tangent[row : row + 2], tangent[row + 2], tangent[row + 3] = moved + by[:2], by[2], out[0]
-            if cut.touch.grip is not None:
-                inputs[n + 1, 1] -= by[3]
-                slip[k] = cut.pair.place(cut.here).stretch * selectors[n, 5] + by[4]
-        out = transfer[first + count] @ inputs[count]
-        tangent[3:5] = moved + out[2:]
-        tangent[3, 6] = tangent[4, 7] = -1
-        tangent[5], tangent[8] = out[0], out[1]
-        return CutElement(element, pairs, tangent, inputs, slip)
-
-    def _enter(self, part: CutElement, contacts: ContactBlock) -> None:
-        """Enter the tangent of the contacts that cut an element."""
-        model, dofs, tangent = self.model, self.dofs[:, part.element], part.tangent
-        eq = model.equation[dofs]
-        own = [(model.pairs[k], slice(OWN + CUT * n, OWN + CUT * (n + 1))) for n, k in enumerate(part.pairs)]
-        for k, (pair, rows) in zip(part.pairs, own, strict=True):
-            slots = contacts.slots(pair)
-            contacts.right[eq, slots], contacts.below[slots, eq] = tangent[:OWN, rows], tangent[rows, :OWN]
-            contacts.condensed_residual[pair.slots] = tangent[rows, -1]
-            contacts.by_load[pair.slots] = tangent[rows, -2]
-            for other, columns in own:
-                contacts.corner[slots, contacts.slots(other)] = tangent[rows, columns]
-            block = np.zeros((8 + CUT, 8))
-            block[8:, :6], block[8:10, 6:8] = tangent[rows, [0, 1, 2, 6, 7, 8]], -np.eye(2)
-            contacts.blocks[k] = int(self.elements[part.element]), block
-            if pair.node >= 0:
-                for i in range(2):
-                    equation = model.equation[3 * pair.node + i]
-                    contacts.right[equation, slots.start + i] += 1
-                    contacts.below[slots.start + i, equation] -= 1
-
-    def inputs(self, tangent: RodTangent, state: State, change: Change) -> Array:
-        """Change (s, inputs) of the inputs of the segments; `residual` is 1 to remove the residual inside, 0 to follow a path."""
-        place, x = layout(len(self.length), profile_of(state).cuts), change.dofs[self.dofs]
-        inputs = np.zeros((len(place.owner), tangent.inner.shape[2]))
-        inputs[:, :5] = x[COLUMNS][:, place.owner].T
-        inputs[:, 6], inputs[:, 8:] = change.residual, change.load
-        for part in tangent.cut:
-            own = (x[:, part.element], change.contacts[self._slots(part)], [change.load, change.residual])
-            first = place.first[part.element]
-            inputs[first : first + len(part.inputs)] = part.inputs @ np.concatenate(own)
-        return inputs
-
-    def _slots(self, part: CutElement) -> list[int]:
-        """Positions of the unknowns of an element's contacts among those of all contacts."""
-        return [self.model.pairs[k].slot + i for k in part.pairs for i in range(CUT)]
-
-    def inside(self, tangent: RodTangent, state: State, change: Change) -> Array:
-        """Change (s, p) of the inner angles that follows from a change of all other unknowns at a state."""
-        inside: Array = (tangent.inner @ self.inputs(tangent, state, change)[:, :, None])[:, :, 0]
-        return inside
+class ExactGroup(Rods):
+    """The exact elements of a model."""
 
     def with_change(self, before: State, after: State, tangent: RodTangent, change: Change) -> State:
         """State with its angles inside changed."""
@@ -366,92 +45,53 @@ class ExactGroup(ElementGroup):
         angle = profile.angle + change.factor * self.inside(tangent, before, change)
         return replace(after, profile=Profile(cuts=profile.cuts, angle=angle))
 
-    def turning(self, state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> Array:
-        """Rates of the angles at the Gauss nodes."""
-        return self.inside(tangent, state, Change(dofs, contacts, 0.0, 1.0, 1.0)).ravel()
-
     def turned(self, one: State, other: State, like: State) -> Array:
         """Differences of the angles at the Gauss nodes."""
-        begin, end = (angles_at(self, state, like) for state in (one, other))
+        begin, end = (self._angles(state, like) for state in (one, other))
         return (end - begin).ravel()
 
-    def undeformed(self, state: State) -> State:
-        """State with the angles of undeformed elements."""
-        return undeformed(self, state)
-
-    def with_touches(self, before: State, after: State) -> State:
-        """State `after` with its elements cut where its contacts are."""
-        return recut(self, before, after)
+    def _angles(self, state: State, like: State) -> Array:
+        """Angles (s, p) inside at the Gauss nodes of another state, nan in elements that are cut otherwise there."""
+        there = profile_of(like)
+        here = profile_of(resampled(self, state, there.angle.shape[1]))
+        if here.cuts == there.cuts:
+            return here.angle
+        angle = np.full(there.angle.shape, np.nan)
+        (one, two), count = (dict(here.cuts), dict(there.cuts)), len(self.length)
+        begin, end = layout(count, here.cuts), layout(count, there.cuts)
+        for e in (e for e in range(count) if one.get(e) == two.get(e)):
+            angle[end.first[e] : end.last[e] + 1] = here.angle[begin.first[e] : begin.last[e] + 1]
+        return angle
 
     def alike(self, history: list[State]) -> list[State]:
         """The latest states that are cut alike, with as many Gauss nodes as the last."""
-        return alike(self, history)
+        cuts, order = profile_of(history[-1]).cuts, profile_of(history[-1]).angle.shape[1]
+        states: list[State] = []
+        for state in reversed(history):
+            if profile_of(state).cuts != cuts:
+                break
+            states.insert(0, resampled(self, state, order))
+        return states
 
     def refined(self, state: State, forces: RodBalance, tolerance: float) -> State | None:
-        """State with more Gauss nodes, None where they suffice."""
-        return finer(self, state, forces, tolerance)
+        """State with more Gauss nodes, None where the error estimate of `truncation` is small enough, or their number is fixed."""
+        if self.nodes is not None:
+            return None
+        order, error = profile_of(state).angle.shape[1], truncation(self, forces.entry)
+        if error <= tolerance or order == MOST_NODES:
+            return None
+        more = 2 * math.ceil(math.log(error / tolerance, _FALL)) if math.isfinite(error) else order
+        return resampled(self, state, min(order + max(more, _AT_ONCE), 2 * order, MOST_NODES))
 
     def inaccurate(self, forces: RodBalance, tolerance: float) -> bool:
         """Whether the most Gauss nodes do not suffice; with a fixed number, whether the mesh does not resolve the deflected axis."""
-        return inaccurate(self, forces, tolerance)
+        if self.nodes is not None:
+            return truncation(self, forces.entry) > _UNRESOLVED
+        return forces.arrival.bent.shape[1] == MOST_NODES and truncation(self, forces.entry) > tolerance
 
     def integration_error(self, forces: Any) -> float:
         """Estimated error of the integration inside the elements."""
         return 0.0 if self.nodes else truncation(self, forces.entry)
-
-    def traction(self, k: int, _state: State, forces: RodBalance) -> Traction:
-        """Force and place of a contact with friction."""
-        cut = forces.entry.cuts[k]
-        return cut.pair.traction(cut.touch.force, cut.here)
-
-    def slip_rate(self, k: int, _state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> float:
-        """Slip rate of a contact."""
-        part = next(part for part in tangent.cut if k in part.pairs)
-        own = (dofs[self.dofs[:, part.element]], contacts[self._slots(part)], [1.0, 0.0])
-        return float(part.slip[k] @ np.concatenate(own))
-
-    def energy(self, state: State) -> float:
-        """Strain energy of the elements; contacts have none."""
-        entry = self.enter(state)
-        segments, field, (stretch, shear, bend) = entry.segments, entry.field, entry.segments.flexibility
-        moment = rod.moments(segments, field, entry.moment)
-        density = bend * moment**2 + stretch * field.N**2 + shear * field.q**2
-        return float((segments.length * density @ collocation(segments.angle.shape[1]).w).sum()) / 2
-
-    def _resultant(self, state: State, *, rate: bool = False) -> Array:
-        """Resultants (2, r) of the loads along the elements, or their derivatives in the load parameter."""
-        resultants, t = self.model.along.resultants, state.load_parameter.real
-        at_end: Array = (resultants.rate(t) if rate else resultants.at(t))[:, :, self.elements].sum(axis=1)
-        return at_end
-
-    def load_work(self, state: State) -> Any:
-        """Work of the loads, as large as they are at the state, on the displacements to it: with ``P' = q`` it is ``[P . u] - int P . (r' - r_0') ds``."""
-        entry, own, t = self.enter(state), np.arange(len(self.length)), state.load_parameter.real
-        segments, table = entry.segments, collocation(_UNDEFORMED_ORDER)
-        arc = segments.begin + segments.length * collocation(segments.angle.shape[1]).c
-        density = (self.course(segments.owner, arc, t).resultant * entry.field.values[1:]).sum(axis=0)
-        along = (density @ collocation(segments.angle.shape[1]).w) @ segments.length[:, 0]
-        arc = self.length[:, None] * table.c
-        angle = self.undeformed_angle(own[:, None], arc)
-        straight = (self.course(own, arc, t).resultant * np.stack([np.cos(angle), np.sin(angle)])).sum(axis=0)
-        return (
-            (self._resultant(state) * state.q[self.dofs[6:8]]).sum()
-            - along
-            + (straight @ table.w) @ self.length
-        )
-
-    def load_power(self, state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> float:
-        """Work of the loads at rates of all degrees of freedom and of the contacts' unknowns: a complex step of `load_work`, which holds the loads."""
-        step, profile = 1j * STEP, profile_of(state)
-        inside = self.turning(state, tangent, dofs, contacts).reshape(profile.angle.shape)
-        touches = tuple(
-            touch and pair.moved(touch, (step * contacts[pair.slots]).tolist())
-            for pair, touch in zip(self.model.pairs, state.touches, strict=True)
-        )
-        angle = Profile(cuts=profile.cuts, angle=profile.angle + step * inside)
-        t: Any = state.load_parameter + step
-        moved = replace(state, load_parameter=t, q=state.q + step * dofs, touches=touches, profile=angle)
-        return float(self.load_work(moved).imag / STEP)
 
     def point(self, element: int, arc: float, state: State) -> tuple[Array, Array, Array]:
         """Point of an element's axis at an arc position, tangent vector r', and its derivative along the arc."""

@@ -21,21 +21,12 @@ from tsm.projection import Projection
 from tsm.state import Cuts, Profile, State, Touch
 
 if TYPE_CHECKING:
-    from tsm.groups.exact import Entry, ExactGroup, RodBalance
+    from tsm.groups.rods import Entry, Rods
 
 START_ORDER = 14
 """Gauss nodes of an undeformed element whose accuracy decides on their number."""
-MOST_NODES = 256
-"""Largest number of Gauss nodes of a segment."""
-_AT_ONCE = 4
-"""Least number of nodes that are added."""
-_FALL = 100.0
-"""Expected ratio of the errors with two nodes more."""
 _SMOOTH = 1e-13
 """Error of an inner polynomial that counts as round-off."""
-_UNRESOLVED = 1.0
-"""Estimated error with a fixed number of nodes at which the mesh is too coarse: the error of a bent cantilever is then 3e-3. Boundary layers
-under strong tension exceed it, though their elements hardly turn."""
 
 
 def profile_of(state: State) -> Profile:
@@ -118,7 +109,7 @@ class RodShape:
         return Station(np.array([x, y]).T, angle, moment, force)
 
 
-def plain_shape(group: ExactGroup, state: State, entry: Entry | None = None) -> RodShape:
+def plain_shape(group: Rods, state: State, entry: Entry | None = None) -> RodShape:
     """Polynomials through what is known at the Gauss nodes."""
     entry = entry or group.enter(state)
     segments, field, place = entry.segments, entry.field, entry.place
@@ -144,7 +135,7 @@ def turning(entry: Entry) -> Array:
     return turn
 
 
-def pieces(group: ExactGroup, shape: RodShape, element: int, count: int) -> Stations:
+def pieces(group: Rods, shape: RodShape, element: int, count: int) -> Stations:
     """Lines along an element, `count` for every segment."""
     lines = []
     for s in range(shape.first[element], shape.last[element] + 1):
@@ -162,7 +153,7 @@ def pieces(group: ExactGroup, shape: RodShape, element: int, count: int) -> Stat
 
 
 def _profile(
-    group: ExactGroup, state: State, cuts: Cuts, order: int, angle_at: Callable[[int, Array], Array]
+    group: Rods, state: State, cuts: Cuts, order: int, angle_at: Callable[[int, Array], Array]
 ) -> State:
     """State whose angles inside are those of a function of element and arc positions."""
     place, nodes, inside = layout(len(group.length), cuts), collocation(order).c, dict(cuts)
@@ -175,12 +166,12 @@ def _profile(
     return replace(state, profile=Profile(cuts=cuts, angle=angle))
 
 
-def undeformed(group: ExactGroup, state: State) -> State:
+def undeformed(group: Rods, state: State) -> State:
     """State with the angles of the undeformed elements."""
     return _profile(group, state, _cuts(group, state), group.nodes or START_ORDER, group.undeformed_angle)
 
 
-def _cuts(group: ExactGroup, state: State) -> Cuts:
+def _cuts(group: Rods, state: State) -> Cuts:
     """Where touches cut the elements."""
     contacts_on: dict[int, list[tuple[float, int]]] = {}
     for k, (pair, touch) in enumerate(zip(group.model.pairs, state.touches, strict=True)):
@@ -189,7 +180,7 @@ def _cuts(group: ExactGroup, state: State) -> Cuts:
     return tuple((element, tuple(k for _, k in sorted(on))) for element, on in sorted(contacts_on.items()))
 
 
-def recut(group: ExactGroup, state: State, after: State) -> State:
+def recut(group: Rods, state: State, after: State) -> State:
     """State `after`, which has other touches, with its profile cut where they are; a new touch takes the angle that it finds."""
     cuts = _cuts(group, after)
     if cuts == profile_of(state).cuts:
@@ -212,32 +203,7 @@ def recut(group: ExactGroup, state: State, after: State) -> State:
     return _sampled(group, shape, cut, cuts, profile_of(state).angle.shape[1])
 
 
-def alike(group: ExactGroup, history: list[State]) -> list[State]:
-    """The latest states that are cut alike, with as many Gauss nodes as the last."""
-    cuts, order = profile_of(history[-1]).cuts, profile_of(history[-1]).angle.shape[1]
-    states: list[State] = []
-    for state in reversed(history):
-        if profile_of(state).cuts != cuts:
-            break
-        states.insert(0, resampled(group, state, order))
-    return states
-
-
-def angles_at(group: ExactGroup, state: State, like: State) -> Array:
-    """Angles (s, p) inside at the Gauss nodes of another state, nan in elements that are cut otherwise there."""
-    there = profile_of(like)
-    here = profile_of(resampled(group, state, there.angle.shape[1]))
-    if here.cuts == there.cuts:
-        return here.angle
-    angle = np.full(there.angle.shape, np.nan)
-    (one, two), count = (dict(here.cuts), dict(there.cuts)), len(group.length)
-    begin, end = layout(count, here.cuts), layout(count, there.cuts)
-    for e in (e for e in range(count) if one.get(e) == two.get(e)):
-        angle[end.first[e] : end.last[e] + 1] = here.angle[begin.first[e] : begin.last[e] + 1]
-    return angle
-
-
-def resampled(group: ExactGroup, state: State, order: int) -> State:
+def resampled(group: Rods, state: State, order: int) -> State:
     """State with a number of Gauss nodes."""
     profile = profile_of(state)
     if profile.angle.shape[1] == order:
@@ -245,12 +211,12 @@ def resampled(group: ExactGroup, state: State, order: int) -> State:
     return _sampled(group, plain_shape(group, state), state, profile.cuts, order)
 
 
-def _sampled(group: ExactGroup, shape: RodShape, state: State, cuts: Cuts, order: int) -> State:
+def _sampled(group: Rods, shape: RodShape, state: State, cuts: Cuts, order: int) -> State:
     """State whose angles inside are taken from a shape."""
     return _profile(group, state, cuts, order, lambda element, arc: shape.at(element, arc).angle)
 
 
-def truncation(group: ExactGroup, entry: Entry) -> float:
+def truncation(group: Rods, entry: Entry) -> float:
     """Estimated error of the integration, in positions over the longest beam's length and in angles.
 
     At the ends of a segment the error is the product of two interpolation errors, of the solution and of the influence of an error inside;
@@ -268,25 +234,7 @@ def truncation(group: ExactGroup, entry: Entry) -> float:
     return float(largest / order) ** 2
 
 
-def finer(group: ExactGroup, state: State, balance: RodBalance, tolerance: float) -> State | None:
-    """State with more Gauss nodes, None where the error estimate of `truncation` is small enough, or their number is fixed."""
-    if group.nodes is not None:
-        return None
-    order, error = profile_of(state).angle.shape[1], truncation(group, balance.entry)
-    if error <= tolerance or order == MOST_NODES:
-        return None
-    more = 2 * math.ceil(math.log(error / tolerance, _FALL)) if math.isfinite(error) else order
-    return resampled(group, state, min(order + max(more, _AT_ONCE), 2 * order, MOST_NODES))
-
-
-def inaccurate(group: ExactGroup, balance: RodBalance, tolerance: float) -> bool:
-    """Whether the most Gauss nodes do not suffice; with a fixed number, whether the mesh does not resolve the deflected axis."""
-    if group.nodes is not None:
-        return truncation(group, balance.entry) > _UNRESOLVED
-    return balance.arrival.bent.shape[1] == MOST_NODES and truncation(group, balance.entry) > tolerance
-
-
-def deflected(group: ExactGroup, state: State) -> tuple[RodShape, dict[int, Projection]]:
+def deflected(group: Rods, state: State) -> tuple[RodShape, dict[int, Projection]]:
     """Deflected axis, as accurate between the Gauss nodes as at the ends of the segments; of the last state kept, with the points found on it.
 
     With p Gauss nodes the ends of a segment have order 2p, but the polynomial between them has order p. The polynomial is therefore
@@ -300,7 +248,7 @@ def deflected(group: ExactGroup, state: State) -> tuple[RodShape, dict[int, Proj
     return group.memo[1:]
 
 
-def _finer_inside(group: ExactGroup, state: State) -> Entry:
+def _finer_inside(group: Rods, state: State) -> Entry:
     """Segments between the same ends, with twice the Gauss nodes."""
     finer = resampled(group, state, 2 * profile_of(state).angle.shape[1])
     entry = group.enter(finer)

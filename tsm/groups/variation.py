@@ -23,8 +23,8 @@ from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array
 from tsm.elements.rod import Segments
 from tsm.groups.cut import Cut
-from tsm.groups.exact import Entry, ExactGroup, RodBalance
 from tsm.groups.layout import COLUMNS, CUT, OWN
+from tsm.groups.rods import Entry, RodBalance, Rods
 from tsm.groups.shape import plain_shape, profile_of
 from tsm.state import State
 
@@ -102,9 +102,7 @@ def _square(segments: Segments) -> Array:
     return square
 
 
-def variation(
-    group: ExactGroup, state: State, balance: RodBalance, transfer: Array | None = None
-) -> Variation:
+def variation(group: Rods, state: State, balance: RodBalance, transfer: Array | None = None) -> Variation:
     """Second variation at a state in equilibrium.
 
     ``balance``: their residual there. ``transfer`` (s, 4, 7), optional: transfer of the segments, see
@@ -141,7 +139,7 @@ def _without_force(tangent: Array) -> Array:
     return tangent
 
 
-def _pieces(group: ExactGroup, state: State, balance: RodBalance, transfer: Array | None) -> _Pieces:
+def _pieces(group: Rods, state: State, balance: RodBalance, transfer: Array | None) -> _Pieces:
     entry = balance.entry
     segments, field, start, moment, end = entry.segments, entry.field, entry.start, entry.moment, entry.end
     whole = group.length[entry.place.owner]
@@ -165,9 +163,7 @@ def _pieces(group: ExactGroup, state: State, balance: RodBalance, transfer: Arra
     return _Pieces(counts, short, hessian)
 
 
-def _divided(
-    group: ExactGroup, state: State, entry: Entry, count: Array
-) -> tuple[Segments, Array, Array, Array]:
+def _divided(group: Rods, state: State, entry: Entry, count: Array) -> tuple[Segments, Array, Array, Array]:
     """Equal pieces of the segments, with their angles and moments at the ends."""
     whole, own = entry.segments, np.repeat(np.arange(len(count)), count)
     shape, nodes = plain_shape(group, state, entry), collocation(whole.angle.shape[1]).c
@@ -194,7 +190,7 @@ def _divided(
 
 
 def _hessians(
-    group: ExactGroup,
+    group: Rods,
     segments: Segments,
     ends: Array,
     transfer: Array,
@@ -242,7 +238,7 @@ def _hessians(
 
 
 def _bordered(
-    group: ExactGroup, balance: RodBalance, pieces: _Pieces, element: int, pairs: tuple[int, ...]
+    group: Rods, balance: RodBalance, pieces: _Pieces, element: int, pairs: tuple[int, ...]
 ) -> Bordered:
     """Matrix of an element of several pieces; its stations are the contacts and where a segment is divided."""
     place, model = balance.entry.place, group.model
