@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Literal
+from typing import Any, Literal
 
 from tsm.elements import ELEMENTS, MIXED
 
@@ -28,14 +29,25 @@ def check(ok: bool, owner: str, field: str, value: object, rule: str) -> None:
         raise ValueError(f"{owner}.{field} = {value!r}: {rule}")
 
 
-def check_end(owner: str, end: str | None) -> None:
-    """Raise ValueError unless `end` is an end of a beam."""
-    check(end in {"start", "end"}, owner, "end", end, 'must be "start" or "end"')
+def checks(owner: str, record: Any) -> Callable[[str, bool, str], None]:
+    """`check` for the fields of a record."""
+    return lambda field, ok, rule: check(ok, owner, field, getattr(record, field), rule)
 
 
 def finite(*values: float) -> bool:
     """Whether all values are numbers of at most `LARGEST`."""
     return all(abs(value) <= LARGEST for value in values)
+
+
+def is_point(value: Point) -> bool:
+    """Whether a value is two finite numbers."""
+    return len(value) == 2 and finite(*value)
+
+
+ENDS = ("start", "end")
+END, FINITE = 'must be "start" or "end"', f"finite, of at most {LARGEST:g}"
+"""Rules."""
+POINT, STAGE = f"must be two finite numbers, of at most {LARGEST:g}", f"must lie between 0 and {MOST_STAGES}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,9 +74,9 @@ class Section:
     EI: float
 
     def __post_init__(self) -> None:
+        check = checks("Section", self)
         for field in ("EA", "GA", "EI"):
-            value = getattr(self, field)
-            check(0 < value < math.inf, "Section", field, value, "must be positive and finite")
+            check(field, 0 < getattr(self, field) < math.inf, "must be positive and finite")
 
     @classmethod
     def rectangle(
@@ -119,46 +131,22 @@ class Beam:
     end_section: Section | None = None
 
     def __post_init__(self) -> None:
-        owner = f"Beam({self.name})"
-        check(
-            abs(self.turn) < math.tau,
-            owner,
-            "turn",
-            self.turn,
-            "must lie between -2 pi and 2 pi, without them",
-        )
+        check = checks(f"Beam({self.name})", self)
+        check("turn", abs(self.turn) < math.tau, "must lie between -2 pi and 2 pi, without them")
         if self.end_section is not None:
             start, end = (section.GA / section.EA for section in (self.section, self.end_section))
-            alike = abs(start - end) <= _ALIKE * start
-            check(alike, owner, "end_section", self.end_section, "must have the GA/EA of section")
+            check("end_section", abs(start - end) <= _ALIKE * start, "must have the GA/EA of section")
         for field in ("start", "end"):
-            value = getattr(self, field)
-            check(
-                len(value) == 2 and finite(*value),
-                owner,
-                field,
-                value,
-                f"must be two finite numbers, of at most {LARGEST:g}",
-            )
-        check(
-            1 / LARGEST <= self.length <= LARGEST,
-            owner, "end", self.end, f"must differ from start, by {1 / LARGEST:g} to {LARGEST:g}",
-        )  # fmt: skip
-        check(
-            isinstance(self.elements, int) and 1 <= self.elements <= MOST,
-            owner,
-            "elements",
-            self.elements,
-            f"must be a whole number from 1 to {MOST}",
-        )
-        check(
-            self.element in ELEMENTS, owner, "element", self.element, f"must be one of {', '.join(ELEMENTS)}"
-        )
-        ends = (0.0, *self.nodes, 1.0)
-        rising = all(a < b for a, b in pairwise(ends))
-        check(rising, owner, "nodes", self.nodes, "must rise between 0 and 1")
+            check(field, is_point(getattr(self, field)), POINT)
+        apart = f"must differ from start, by {1 / LARGEST:g} to {LARGEST:g}"
+        check("end", 1 / LARGEST <= self.length <= LARGEST, apart)
+        whole = isinstance(self.elements, int) and 1 <= self.elements <= MOST
+        check("elements", whole, f"must be a whole number from 1 to {MOST}")
+        check("element", self.element in ELEMENTS, f"must be one of {', '.join(ELEMENTS)}")
+        rising = all(a < b for a, b in pairwise((0.0, *self.nodes, 1.0)))
+        check("nodes", rising, "must rise between 0 and 1")
         fits = not self.nodes or len(self.nodes) == self.elements - 1
-        check(fits, owner, "nodes", self.nodes, f"must be one less than elements = {self.elements}")
+        check("nodes", fits, f"must be one less than elements = {self.elements}")
 
     @property
     def parts(self) -> tuple[float, ...]:
@@ -257,19 +245,11 @@ class LineLoad:
     stage: int = 0
 
     def __post_init__(self) -> None:
-        owner = f"LineLoad({self.beam})"
-        check(
-            0 <= self.stage <= MOST_STAGES,
-            owner,
-            "stage",
-            self.stage,
-            f"must lie between 0 and {MOST_STAGES}",
-        )
-        check(
-            len(self.force) > 0 and all(len(part) == 2 and finite(*part) for part in self.force),
-            owner, "force", self.force, f"must hold pairs of finite numbers, of at most {LARGEST:g}",
-        )  # fmt: skip
-        check(0 <= self.start < self.end, owner, "start", self.start, "must lie between 0 and end")
+        check = checks(f"LineLoad({self.beam})", self)
+        check("stage", 0 <= self.stage <= MOST_STAGES, STAGE)
+        pairs = len(self.force) > 0 and all(map(is_point, self.force))
+        check("force", pairs, f"must hold pairs of finite numbers, of at most {LARGEST:g}")
+        check("start", 0 <= self.start < self.end, "must lie between 0 and end")
 
     def elements(self, beam: Beam) -> range:
         """Elements of its beam on which the load acts, counted from 0."""

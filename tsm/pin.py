@@ -9,19 +9,8 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import accumulate, pairwise
 
-from tsm.beam import LARGEST, Point
-from tsm.beam import check as _check
-from tsm.beam import finite as _finite
+from tsm.beam import LARGEST, Point, check, is_point
 from tsm.stages import stage_of
-
-
-def _between(a: Point, b: Point, part: float) -> Point:
-    return (a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1]))
-
-
-def _direction(a: Point, b: Point) -> float:
-    return math.atan2(b[1] - a[1], b[0] - a[0])
-
 
 TURN = 0.5
 """Angle in radians that the path of a pin may turn by within a load step."""
@@ -52,11 +41,7 @@ class Polyline:
         return min(max(at, 1), len(self.points) - 1) - 1
 
     def velocity(self, begin: float, end: float) -> Point:
-        """Mean derivative of the position between two parameters; the derivative if these are equal, at a corner on the leg before it.
-
-        >>> Polyline(((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))).velocity(0.0, 1.0)
-        (1.0, 1.0)
-        """
+        """Mean derivative of the position between two parameters; the derivative if these are equal, at a corner on the leg before it."""
         if len(self.points) == 1:
             return (0.0, 0.0)
         k = self._leg(end)
@@ -74,32 +59,25 @@ class Polyline:
 
     @property
     def turns(self) -> tuple[float, ...]:
-        """Parameters of the corners at which the path has turned by `TURN` since the last of them.
-
-        >>> Polyline(((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))).turns
-        (0.5,)
-        """
+        """Parameters of the corners at which the path has turned by `TURN` since the last of them."""
         found, turned = [], 0.0
         legs = pairwise(self.points)
         for done, ((a, b), (_, c)) in zip(self._reached[1:], pairwise(legs), strict=False):
-            turned += abs(math.remainder(_direction(b, c) - _direction(a, b), math.tau))
+            one, other = (math.atan2(q[1] - p[1], q[0] - p[0]) for p, q in ((a, b), (b, c)))
+            turned += abs(math.remainder(other - one, math.tau))
             if turned >= TURN:
                 found.append(done / self.length)
                 turned = 0.0
         return tuple(found)
 
     def position(self, t: float) -> Point:
-        """Position at a parameter in [0, 1].
-
-        >>> Polyline(((0.0, 0.0), (2.0, 0.0), (2.0, 2.0))).position(0.75)
-        (2.0, 1.0)
-        """
+        """Position at a parameter in [0, 1]."""
         if len(self.points) == 1:
             return self.points[0]
         k = self._leg(t)
         a, b = self.points[k : k + 2]
-        left = t * self.length - self._reached[k]
-        return _between(a, b, left / math.dist(a, b))
+        part = (t * self.length - self._reached[k]) / math.dist(a, b)
+        return (a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1]))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,21 +101,13 @@ class Pin:
 
     def __post_init__(self) -> None:
         owner = f"Pin({self.name})"
-        _check(len(self.path) > 0, owner, "path", self.path, "must have at least one point")
+        check(len(self.path) > 0, owner, "path", self.path, "must have at least one point")
         for field, points in (("path", self.path), *(("onward", points) for points in self.onward)):
-            _check(
-                all(len(point) == 2 and _finite(*point) for point in points),
-                owner, field, points, f"must hold pairs of finite numbers, of at most {LARGEST:g}",
-            )  # fmt: skip
+            pairs = all(map(is_point, points))
+            check(pairs, owner, field, points, f"must hold pairs of finite numbers, of at most {LARGEST:g}")
         for polyline in self.polylines:
-            points = polyline.points
-            _check(
-                all(a != b for a, b in pairwise(points)),
-                owner,
-                "path",
-                points,
-                "must not repeat a point at once",
-            )
+            apart = all(a != b for a, b in pairwise(polyline.points))
+            check(apart, owner, "path", polyline.points, "must not repeat a point at once")
 
     @cached_property
     def polylines(self) -> tuple[Polyline, ...]:

@@ -7,16 +7,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tsm.beam import LARGEST, End, check, check_end, finite
+from tsm.beam import END, ENDS, LARGEST, End, checks, finite
 from tsm.elements.properties import Array
 
 _EPS = float(np.finfo(float).eps)
 
 
-def _check_stiffness(owner: str, **stiffnesses: float) -> None:
-    for field, value in stiffnesses.items():
-        rule = f"must lie between 0 and {LARGEST:g}"
-        check(finite(value) and value >= 0, owner, field, value, rule)
+def _check(item: Hinge | Spring, *stiffnesses: str) -> None:
+    check = checks(f"{type(item).__name__}({item.beam}.{item.end})", item)
+    check("end", item.end in ENDS, END)
+    for field in stiffnesses:
+        value = getattr(item, field)
+        check(field, finite(value) and value >= 0, f"must lie between 0 and {LARGEST:g}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,9 +40,7 @@ class Hinge:
     stiffness: float = 0.0
 
     def __post_init__(self) -> None:
-        owner = f"Hinge({self.beam}.{self.end})"
-        check_end(owner, self.end)
-        _check_stiffness(owner, stiffness=self.stiffness)
+        _check(self, "stiffness")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,9 +66,7 @@ class Spring:
     rotation: float = 0.0
 
     def __post_init__(self) -> None:
-        owner = f"Spring({self.beam}.{self.end})"
-        check_end(owner, self.end)
-        _check_stiffness(owner, x=self.x, y=self.y, rotation=self.rotation)
+        _check(self, "x", "y", "rotation")
 
 
 class Springs:

@@ -10,18 +10,23 @@ from dataclasses import dataclass
 from typing import Literal
 
 from tsm.beam import (
-    LARGEST,
+    END,
+    ENDS,
+    FINITE,
     MOST,
     MOST_STAGES,
+    POINT,
+    STAGE,
     Beam,
     End,
     LineLoad,
     Point,
     Section,
     check,
-    check_end,
+    checks,
     finite,
-)
+    is_point,
+)  # fmt: skip
 from tsm.pin import Pin
 from tsm.springs import Hinge, Spring
 
@@ -76,21 +81,16 @@ class Support:
 
     def __post_init__(self) -> None:
         owner = f"Support({self.beam}.{self.end})"
-        free = [value is None for value in (self.ux, self.uy, self.rotation)]
+        of_field = checks(owner, self)
+        held = [value is not None for value in (self.ux, self.uy, self.rotation)]
         for motion in self.onward:
-            check(finite(*motion), owner, "onward", motion, f"must be finite, of at most {LARGEST:g}")
-            still = not any(value for value, loose in zip(motion, free, strict=True) if loose)
+            check(finite(*motion), owner, "onward", motion, f"must be {FINITE}")
+            still = all(has or not value for value, has in zip(motion, held, strict=True))
             check(still, owner, "onward", motion, "must be zero where the component is free")
-        check_end(owner, self.end)
+        of_field("end", self.end in ENDS, END)
         for field in ("ux", "uy", "rotation"):
             value = getattr(self, field)
-            check(
-                value is None or finite(value),
-                owner,
-                field,
-                value,
-                f"must be None or finite, of at most {LARGEST:g}",
-            )
+            of_field(field, value is None or finite(value), f"must be None or {FINITE}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,26 +121,14 @@ class Load:
     stage: int = 0
 
     def __post_init__(self) -> None:
-        owner = f"Load({self.beam}.{self.arc if self.end is None else self.end})"
+        check = checks(f"Load({self.beam}.{self.arc if self.end is None else self.end})", self)
         if self.arc is None:
-            check_end(owner, self.end)
+            check("end", self.end in ENDS, END)
         else:
-            check(self.end is None, owner, "arc", self.arc, "is given instead of end, not besides")
-        check(
-            len(self.force) == 2 and finite(*self.force),
-            owner,
-            "force",
-            self.force,
-            f"must be two finite numbers, of at most {LARGEST:g}",
-        )
-        check(finite(self.moment), owner, "moment", self.moment, f"must be finite, of at most {LARGEST:g}")
-        check(
-            0 <= self.stage <= MOST_STAGES,
-            owner,
-            "stage",
-            self.stage,
-            f"must lie between 0 and {MOST_STAGES}",
-        )
+            check("arc", self.end is None, "is given instead of end, not besides")
+        check("force", is_point(self.force), POINT)
+        check("moment", finite(self.moment), f"must be {FINITE}")
+        check("stage", 0 <= self.stage <= MOST_STAGES, STAGE)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -178,32 +166,16 @@ class ContactPair:
     end_offset: float | None = None
 
     def __post_init__(self) -> None:
-        check(self.side in {"left", "right"}, self.name, "side", self.side, 'must be "left" or "right"')
-        check(
-            finite(self.offset) and self.offset >= 0,
-            self.name,
-            "offset",
-            self.offset,
-            "must not be negative",
-        )
-        check(
-            0 <= self.friction <= MOST_FRICTION,
-            self.name, "friction", self.friction, f"must lie between 0 and {MOST_FRICTION:g}",
-        )  # fmt: skip
-        check(
-            0 <= self.radius <= self.offset,
-            self.name, "radius", self.radius, "must lie between 0 and the offset",
-        )  # fmt: skip
+        check = checks(self.name, self)
+        check("side", self.side in {"left", "right"}, 'must be "left" or "right"')
+        check("offset", finite(self.offset) and self.offset >= 0, "must not be negative")
+        rubs = 0 <= self.friction <= MOST_FRICTION
+        check("friction", rubs, f"must lie between 0 and {MOST_FRICTION:g}")
+        check("radius", 0 <= self.radius <= self.offset, "must lie between 0 and the offset")
         if self.end_offset is not None:
             positive = min(self.offset, self.end_offset) > 0 and finite(self.end_offset)
-            check(positive, self.name, "end_offset", self.end_offset, "must be positive, and offset too")
-            check(
-                not self.friction,
-                self.name,
-                "friction",
-                self.friction,
-                "must be 0 on a surface with an end_offset",
-            )
+            check("end_offset", positive, "must be positive, and offset too")
+            check("friction", not self.friction, "must be 0 on a surface with an end_offset")
 
     @property
     def name(self) -> str:
@@ -240,40 +212,28 @@ class Structure:
         names = [beam.name for beam in self.beams] + [pin.name for pin in self.pins]
         _unique(names, "a beam or pin")
         _unique([pair.name for pair in self.contacts], "a contact")
-        _unique([f"{support.beam}.{support.end}" for support in self.supports], "a support")
-        _unique([f"{hinge.beam}.{hinge.end}" for hinge in self.hinges], "a hinge")
-        _unique([f"{spring.beam}.{spring.end}" for spring in self.springs], "a spring")
+        joined: list[Support | Hinge | Spring] = [*self.supports, *self.hinges, *self.springs]
+        for kind in (Support, Hinge, Spring):
+            ends = (f"{item.beam}.{item.end}" for item in joined if isinstance(item, kind))
+            _unique(ends, f"a {kind.__name__.lower()}")
         beams = {beam.name for beam in self.beams}
-        ends = {f"{beam}.{end}" for beam in beams for end in ("start", "end")}
-        nodes = {pin.name for pin in self.pins} | ends
-        for support in self.supports:
-            check(support.beam in beams, "Support", "beam", support.beam, "names no beam")
-        owners = [("Hinge", hinge.beam) for hinge in self.hinges]
-        owners += [("Spring", spring.beam) for spring in self.springs]
-        for owner, beam in owners:
-            check(beam in beams, owner, "beam", beam, "names no beam")
+        nodes = {pin.name for pin in self.pins} | {f"{beam}.{end}" for beam in beams for end in ENDS}
+        for item in (*joined, *self.loads, *self.line_loads):
+            check(item.beam in beams, type(item).__name__, "beam", item.beam, "names no beam")
         for load in self.loads:
-            check(load.beam in beams, "Load", "beam", load.beam, "names no beam")
             if load.arc is not None:
                 at_node = self.beam(load.beam).node(load.arc) is not None
                 check(at_node, f"Load({load.beam})", "arc", load.arc, "must be a node, see Beam.divided")
         for line_load in self.line_loads:
-            check(line_load.beam in beams, "LineLoad", "beam", line_load.beam, "names no beam")
             line_load.check(self.beam(line_load.beam))
         for pair in self.contacts:
-            check(pair.beam in beams, pair.name, "beam", pair.beam, "names no beam")
-            check(pair.node in nodes, pair.name, "node", pair.node, "names no pin and no beam end")
-            own = pair.node.rpartition(".")[0] == pair.beam
-            check(not own, pair.name, "node", pair.node, "a beam does not touch itself")
+            of_pair = checks(pair.name, pair)
+            of_pair("beam", pair.beam in beams, "names no beam")
+            of_pair("node", pair.node in nodes, "names no pin and no beam end")
+            of_pair("node", pair.node.rpartition(".")[0] != pair.beam, "a beam does not touch itself")
             if pair.end_offset is not None:
                 flat = abs(pair.end_offset - pair.offset) < self.beam(pair.beam).length
-                check(
-                    flat,
-                    pair.name,
-                    "end_offset",
-                    pair.end_offset,
-                    "must differ from offset by less than the length",
-                )
+                of_pair("end_offset", flat, "must differ from offset by less than the length")
 
     @property
     def stages(self) -> int:
