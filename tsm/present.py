@@ -50,20 +50,13 @@ def arrays(result: Result) -> dict[str, Array]:
     """
     named = {"load_parameter": result.load_parameter, "newton_iterations": result.newton_iterations}
     for pair, contact in result.contacts.items():
-        named[f"{pair}.force"] = contact.force
-        named[f"{pair}.arc_position"] = contact.arc_position
-        named[f"{pair}.gap"] = contact.gap
+        named |= {f"{pair}.{name}": getattr(contact, name) for name in ("force", "arc_position", "gap")}
         if contact.friction is not None:
-            for name in ("tangential", "normal", "slip", "dissipated"):
-                named[f"{pair}.{name}"] = getattr(contact.friction, name)
-    for beam, tip in result.tips.items():
-        named[f"{beam}.tip"] = tip
-    for node, support in result.supports.items():
-        named[f"{node}.support_force"] = support.force
-        named[f"{node}.support_moment"] = support.moment
-    for end, spring in result.springs.items():
-        named[f"{end}.spring_force"] = spring.force
-        named[f"{end}.spring_moment"] = spring.moment
+            named |= {f"{pair}.{name}": values for name, values in vars(contact.friction).items()}
+    named |= {f"{beam}.tip": tip for beam, tip in result.tips.items()}
+    for what, ends in (("support", result.supports), ("spring", result.springs)):
+        for end, held in ends.items():
+            named |= {f"{end}.{what}_force": held.force, f"{end}.{what}_moment": held.moment}
     return named
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -19,7 +18,6 @@ from tsm.friction import grips, traction
 from tsm.groups.shape import Stations
 from tsm.model import Model
 from tsm.newton import Equilibrium
-from tsm.state import State
 from tsm.status import Status
 from tsm.step import Step
 from tsm.system import Assembler
@@ -237,43 +235,25 @@ class Result:
         return out
 
 
-def _at_node(model: Model, state: State) -> Iterator[str]:
-    """Contacts on nodes of the paper's elements, which are rigid there, and what to try."""
-    for pair, touch in zip(model.pairs, state.touches, strict=True):
-        if touch is not None and pair.slot < 0 and min(touch.xi, 1 - touch.xi) < _AT_NODE:
-            beam = pair.target.beam
-            yield (
-                f'; {pair.pair.name}: the contact lies on a node, where elements "{beam.element}" are rigid: '
-                f"try {beam.elements + 1} elements"
-            )
-
-
 def collect(model: Model, steps: list[Step], status: Status, seconds: float) -> Result:
     """Result of the accepted steps."""
     requested = [step for step in steps if step.requested]
     equilibria = tuple(step.equilibrium for step in requested)
     spent = np.cumsum([step.iterations for step in steps])
     upto = spent[[k for k, step in enumerate(steps) if step.requested]] if steps else np.zeros(0, int)
-    reached = equilibria[-1].state.load_parameter if equilibria else 0.0
-    stopped = steps[-1].equilibrium.state.load_parameter if steps else 0.0
-    where = (
-        ""
-        if status is Status.COMPLETED
-        else f"; stopped at load parameter {stopped:.6g}, last reported {reached:.6g}"
-    )
-    if status is Status.CUTBACK_FLOOR:
-        where += "".join(_at_node(model, steps[-1].equilibrium.state))
-    if status is Status.END_CONTACT:
-        where = f": {_meeting(model, steps[-1].events[-1])}{where}"
     return Result(
         status=status,
-        message=status.value + where,
+        message=status.value + _where(model, steps, status),
         load_parameter=np.array([e.state.load_parameter for e in equilibria]),
         contacts={pair.pair.name: _contact(model, requested, k) for k, pair in enumerate(model.pairs)},
-        supports=_supports(model, equilibria),
+        supports={
+            name: _history([np.where(held, e.system.nodal[3 * node : 3 * node + 3], 0.0) for e in equilibria])
+            for name, (node, held) in model.supports.items()
+        },
         springs=_springs(model, equilibria),
         tips={
-            name: np.array([_position(model, e, place.nodes[-1]) for e in equilibria]).reshape(-1, 2)
+            name: model.coordinates[place.nodes[-1]]
+            + np.array([e.state.q[3 * place.nodes[-1] :][:2] for e in equilibria]).reshape(-1, 2)
             for name, place in model.beams.items()
         },
         newton_iterations=np.diff(upto, prepend=0),
@@ -290,17 +270,29 @@ def collect(model: Model, steps: list[Step], status: Status, seconds: float) -> 
     )
 
 
-def _meeting(model: Model, event: Event) -> str:
-    """Who meets which end of which beam at an end contact, and when."""
-    pair = next(pair for pair in model.pairs if pair.pair.name == event.pair)
-    ends = {0.0: "the start", pair.target.beam.length: "the end"}
-    what = ends.get(event.arc_position, "the other side")
-    return f"{pair.pair.node} meets {what} of {pair.pair.beam} at load parameter {event.load_parameter:.9g}"
-
-
-def _position(model: Model, equilibrium: Equilibrium, node: int) -> Array:
-    position: Array = model.coordinates[node] + equilibrium.state.q[3 * node : 3 * node + 2]
-    return position
+def _where(model: Model, steps: list[Step], status: Status) -> str:
+    """Where a solution stopped, who meets which end of which beam there, and what to try where a node of the paper's elements is in the way."""
+    if status is Status.COMPLETED:
+        return ""
+    state = steps[-1].equilibrium.state if steps else None
+    reached = next((s.equilibrium.state.load_parameter for s in reversed(steps) if s.requested), 0.0)
+    stopped = state.load_parameter if state else 0.0
+    where = f"; stopped at load parameter {stopped:.6g}, last reported {reached:.6g}"
+    if status is Status.CUTBACK_FLOOR and state:
+        for pair, touch in zip(model.pairs, state.touches, strict=True):
+            if touch is not None and pair.slot < 0 and min(touch.xi, 1 - touch.xi) < _AT_NODE:
+                beam = pair.target.beam
+                where += (
+                    f'; {pair.pair.name}: the contact lies on a node, where elements "{beam.element}" are rigid: '
+                    f"try {beam.elements + 1} elements"
+                )
+    if status is Status.END_CONTACT:
+        event = steps[-1].events[-1]
+        pair = next(pair for pair in model.pairs if pair.pair.name == event.pair)
+        ends = {0.0: "the start", pair.target.beam.length: "the end"}
+        what = f"{ends.get(event.arc_position, 'the other side')} of {pair.pair.beam}"
+        where = f": {pair.pair.node} meets {what} at load parameter {event.load_parameter:.9g}{where}"
+    return where
 
 
 def _contact(model: Model, steps: list[Step], k: int) -> ContactHistory:
@@ -308,6 +300,17 @@ def _contact(model: Model, steps: list[Step], k: int) -> ContactHistory:
     force, arc, gap = np.array(rows).reshape(-1, 3).T
     friction = _friction(model, steps, k) if model.pairs[k].rubs else None
     return ContactHistory(force=force, arc_position=arc, gap=gap, friction=friction)
+
+
+def _contact_at(model: Model, equilibrium: Equilibrium, k: int) -> tuple[float, float, float]:
+    pair, state = model.pairs[k], equilibrium.state
+    touch = state.touches[k]
+    if touch is not None:
+        left = equilibrium.system.residual[model.equations :][pair.slots][:2]
+        return normal_force(model, equilibrium, k), pair.arc_position(touch), float(np.hypot.reduce(left))
+    seen = pair.group.project(pair, state)
+    over = state.armed[k] and seen.overshoot <= 0
+    return 0.0, np.nan, seen.gap if over else np.nan
 
 
 def _friction(model: Model, steps: list[Step], k: int) -> FrictionHistory:
@@ -324,39 +327,16 @@ def _friction(model: Model, steps: list[Step], k: int) -> FrictionHistory:
     )
 
 
-def _contact_at(model: Model, equilibrium: Equilibrium, k: int) -> tuple[float, float, float]:
-    pair, state = model.pairs[k], equilibrium.state
-    touch = state.touches[k]
-    if touch is not None:
-        left = 0.0
-        if pair.slot >= 0:
-            residual = equilibrium.system.residual[model.equations + pair.slot :]
-            left = float(np.hypot(residual[0], residual[1]))
-        arc = pair.arc_position(touch)
-        return normal_force(model, equilibrium, k), arc, left
-    seen = pair.group.project(pair, state)
-    over = state.armed[k] and seen.overshoot <= 0
-    return 0.0, np.nan, seen.gap if over else np.nan
-
-
 def _springs(model: Model, equilibria: tuple[Equilibrium, ...]) -> dict[str, SupportHistory]:
     """Forces of the springs to the ground, ``-k u``."""
     histories = {}
     for spring in model.structure.springs:
         name = f"{spring.beam}.{spring.end}"
         node, stiffness = 3 * model.end_node(name), np.array([spring.x, spring.y, spring.rotation])
-        rows = np.array([-stiffness * e.state.q[node : node + 3] for e in equilibria]).reshape(-1, 3)
-        histories[name] = SupportHistory(force=rows[:, :2], moment=rows[:, 2])
+        histories[name] = _history([-stiffness * e.state.q[node : node + 3] for e in equilibria])
     return histories
 
 
-def _supports(model: Model, equilibria: tuple[Equilibrium, ...]) -> dict[str, SupportHistory]:
-    """Reactions of the supports on the components that they hold; a component held twice at a joint is counted once."""
-    tables = {
-        name: np.array([np.where(held, e.system.nodal[3 * node : 3 * node + 3], 0.0) for e in equilibria])
-        for name, (node, held) in model.supports.items()
-    }
-    return {
-        name: SupportHistory(force=table.reshape(-1, 3)[:, :2], moment=table.reshape(-1, 3)[:, 2])
-        for name, table in tables.items()
-    }
+def _history(rows: list[Array]) -> SupportHistory:
+    table = np.array(rows).reshape(-1, 3)
+    return SupportHistory(force=table[:, :2], moment=table[:, 2])

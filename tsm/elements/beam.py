@@ -41,17 +41,11 @@ _REDUCE = np.zeros((4, 6))
 _REDUCE[0, [0, 3]] = _REDUCE[1, [1, 4]] = -1, 1
 _REDUCE[2, [2, 5]] = 0.5
 _REDUCE[3, [2, 5]] = 0.5, -0.5
-GATHER = _REDUCE.T.copy()
-"""Nodal forces (6) from those over ``dx, dy, m, h`` (4)."""
+_GATHER = _REDUCE.T.copy()
 # the ten distinct entries of the tangent over those four, spread over the displacements
-PAIRS = [(0, 0), (0, 1), (1, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 2), (2, 3), (3, 3)]
-SPREAD = np.array(
-    [
-        (np.outer(_REDUCE[a], _REDUCE[b]) + (a != b) * np.outer(_REDUCE[b], _REDUCE[a])).ravel()
-        for a, b in PAIRS
-    ]
-).T.copy()
-"""Nodal tangent (36) from the entries `PAIRS` (10)."""
+_PAIRS = [(0, 0), (0, 1), (1, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 2), (2, 3), (3, 3)]
+_PRODUCTS = np.einsum("ai,bj->abij", _REDUCE, _REDUCE).reshape(4, 4, 36)
+_SPREAD = np.array([_PRODUCTS[a, b] + (a != b) * _PRODUCTS[b, a] for a, b in _PAIRS]).T.copy()
 
 
 class Coefficients(NamedTuple):
@@ -117,31 +111,13 @@ def _coefficients(p: Properties, e: Array, c: Array, r4: Array, r2: Array) -> Co
     )
 
 
-def response(a: Coefficients, x: Array) -> tuple[Array, Array]:
-    """Nodal forces and exact tangent of beam elements.
-
-    ``x`` (6, n): element displacements, component first. Returns ``force`` (6, n), gradient of the energy;
-    ``tangent`` (36, n), its derivative, row by row, symmetric.
-    """
-    force, tangent = reduced_response(a, x)
-    return GATHER @ force, SPREAD @ tangent
-
-
-def reduced_response(a: Coefficients, x: Array) -> tuple[Array, Array]:
-    """Forces and tangent of beam elements over the four quantities that they depend on, chord (x, y), m and h.
-
-    ``x`` (6, ...): element displacements, component first; the coefficients have the same axes behind the
-    first. Returns ``force`` (4, ...), gradient of the energy; `GATHER` converts it to nodal forces;
-    ``tangent`` (10, ...), upper triangle of the gradient's derivative in the order of `PAIRS`; `SPREAD`
-    converts it to the nodal tangent.
-    """
+def _deformed(a: Coefficients, x: Array) -> tuple[Array, Array, Array, Array]:
+    """Chord (2, n), its length and its elongation (n,), and the rotations m and h (2, n)."""
     shift = x[3:5] - x[:2]
     chord = a.chord + shift
     (x0, y0), (dx, dy) = a.chord, chord
     squared = chord * chord
     length = np.sqrt(squared[0] + squared[1])
-    t = chord / length
-    tx, ty = t
     # l - l0 without the cancellation of two lengths
     stretched = (a.chord + chord) * shift
     e = (stretched[0] + stretched[1]) / (length + a.l0)
@@ -149,6 +125,18 @@ def reduced_response(a: Coefficients, x: Array) -> tuple[Array, Array]:
     bend = np.empty_like(shift)
     bend[0] = unwind((x[2] + x[5]) / 2 - turn)
     bend[1] = (x[2] - x[5]) / 2
+    return chord, length, e, bend
+
+
+def response(a: Coefficients, x: Array) -> tuple[Array, Array]:
+    """Nodal forces and exact tangent of beam elements.
+
+    ``x`` (6, n): element displacements, component first. Returns ``force`` (6, n), gradient of the energy;
+    ``tangent`` (36, n), its derivative, row by row, symmetric.
+    """
+    chord, length, e, bend = _deformed(a, x)
+    t = chord / length
+    tx, ty = t
 
     mm, hh = bend * bend
     polynomial = a.constant + a.of_mm * mm + a.of_hh * hh
@@ -185,26 +173,15 @@ def reduced_response(a: Coefficients, x: Array) -> tuple[Array, Array]:
     entries[2] = tt * yy + nn * xx + turned
     entries[3:5] = tx * coupling + ty * across
     entries[5:7] = ty * coupling - tx * across
-    return reduced, entries
+    return _GATHER @ reduced, _SPREAD @ entries
 
 
 def energy(a: Coefficients, x: Array) -> Array:
     """Strain energy of beam elements, shape (n,); arguments as for `response`."""
-    e, mm, hh = _deformation(a, x)
+    _, _, e, bend = _deformed(a, x)
+    mm, hh = bend * bend
     polynomial = a.constant + a.of_mm * mm + a.of_hh * hh
     stretch = (e + polynomial[0]) ** 2 / polynomial[1]
     bending = a.constant[2] * mm + a.constant[3] * hh
     value: Array = (stretch + bending + a.r4 * mm * mm / 4 + a.r2 * mm * hh / 2) / 2
     return value
-
-
-def _deformation(a: Coefficients, x: Array) -> tuple[Array, Array, Array]:
-    """Elongation of the chord and the squares of m and h."""
-    shift = x[3:5] - x[:2]
-    chord = a.chord + shift
-    (x0, y0), (dx, dy) = a.chord, chord
-    stretched = (a.chord + chord) * shift
-    e = (stretched[0] + stretched[1]) / (np.sqrt(dx * dx + dy * dy) + a.l0)
-    turn = chord_rotation(x0 * dy - y0 * dx, x0 * dx + y0 * dy)
-    m, h = unwind((x[2] + x[5]) / 2 - turn), (x[2] - x[5]) / 2
-    return e, m * m, h * h

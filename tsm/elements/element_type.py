@@ -58,20 +58,13 @@ class Integrated(ElementType):
     # Gauss nodes of every segment; None where their number follows from the accuracy
     nodes: int | None = None
 
+    contact_unknowns = 4
+    rubs = True
+
     @property
     def meshed(self) -> bool:
         """Whether the number of nodes is fixed. Otherwise one element is as accurate as many."""
         return self.nodes is not None
-
-    @property
-    def contact_unknowns(self) -> int:
-        """Number of unknowns that a closed contact adds to the system."""
-        return 4
-
-    @property
-    def rubs(self) -> bool:
-        """True."""
-        return True
 
     @property
     def on_varying(self) -> Integrated:
@@ -94,10 +87,7 @@ class ClosedForm(ElementType):
     # KS for F/GA from 1e-3 to 3e-2
     shear_floor: tuple[float, int] = (1.0, 2)
 
-    @property
-    def meshed(self) -> bool:
-        """Whether the error falls with the number of elements."""
-        return True
+    meshed = True
 
     @property
     def contact_unknowns(self) -> int:

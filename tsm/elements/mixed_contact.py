@@ -39,13 +39,8 @@ REDUCE[0, [0, 3]] = REDUCE[1, [1, 4]] = -1, 1
 REDUCE[[2, 3, 4, 5, 6], [2, 5, 8, 9, 10]] = 1
 """The seven quantities of a contact from the eleven unknowns."""
 # the upper triangle of a matrix over them, row by row, spread over the eleven
-_SPREAD = np.array(
-    [
-        (np.outer(REDUCE[a], REDUCE[b]) + (a != b) * np.outer(REDUCE[b], REDUCE[a])).ravel()
-        for a in range(7)
-        for b in range(a, 7)
-    ]
-)
+_PRODUCTS = np.einsum("ai,bj->abij", REDUCE, REDUCE).reshape(7, 7, 121)
+_SPREAD = np.array([_PRODUCTS[a, b] + (a != b) * _PRODUCTS[b, a] for a in range(7) for b in range(a, 7)])
 LEVER = np.zeros((11, 11))
 LEVER[[0, 8, 1, 9], [8, 0, 9, 1]] = 1
 LEVER[[6, 8, 7, 9], [8, 6, 9, 7]] = -1

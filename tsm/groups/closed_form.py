@@ -32,26 +32,10 @@ class ClosedFormForces(NamedTuple):
 
     nodal: Array  # nodal forces; shape (6, e)
     tangent: Array  # their derivatives, row by row; shape (36, e)
-
-    @property
-    def ends(self) -> Array:
-        """Forces and moments at both ends of the elements, shape (6, e)."""
-        return self.nodal
-
-    @property
-    def inside(self) -> float:
-        """Residual inside the elements."""
-        return 0.0
-
-    @property
-    def condensed_residual(self) -> Array:
-        """Zero: there is no inner residual."""
-        return np.zeros_like(self.nodal)
-
-    @property
-    def by_load(self) -> Array:
-        """Zero: there is no load along the elements."""
-        return np.zeros_like(self.nodal)
+    ends: Array  # the same as `nodal`: forces and moments at both ends
+    condensed_residual: Array  # condensed_residual, by_load: zero
+    by_load: Array
+    inside: float = 0.0  # residual inside the elements
 
 
 class ClosedFormGroup(ElementGroup):
@@ -75,7 +59,7 @@ class ClosedFormGroup(ElementGroup):
             force[:, place] += gradient[:6]
             tangent[:, place] += block[:6, :6].ravel()
             contacts.close(k, pair, touch, gradient, block)
-        return ClosedFormForces(force, tangent)
+        return ClosedFormForces(force, tangent, force, self.none, self.none)
 
     def tangent(self, _state: State, forces: ClosedFormForces, _contacts: ContactBlock) -> ClosedFormForces:
         """Tangent, which is known with the forces."""

@@ -237,64 +237,35 @@ def law(element_force: ElementForce) -> ContactLaw:
     return ContactLaw(response=respond, energy=energy)
 
 
-def _element(
-    name: str, source: str, stiffness: Matrix, basis: Matrix | None = None, **more: Any
-) -> ClosedForm:
-    contact = law(force_equation(stiffness, basis))
-    return ClosedForm(name=name, source=source, coefficients=linear_coefficients, contact=contact, **more)
+def _both(
+    name: str,
+    where: str,
+    misprints: str,
+    *matrices: Matrix,
+    basis: Matrix | None = None,
+    marker: str,
+    **more: Any,
+) -> tuple[ClosedForm, ClosedForm]:
+    """The element with the first matrix, corrected, and with the second one, as printed."""
+    shared = {"coefficients": linear_coefficients, **more}
+    laws = (law(force_equation(stiffness, basis)) for stiffness in matrices)
+    one = ClosedForm(name=name, source=f"{where}, corrected", contact=next(laws), marker=marker, **shared)
+    source = f"{where} with its {misprints}"
+    other = ClosedForm(name=f"{name}-as-printed", source=source, contact=next(laws), variant=True, **shared)
+    return one, other
 
 
-TIMOSHENKO = _element(
-    "timoshenko",
-    "[P] (9)-(12), corrected",
-    timoshenko,
-    colour="#0072B2",
-    marker="^",
+TIMOSHENKO, _TIMOSHENKO = _both(
+    "timoshenko", "[P] (9)-(12)", "misprints", timoshenko, timoshenko_as_printed, colour="#0072B2", marker="^"
 )
-EULER_BERNOULLI_SIMPLE = _element(
-    "euler-bernoulli-simple",
-    "[P] (5)-(6), corrected",
-    euler_bernoulli,
-    sheared=False,
-    colour="#D55E00",
-    marker="o",
-)
-EULER_BERNOULLI_CANTILEVER = _element(
-    "euler-bernoulli-cantilever",
-    "[P] (7)-(8), corrected",
-    cantilever,
-    transformation,
-    sheared=False,
-    colour="#E69F00",
-    marker="s",
-)
+EULER_BERNOULLI_SIMPLE, _SIMPLE = _both(
+    "euler-bernoulli-simple", "[P] (5)-(6)", "misprint", euler_bernoulli, euler_bernoulli_as_printed,
+    sheared=False, colour="#D55E00", marker="o",
+)  # fmt: skip
+EULER_BERNOULLI_CANTILEVER, _CANTILEVER = _both(
+    "euler-bernoulli-cantilever", "[P] (7)-(8)", "misprints", cantilever, cantilever_as_printed,
+    basis=transformation, sheared=False, colour="#E69F00", marker="s",
+)  # fmt: skip
 PAPER = (TIMOSHENKO, EULER_BERNOULLI_SIMPLE, EULER_BERNOULLI_CANTILEVER)
 
-_PRINTED = (
-    _element(
-        "timoshenko-as-printed",
-        "[P] (9)-(12) with its misprints",
-        timoshenko_as_printed,
-        variant=True,
-        colour=TIMOSHENKO.colour,
-    ),
-    _element(
-        "euler-bernoulli-simple-as-printed",
-        "[P] (5)-(6) with its misprint",
-        euler_bernoulli_as_printed,
-        sheared=False,
-        variant=True,
-        colour=EULER_BERNOULLI_SIMPLE.colour,
-    ),
-    _element(
-        "euler-bernoulli-cantilever-as-printed",
-        "[P] (7)-(8) with its misprints",
-        cantilever_as_printed,
-        transformation,
-        sheared=False,
-        variant=True,
-        colour=EULER_BERNOULLI_CANTILEVER.colour,
-    ),
-)
-
-ELEMENTS = (*PAPER, *_PRINTED)
+ELEMENTS = (*PAPER, _TIMOSHENKO, _SIMPLE, _CANTILEVER)
