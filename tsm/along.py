@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from tsm.beam import Beam, LineLoad
+from tsm.beam import Beam, LineLoad, check
 from tsm.elements import ELEMENTS, EXACT, ElementType, Integrated
 from tsm.elements.properties import Array
 from tsm.elements.rod import Course, Flexibility
@@ -52,17 +52,9 @@ class Along:
                 resultant[load.stage, :, : len(load.force), place] += _integral(load, *spans[place])
         self.resultants = Increments(resultant)
 
-    def resultants_at(self, load_parameter: float) -> Array:
-        """Coefficients (2, d, e) of the resultants of all loads together at a load parameter."""
-        return self.resultants.at(load_parameter)
-
-    def resultant_rates(self, load_parameter: float) -> Array:
-        """Derivative of `resultants_at` in the load parameter; where a stage ends, during that stage."""
-        return self.resultants.rate(load_parameter)
-
     def total(self, load_parameter: float) -> Array:
         """Sum (2,) of all loads along the beams at a load parameter."""
-        total: Array = self.resultants_at(load_parameter).sum(axis=(1, 2))
+        total: Array = self.resultants.at(load_parameter).sum(axis=(1, 2))
         return total
 
     def course(self, elements: Array, part: Array, resultant: Array, resultant_rate: Array) -> Course:
@@ -100,13 +92,10 @@ def kind_of(beam: Beam, *, varies: bool) -> ElementType:
     kind = ELEMENTS[beam.element]
     if not varies:
         return kind
-    if kind.on_varying is None:
-        able = ", ".join(name for name, other in ELEMENTS.items() if other.on_varying)
-        raise ValueError(
-            f"Beam({beam.name}).element = {beam.element!r}: such elements are straight and uniform, without loads along them; "
-            f"use {able}"
-        )
-    return kind.on_varying
+    able = ", ".join(name for name, other in ELEMENTS.items() if other.on_varying)
+    rule = f"such elements are straight and uniform, without loads along them; use {able}"
+    check(kind.on_varying is not None, f"Beam({beam.name})", "element", beam.element, rule)
+    return kind.on_varying or kind
 
 
 def gauss_nodes(beams: Sequence[tuple[Beam, ElementType]]) -> int | None:
@@ -115,12 +104,9 @@ def gauss_nodes(beams: Sequence[tuple[Beam, ElementType]]) -> int | None:
     Raises ValueError if it is fixed for some of them only.
     """
     counts = {kind.nodes: beam for beam, kind in beams if isinstance(kind, Integrated)}
-    if len(counts) > 1:
-        fixed = next(beam for nodes, beam in counts.items() if nodes)
-        raise ValueError(
-            f'Beam({fixed.name}).element = {fixed.element!r}: must be "{EXACT.name}" as of other beams here, since the beam is '
-            "curved or tapered or has a load along it"
-        )
+    fixed = next((beam for nodes, beam in counts.items() if nodes), beams[0][0])
+    rule = f'must be "{EXACT.name}" as of other beams here, since the beam is curved or tapered or has a load along it'
+    check(len(counts) < 2, f"Beam({fixed.name})", "element", fixed.element, rule)
     return next(iter(counts), None)
 
 

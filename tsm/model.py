@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from tsm.along import Along, gauss_nodes, kind_of
+from tsm.beam import check, checks
 from tsm.conditions import dead_loads, held_components, motions, springs_of
 from tsm.elements import EXACT, ClosedForm, Integrated
 from tsm.elements.beam import Coefficients
@@ -30,35 +31,27 @@ _CONTACT_KINDS = np.arange(6, 10)
 class Model:
     """Numbering and constants of a structure.
 
-    ``coordinates`` (nodes, 2): undeformed node positions.
-    ``dofs`` (6, elements): degrees of freedom of the elements' nodes, three per node.
+    ``coordinates`` (nodes, 2): undeformed node positions. ``dofs`` (6, elements): degrees of freedom of the
+        elements' nodes, three per node.
     ``groups``: the elements by the way in which they are stated. The force and moment of an exact element are
-        three degrees of freedom, numbered after the nodes.
-    ``closed`` (c,): elements in closed form.
-    ``place`` (elements,): number of every element within its group.
-    ``block`` (elements,): number of every element's own three degrees of freedom among all threes, -1
-        without.
-    ``free`` (equations,): degree of freedom of every equation, banded ones first.
-    ``banded``: number of banded equations.
+        three degrees of freedom, numbered after the nodes. ``closed`` (c,): elements in closed form.
+    ``place`` (elements,): number of every element within its group. ``block`` (elements,): number of its own
+        three degrees of freedom among all threes, -1 without.
+    ``free`` (equations,): degree of freedom of every equation, banded ones first. ``banded``: number of these.
     ``border``: number of border unknowns: border equations, then the contacts' own unknowns.
     ``rubbed``: whether a contact has friction.
-    ``stages``: number of stages of the load.
     ``turns``: load parameters at which a stage ends and another follows, and at which the paths of the pins
         turn; with friction, every corner, since each may reverse a slip.
     ``gauss_nodes``: fixed number of Gauss nodes of the elements that contacts cut, None where it follows from
-        the accuracy.
-    ``along``: what varies along the elements.
+        the accuracy. ``along``: what varies along the elements.
     ``loads``: dead loads on all degrees of freedom.
     ``supports``: by supported end, the node and the components (3,) that the support holds.
-    ``prescribed``: values prescribed at load parameter 1, by degree of freedom.
-    ``fixed``: the prescribed degrees of freedom.
-    ``motions``: prescribed values of the degrees of freedom `fixed`.
-    ``moves``: whether a prescribed value is not zero in some stage.
+    ``prescribed``: values prescribed at load parameter 1, by degree of freedom. ``fixed``: these degrees of
+        freedom, ``motions``: their values, ``moves``: whether one is not zero in some stage.
     ``springs``: springs to the ground and in hinges, None without.
-    ``joints``: node of the joint by node of the beam's end behind a hinge. The two share their displacements.
-    ``slaves, masters``: displacements of the ends behind hinges, which are no unknowns, and of their joints.
-    ``sizes``: length, extent, force_scale and least_force, which are attributes too.
-    ``units, row_units``: units of the unknowns, and of the equations.
+    ``joints``: node of the joint by node of the beam's end behind a hinge; they share their displacements, the
+        ``slaves`` of the end and the ``masters`` of the joint.
+    ``length, extent, force_scale, least_force``: see `Sizes`. ``units, row_units``: of unknowns and equations.
     """
 
     def __init__(self, structure: Structure) -> None:
@@ -200,14 +193,6 @@ class Model:
         return len(self.block) == len(self.beams) and not len(self.closed)
 
     @cached_property
-    def pairs_on(self) -> dict[str, list[int]]:
-        """Numbers of the contact pairs on every beam that is touched."""
-        on: dict[str, list[int]] = {}
-        for k, pair in enumerate(self.pairs):
-            on.setdefault(pair.pair.beam, []).append(k)
-        return on
-
-    @cached_property
     def free_ends(self) -> dict[str, list[tuple[int, bool]]]:
         """By beam, the node of every end that no other beam shares, and whether it is the beam's end or its start."""
         ends = [
@@ -220,15 +205,6 @@ class Model:
             name: [(node, last) for owner, last, node in ends if owner == name and shared[node] == 1]
             for name in self.beams
         }
-
-    def pairs_of(self, group: ElementGroup) -> list[tuple[int, PairModel]]:
-        """Contact pairs on a group's elements, with their numbers."""
-        return self._pairs_of[group.number]
-
-    @cached_property
-    def _pairs_of(self) -> list[list[tuple[int, PairModel]]]:
-        numbered = list(enumerate(self.pairs))
-        return [[(k, pair) for k, pair in numbered if pair.group is group] for group in self.groups]
 
     def group_of(self, beam: BeamModel) -> ElementGroup:
         """Group of a beam's elements."""
@@ -257,16 +233,11 @@ class Model:
             target = self.beams[pair.beam]
             element_type = target.kind
             pin = pins.get(pair.node)
-            if pair.friction and not element_type.rubs:
-                raise ValueError(
-                    f"ContactPair({pair.name}).friction = {pair.friction!r}: "
-                    f'elements "{target.beam.element}" have contacts without friction only'
-                )
-            if pair.end_offset is not None and not isinstance(element_type, Integrated):
-                raise ValueError(
-                    f"ContactPair({pair.name}).end_offset = {pair.end_offset!r}: belongs to a beam that tapers or has elements "
-                    f'"{EXACT.name}"'
-                )
+            of_pair = checks(f"ContactPair({pair.name})", pair)
+            rubs = element_type.rubs or not pair.friction
+            of_pair("friction", rubs, f'elements "{target.beam.element}" have contacts without friction only')
+            envelope = pair.end_offset is None or isinstance(element_type, Integrated)
+            of_pair("end_offset", envelope, f'belongs to a beam that tapers or has elements "{EXACT.name}"')
             self.pairs.append(
                 PairModel(
                     pair=pair,
@@ -281,6 +252,8 @@ class Model:
             )
             slots += element_type.contact_unknowns
         self.contact_unknowns = slots
+        for group in self.groups:
+            group.pairs = [(k, pair) for k, pair in enumerate(self.pairs) if pair.group is group]
 
     def _number_equations(self) -> None:
         bordered = [
@@ -293,12 +266,10 @@ class Model:
         ]
         self.free = np.array([*band_dofs, *border_dofs], dtype=int)
         self.banded = len(band_dofs)
-        if not self.banded:
-            name, beam = next((name, item.beam) for name, item in self.beams.items())
-            raise ValueError(
-                f"Beam({name}).elements = {beam.elements!r}: every node is held, and elements {beam.element!r} have no "
-                f"unknowns inside; take at least 2, or elements {EXACT.name!r}"
-            )
+        held = self.structure.beams[0]
+        rule = f"every node is held, and elements {held.element!r} have no unknowns inside"
+        rule += f"; take at least 2, or elements {EXACT.name!r}"
+        check(self.banded > 0, f"Beam({held.name})", "elements", held.elements, rule)
         self.border_dofs = len(border_dofs)
         self.border = len(border_dofs) + self.contact_unknowns
         self.equations = len(self.free)

@@ -73,6 +73,7 @@ class ElementGroup(ABC):
     ``elements`` (e,) are numbered globally. ``dofs`` (n, e): degrees of freedom of the elements.
 
     ``number``: number of the group in the model. ``none`` (n, e): zeros.
+    ``pairs``: contact pairs on the elements, with their numbers.
     ``internal``: whether an element has a force and a moment as degrees of freedom, and further unknowns
         inside, which are eliminated.
     ``past_node``: part of an element's length by which a contact may lie past its end.
@@ -84,6 +85,7 @@ class ElementGroup(ABC):
     def __init__(self, model: Model, number: int, elements: Array, dofs: Array) -> None:
         self.model, self.number, self.elements, self.dofs = model, number, elements, dofs
         self.none = np.zeros(dofs.shape)
+        self.pairs: list[tuple[int, PairModel]] = []
 
     @abstractmethod
     def forces(self, state: State, contacts: ContactBlock) -> GroupForces:

@@ -47,7 +47,7 @@ class ClosedFormGroup(ElementGroup):
     def forces(self, state: State, contacts: ContactBlock) -> ClosedFormForces:
         """Forces and tangents of elements and contacts."""
         force, tangent = beam_element.response(self.model.coefficients, state.q[self.dofs])
-        for k, pair in self.model.pairs_of(self):
+        for k, pair in self.pairs:
             touch = state.touches[k]
             if touch is None:
                 contacts.leave_open(pair)
@@ -100,7 +100,7 @@ class ClosedFormGroup(ElementGroup):
     def energy(self, state: State) -> float:
         """Strain energy of elements and contacts in equilibrium."""
         total = float(beam_element.energy(self.model.coefficients, state.q[self.dofs]).sum())
-        for k, pair in self.model.pairs_of(self):
+        for k, pair in self.pairs:
             touch = state.touches[k]
             if touch is None:
                 continue
@@ -200,8 +200,8 @@ class ClosedFormGroup(ElementGroup):
         p = Properties(*(np.asarray(values)[elements] for values in model.properties))
         contacts = [
             PointForce(touch.element - beam.first, touch.xi, touch.force)
-            for k in model.pairs_on.get(beam.beam.name, ())
-            if (touch := state.touches[k]) is not None and model.pairs[k].slot >= 0
+            for k, pair in self.pairs
+            if (touch := state.touches[k]) is not None and pair.target is beam and pair.slot >= 0
         ]
         axes = deflected_axes(p, x, forces.nodal[:, places], contacts, xi)
         starts: Array = np.array(model.element_start[elements]) + x[:2].T

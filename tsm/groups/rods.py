@@ -207,7 +207,7 @@ class Rods(ElementGroup):
 
     def forces(self, state: State, contacts: ContactBlock) -> RodBalance:
         """Residual of the elements and of the contacts that cut them."""
-        for k, pair in self.model.pairs_of(self):
+        for k, pair in self.pairs:
             if state.touches[k] is None:
                 contacts.leave_open(pair)
         entry = self.enter(state)
