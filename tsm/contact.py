@@ -13,13 +13,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
-from tsm.elements.properties import Array
 from tsm.groups.shape import recut
 from tsm.model import Model
-from tsm.pairs import BeamModel, PairModel
-from tsm.projection import project_on_chords, slide
+from tsm.pairs import PairModel
+from tsm.projection import nearest_chord, slide
 from tsm.state import State, Touch
 
 
@@ -42,15 +39,9 @@ def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...], p
     return with_touches(model, replace(state, touches=touches), tuple(owned))
 
 
-def nearest_chord(model: Model, target: BeamModel, q: Array, node: tuple[float, float]) -> tuple[int, float]:
-    """Owner by projection on the chords."""
-    positions = model.coordinates[target.nodes] + q.reshape(-1, 3)[target.nodes, :2]
-    owner, xi = project_on_chords(positions, np.array(node))
-    return target.first + int(owner), float(xi[owner])
-
-
 def chord_owner(model: Model, pair: PairModel, state: State, touch: Touch) -> Touch:
     """Touch with its owner and position renewed by projection on the chords."""
-    node = model.node_position(pair, state.q, state.load_parameter)
-    element, xi = nearest_chord(model, pair.target, state.q, node)
-    return Touch(element=element, xi=min(max(xi, 0.0), 1.0), force=touch.force)
+    owner, xi = nearest_chord(
+        model.positions(pair.target, state.q), model.node_position(pair, state.q, state.load_parameter)
+    )
+    return Touch(element=pair.target.first + owner, xi=min(max(xi, 0.0), 1.0), force=touch.force)

@@ -321,6 +321,11 @@ class Model:
         x, y = self.coordinates[pair.node] + q[3 * pair.node : 3 * pair.node + 2]
         return float(x), float(y)
 
+    def positions(self, beam: BeamModel, q: Array) -> Array:
+        """Current positions (elements + 1, 2) of a beam's nodes."""
+        positions: Array = self.coordinates[beam.nodes] + q.reshape(-1, 3)[beam.nodes, :2]
+        return positions
+
     @cached_property
     def element(self) -> list[Properties]:
         """Constants of the single elements, plain numbers."""

@@ -53,10 +53,11 @@ def slide(lengths: Sequence[float], k: int, xi: float, past: float = 0.0) -> tup
     return k, xi
 
 
-def project_on_chords(positions: Array, node: Array) -> tuple[int, Array]:
-    """Chord, between positions (nodes, 2), that is nearest to a node (2,), and positions of its projections on all chords."""
+def nearest_chord(positions: Array, node: tuple[float, float]) -> tuple[int, float]:
+    """Chord, between positions (nodes, 2), that is nearest to a node, and the position of its projection on it."""
     d = np.diff(positions, axis=0)
-    r = node - positions[:-1]
+    r = np.array(node) - positions[:-1]
     xi = np.einsum("ij,ij->i", d, r) / np.einsum("ij,ij->i", d, d)
     apart = r - np.clip(xi, 0.0, 1.0)[:, None] * d
-    return int(np.argmin(np.einsum("ij,ij->i", apart, apart))), xi
+    owner = int(np.argmin(np.einsum("ij,ij->i", apart, apart)))
+    return owner, float(xi[owner])

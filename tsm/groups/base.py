@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
 from tsm.contact_block import ContactBlock
 from tsm.elements.properties import Array
-from tsm.projection import Projection, slide
+from tsm.projection import Projection, arc_position, overshoot, slide
 from tsm.state import State, Touch, Traction
 
 if TYPE_CHECKING:
@@ -146,11 +148,18 @@ class ElementGroup(ABC):
         position, tangent, _ = self.point(element, arc, state)
         return position - self.model.node_position(pair, state.q, state.load_parameter), tangent
 
-    def closest(self, pair: PairModel, state: State, e: int, arc: float) -> tuple[int, float, Array, Array]:
+    def closest(
+        self,
+        pair: PairModel,
+        state: State,
+        e: int,
+        arc: float,
+        dent: Callable[[int, float], Array] | None = None,
+    ) -> Projection:
         """Closest point by Newton's method from an arc position within element e of the pair's beam.
 
-        The axis goes on along its tangents beyond the ends of the beam. Returns the number of the element on the
-        beam, the position on it, the vector from the node to the point, and the tangent.
+        The axis goes on along its tangents beyond the ends of the beam. ``dent``: displacement (2,) of the axis by
+        contacts, at a position on an element.
         """
         target, steep = pair.target, pair.side * pair.steep
         node = np.array(self.model.node_position(pair, state.q, state.load_parameter))
@@ -170,7 +179,14 @@ class ElementGroup(ABC):
             arc = place * target.lengths[e]
             if abs(step) < _PROJECTED * l0:
                 break
-        return e, place, apart, tangent
+        element, (tx, ty) = target.first + e, tangent.tolist()
+        px, py = apart if dent is None else apart + dent(element, place)
+        arc = arc_position(target, element, place)
+        height = (py * tx - px * ty) / math.hypot(tx, ty)
+        if steep:
+            height = math.copysign(math.hypot(px, py), height)
+        gap = pair.side * (height - pair.reach_at(arc))
+        return Projection(element, place, float(gap), overshoot(target, arc))
 
     @abstractmethod
     def direction(self, touch: Touch, q: Array) -> tuple[float, float]:

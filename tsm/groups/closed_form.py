@@ -17,7 +17,7 @@ from tsm.elements.properties import Array, Properties
 from tsm.elements.varied import plain
 from tsm.groups.base import ElementGroup
 from tsm.groups.shape import Stations
-from tsm.projection import AT_NODE, Projection, arc_position, overshoot, project_on_chords
+from tsm.projection import AT_NODE, Projection, nearest_chord
 from tsm.state import State, Touch, Traction
 
 if TYPE_CHECKING:
@@ -150,18 +150,16 @@ class ClosedFormGroup(ElementGroup):
         """Closest point. The chords give the owner, and Newton's method on the owner's curve gives the point."""
         target, model = pair.target, self.model
         node = model.node_position(pair, state.q, state.load_parameter)
-        positions = model.coordinates[target.nodes] + state.q.reshape(-1, 3)[target.nodes, :2]
-        owner, places = project_on_chords(positions, np.array(node))
-        start = float(places[owner]) * target.lengths[owner]
-        e, xi, apart, (tx, ty) = self.closest(pair, state, owner, start)
-        element = target.first + e
-        for touch in state.touches:
-            if pair.law.cross and touch is not None and touch.element == element:
-                dent = pair.cross(model.element[element], xi, touch.xi)[0]
-                apart = apart + dent * np.array(touch.force)
-        height = (apart[1] * tx - apart[0] * ty) / math.hypot(tx, ty)
-        beyond = overshoot(target, arc_position(target, element, xi))
-        return Projection(element, xi, float(pair.side * height - pair.pair.offset), beyond)
+        owner, xi = nearest_chord(model.positions(target, state.q), node)
+
+        def dent(element: int, xi: float) -> Array:
+            total = np.zeros(2)
+            for touch in state.touches:
+                if pair.law.cross and touch is not None and touch.element == element:
+                    total += pair.cross(model.element[element], xi, touch.xi)[0] * np.array(touch.force)
+            return total
+
+        return self.closest(pair, state, owner, xi * target.lengths[owner], dent)
 
     def direction(self, touch: Touch, q: Array) -> tuple[float, float]:
         """Chord of the touched element."""

@@ -15,7 +15,7 @@ from tsm.groups.base import Change
 from tsm.groups.layout import layout
 from tsm.groups.rods import RodBalance, Rods, RodTangent
 from tsm.groups.shape import Stations, deflected, pieces, profile_of, resampled, truncation
-from tsm.projection import Projection, arc_position, overshoot
+from tsm.projection import Projection
 from tsm.state import Profile, State, Touch
 
 if TYPE_CHECKING:
@@ -116,13 +116,7 @@ class ExactGroup(Rods):
         points = self.axes(target, state, None, xi) - node
         nearest = np.argmin(np.einsum("emi,emi->em", points, points))
         e, sample = divmod(int(nearest), _SAMPLES)
-        e, place, apart, tangent = self.closest(pair, state, e, float(xi[sample]) * target.lengths[e])
-        height = float(apart[1] * tangent[0] - apart[0] * tangent[1]) / float(np.hypot(*tangent))
-        arc = arc_position(target, target.first + e, place)
-        if pair.steep:
-            height = math.copysign(float(np.hypot(*apart)), height)
-        gap = pair.side * height - pair.side * pair.reach_at(arc)
-        return Projection(target.first + e, place, gap, overshoot(target, arc))
+        return self.closest(pair, state, e, float(xi[sample]) * target.lengths[e])
 
     def direction(self, touch: Touch, _q: Array) -> tuple[float, float]:
         """Direction of the section's normal at the contact."""
