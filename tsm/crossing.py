@@ -1,7 +1,7 @@
 """Crossings: within one step, a node goes through a beam and on past the beam's end, or a round pin through an end and on.
 
-After such a step the node no longer projects onto the beam, or is clear of its end, so that the end of the step does not show the missed
-contact.
+After such a step the node no longer projects onto the beam, or is clear of its end, so that the end of the step does
+not show the missed contact. All points are assumed to move on straight lines in the step.
 """
 
 from __future__ import annotations
@@ -21,20 +21,14 @@ from tsm.state import State
 
 _CROSSED = 1e-14
 """Tolerance of a crossing: its gap over the longest beam, and the width of the bracket of its load parameter."""
-
 _SAMPLES, _NARROWED = 33, 5
 """States of a step at which a clearance is measured, and how often as many are measured about the least of them."""
 
 
 def crossing(model: Model, before: State, after: State) -> tuple[float, int] | None:
-    """First crossing between two configurations with the same closed contacts.
+    """Load parameter and pair of the first crossing between two configurations with the same closed contacts.
 
-    All points are assumed to move on straight lines between the configurations. The contact surface is extended beyond the beam's ends
-    along its tangents.
-
-    ``before, after``: accepted configuration, and one at a later load parameter. Returns the load parameter
-    and
-    number of the pair.
+    The contact surface is extended beyond the beam's ends along its tangents.
     """
     crossings = []
     for k, (pair, armed) in enumerate(zip(model.pairs, before.armed, strict=True)):

@@ -24,23 +24,20 @@ def block_order(model: Model) -> list[int]:
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-    pairs = _pairs_with_hinges(model) if model.joints else _pairs(model)
+    pairs = _pairs(model)
     near = coo_array((np.ones(pairs.shape[1]), tuple(pairs)), shape=(model.dof_count // 3,) * 2)
     order: list[int] = reverse_cuthill_mckee((near + near.T).tocsr(), symmetric_mode=True).tolist()
     return order
 
 
 def _pairs(model: Model) -> Array:
-    """Pairs of nodes and exact elements that are coupled, shape (2, pairs)."""
-    i, j = model.element_nodes.T
-    internal = np.flatnonzero(model.block >= 0)
-    own = model.block[internal]
-    return np.concatenate([[i, j], [i[internal], own], [own, j[internal]]], axis=1)
+    """Pairs of nodes and exact elements that are coupled, shape (2, pairs).
 
-
-def _pairs_with_hinges(model: Model) -> Array:
-    """Pairs as of `_pairs`, where an element behind a hinge moves with the joint's node and turns with its own."""
+    An element behind a hinge moves with the joint's node and turns with its own.
+    """
     nodes = model.dofs[[0, 2, 3, 5]] // 3
     blocks = [*nodes, np.where(model.block < 0, nodes[0], model.block)]
-    links = np.array(list(model.joints.items()), dtype=int).T
-    return np.concatenate([*(np.stack(pair) for pair in combinations(blocks, 2)), links], axis=1)
+    links = np.array(list(model.joints.items()), dtype=int).reshape(-1, 2).T
+    pairs = np.concatenate([*(np.stack(pair) for pair in combinations(blocks, 2)), links], axis=1)
+    coupled: Array = pairs[:, pairs[0] != pairs[1]]
+    return coupled

@@ -20,12 +20,10 @@ def find_root(
 ) -> Answer | None:
     """Find where a function changes its sign, by false position (Illinois) with a bisection every third time.
 
-    ``evaluate``: value of the function at an argument, with any data that belong to it; None where the
-    function has no value. ``before, after``: argument and value on both sides of the root; the values have
-    opposite signs. ``small``: absolute value that counts as zero. ``apart``: width of the bracket at which
-    the search ends for a function that jumps. Returns the data from `evaluate` at the root, or just past a
-    jump;
-    None where `evaluate` returned None.
+    ``evaluate``: value of the function, and data that belong to it; None where it has no value. ``before, after``:
+    argument and value on both sides of the root, of opposite signs. ``small``: absolute value that counts as zero.
+    ``apart``: width of the bracket at which the search ends for a function that jumps. Returns the data at the root,
+    or just past a jump; None where the function has no value.
     """
     (t0, y0), (t1, y1) = before, after
     sign = 1.0 if y0 > 0 else -1.0
