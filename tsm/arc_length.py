@@ -23,12 +23,13 @@ from tsm.contact_set import initial_state
 from tsm.elements.properties import Array
 from tsm.events import Event, EventKind
 from tsm.friction import regripped
-from tsm.margins import Margin, broken, margins
+from tsm.margins import Margin, margins
 from tsm.model import Model
 from tsm.newton import Newton
 from tsm.path import Point
 from tsm.result import Result, collect
 from tsm.root import find_root
+from tsm.search import broken
 from tsm.settings import Settings
 from tsm.solve import SolveError
 from tsm.status import Status

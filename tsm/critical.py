@@ -118,13 +118,13 @@ def mode_shape(point: Point) -> tuple[Array, dict[str, Array]] | None:
     soft = mode(newton.assembler, state, point.system)
     if soft is None:
         return None
-    moved = newton.update(state, soft.x * _SHIFT, point.system)
+    moved = newton.update(state, soft[0] * _SHIFT, point.system)
     system = newton.assembler.linearise(moved)
     axes = {beam: axis_line(model, state, point.system, beam)[1] for beam in model.beams}
     shapes = {beam: axis_line(model, moved, system, beam)[1] - axis for beam, axis in axes.items()}
     most = max(float(np.abs(shape).max()) for shape in shapes.values()) or 1.0
     most *= _side(np.concatenate([_leftwards(axes[beam], shape) for beam, shape in shapes.items()]))
-    return soft.x * (_SHIFT / most), {beam: shape / most for beam, shape in shapes.items()}
+    return soft[0] * (_SHIFT / most), {beam: shape / most for beam, shape in shapes.items()}
 
 
 def _leftwards(axis: Array, shape: Array) -> Array:

@@ -10,14 +10,16 @@ import math
 
 import numpy as np
 
+from tsm.contact_set import forbidden
 from tsm.ends import clearance
-from tsm.events import ROUND_OFF
+from tsm.events import ROUND_OFF, EventKind
 from tsm.model import Model
 from tsm.pairs import PairModel
 from tsm.predictor import extrapolate
 from tsm.projection import Projection
 from tsm.root import find_root
 from tsm.state import State
+from tsm.status import Status
 
 _CROSSED = 1e-14
 """Tolerance of a crossing: its gap over the longest beam, and the width of the bracket of its load parameter."""
@@ -66,6 +68,24 @@ def through_end(model: Model, before: State, after: State) -> float | None:
         if least < -small:
             dips.append(deepest)
     return min(dips, default=None)
+
+
+def overlapping(model: Model, state: State) -> int | None:
+    """First pair whose pin or node overlaps an end of its beam, or a side that it does not touch."""
+    thick = (k for k, pair in enumerate(model.pairs) if pair.pair.offset > 0)
+    deep = -ROUND_OFF * model.length
+    return next((k for k in thick if clearance(model, state, k).distance < deep), None)
+
+
+def on_held_end(model: Model, state: State) -> bool:
+    """Whether a contact lies on a held end, which takes any force: nothing that happens there has a tangent."""
+    there = zip(model.pairs, state.touches, strict=True)
+    closed = ((pair, pair.arc_position(touch)) for pair, touch in there if touch is not None)
+    return any(
+        min(arc, pair.target.beam.length - arc) <= ROUND_OFF * model.length
+        and forbidden(model, EventKind.SLIP_OFF, pair, arc, alone=False) is Status.FOLDED
+        for pair, arc in closed
+    )
 
 
 def _over(model: Model, seen: Projection) -> bool:

@@ -22,6 +22,7 @@ from tsm.newton import Newton
 from tsm.path import Point
 from tsm.state import State
 from tsm.status import Status
+from tsm.step import Step
 from tsm.system import Drag
 
 _LAST_PART = 1e-2
@@ -40,15 +41,11 @@ _FAR = 1.0
 
 @dataclass(kw_only=True)
 class Fall:
-    """Falls of a structure, with their iterations, touches and releases."""
+    """Falls of a structure."""
 
     newton: Newton
     measure: Callable[[Point], list[Margin]]  # margins at a point
-    close: Callable[[Point, State, Margin], State]  # state with an open pair closed
-    opened: Callable[
-        [Point, State, int], None
-    ]  # told of a contact that opens, with the point before the fall
-    iterations: int = 0
+    log: Step  # told of iterations, touches and releases
 
     def beside(self, critical: Point, ahead: float) -> tuple[Point, float] | Status:
         """Return the point of least potential beside a critical one, and the potential that the fall there releases.
@@ -96,7 +93,7 @@ class Fall:
             least, k = min(pushes, default=(0.0, -1))
             if least >= -1.0:
                 return point, began - energy
-            self.opened(event, state, k)
+            self.log.note(EventKind.RELEASE, event, state, k)
             if model.pairs[k].pair.keep:
                 return Status.LOST_CONTACT
             state = changed(model, state, k, None, armed=True)
@@ -104,7 +101,7 @@ class Fall:
     def _next(self, state: State, energy: float) -> Point | None:
         """Point near the state, of a potential of at most `energy`, or at the end of a fall."""
         equilibrium = self.newton.solve(state)
-        self.iterations += equilibrium.iterations
+        self.log.iterations += equilibrium.iterations
         near = equilibrium.converged and self.newton.apart(state, equilibrium.state) <= _FAR
         point = Point(self.newton, equilibrium)
         if near and self._descends(energy, equilibrium.state) and not met(self.measure(point)):
@@ -123,7 +120,7 @@ class Fall:
             at_rest = pace > _FIRST_PACE * 1e8
             drag = None if at_rest else Drag(resistance / pace, state.q)
             point = Point(newton, newton.solve(state, drag=drag))
-            self.iterations += point.equilibrium.iterations
+            self.log.iterations += point.equilibrium.iterations
             taken = 0.0 if drag is None else float(drag.per_way @ (point.state.q - state.q) ** 2) / 2
             down = point.equilibrium.converged and self._descends(energy - taken, point.state)
             margins = self.measure(point) if down else []
@@ -136,7 +133,9 @@ class Fall:
             elif landed and newton.apart(state, point.state) < _LAST_PART:
                 for margin in landed:
                     touch = margin._replace(value=0.0) if margin.pair in over else margin
-                    state = self.close(point, state, touch)
+                    closed = self.log.applied(point, state, touch)
+                    assert isinstance(closed, State), "a touch ends no path"
+                    state = closed
             else:
                 pace /= 4
         return None

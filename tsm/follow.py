@@ -15,21 +15,21 @@ from itertools import count
 
 import numpy as np
 
-from tsm.contact_set import crowded, forbidden, initial_state, rearm
+from tsm.contact_set import crowded, initial_state, rearm
 from tsm.critical import CriticalKind, critical_point, locate_bifurcation
-from tsm.crossing import crossing, through_end
+from tsm.crossing import crossing, on_held_end, overlapping, through_end
 from tsm.elements.properties import Array
-from tsm.ends import clearance
 from tsm.energy import spent
-from tsm.events import ROUND_OFF, Event, EventKind, normal_force, passes
+from tsm.events import Event, EventKind, passes
 from tsm.fall import Fall
 from tsm.friction import grips, regripped
-from tsm.margins import GRIPS, SHORT, Margin, applied, broken, close, locate, margins, passed_within
+from tsm.margins import Margin, margins
 from tsm.mechanism import mechanism
 from tsm.model import Model
 from tsm.newton import Newton
 from tsm.path import FOLLOWED, Point, Track
 from tsm.rolling import rolled
+from tsm.search import Search, broken
 from tsm.settings import Settings
 from tsm.stages import stage_of
 from tsm.state import UNDECIDED, State
@@ -41,10 +41,6 @@ _STRAIGHT = 0.02
 """Largest unexplained fraction of a step that passes a bifurcation. A step that changes the index with a larger one may have left the path."""
 _AHEAD = 1e-4
 """Load parameter beyond a critical point at which a fall starts."""
-_PROBE = 1e-3
-"""Part of a step after which a margin that is zero at its start shows whether its event is there."""
-_COINCIDENT = 1e-6
-"""Distance over the longest beam below which a touch and a slip-off are one event, a hand-over."""
 _MOST_ATTEMPTS = 1000
 """Largest number of load steps, with refused ones, between two prescribed load parameters."""
 _MOST_CHANGES = 6
@@ -73,8 +69,9 @@ class Follower:
             self.status = Status.MECHANISM
         # margins of the events that the contacts of the last point may have next
         self.margins = self._measure(start) if self.status is Status.CONVERGED else []
-        for k in self._overlapping(start.state) if self.margins else ():
-            self.status = self._meet_end(start.state, k)
+        met = overlapping(model, start.state) if self.margins else None
+        if met is not None:
+            self.status = self.log.note_end(model, start.state, met)
 
     def _measure(self, point: Point) -> list[Margin]:
         return margins(point, self._drive(point.t))
@@ -115,7 +112,7 @@ class Follower:
         self.log.cutbacks += 1
         if not self.control.cut_back(min(step, left)):
             return None
-        if self._on_held_end(self.track.last.state):
+        if on_held_end(self.model, self.track.last.state):
             return Status.FOLDED
         status = self.control.verdict(self.track.folds())
         return self._meet_limit_point() if status is Status.LIMIT_POINT else status
@@ -155,24 +152,8 @@ class Follower:
             return gripped
         for k, grip in grips(gripped.state):
             if before[k] != UNDECIDED and before[k].slip != grip.slip:
-                self._note(EventKind.SLIP if grip.slip else EventKind.STICK, gripped, gripped.state, k)
+                self.log.note(EventKind.SLIP if grip.slip else EventKind.STICK, gripped, gripped.state, k)
         return gripped
-
-    def _note(self, kind: EventKind, point: Point, state: State, k: int) -> None:
-        """Log an event of a contact that is closed in a state, with its force at a point."""
-        pair, touch = self.model.pairs[k], state.touches[k]
-        assert touch is not None, "the contact is closed"
-        pushes = kind is not EventKind.TOUCH and point.state.touches[k] is not None
-        self.log.events.append(
-            Event(
-                kind=kind,
-                load_parameter=state.load_parameter,
-                pair=pair.pair.name,
-                element=touch.element - pair.target.first,
-                arc_position=pair.arc_position(touch),
-                force=normal_force(self.model, point.equilibrium, k) if pushes else 0.0,
-            )
-        )
 
     def _record(self, status: Status, *, requested: bool = False) -> Step:
         """The step that ends here; the log starts anew."""
@@ -201,12 +182,16 @@ class Follower:
         if inside is not None:
             return self._reach(inside)
         after = self._measure(reached)
-        numbers = broken(self.margins, after)
+        numbers, search = broken(self.margins, after), self._search(goal)
         if numbers:
-            return self._stop_at_first({n: after[n].value for n in numbers}, goal)
-        if self._pulls_at_first(goal):
-            return self.control.refuse(_PROBE)
+            found = search.first(after, numbers)
+            return found if isinstance(found, Status) else self._switch(*found)
+        if search.pulls_at_first():
+            return self.control.failure
         return self._advance(reached) if self.newton.balanced(reached.equilibrium) else Status.UNBALANCED
+
+    def _search(self, goal: float) -> Search:
+        return Search(self.track.last, self.margins, goal, self._solve, self._measure, self.control)
 
     def _solve(self, t: float) -> Point | None:
         """Point at t from the predicted state, if the tangent leads to it."""
@@ -225,20 +210,6 @@ class Follower:
             return None
         return reached
 
-    def _ahead(self, goal: float) -> list[Margin] | None:
-        """Margins just after the last point on the way to a load parameter."""
-        t = self.track.last.t
-        point = self._solve(t + _PROBE * (goal - t))
-        return None if point is None else self._measure(point)
-
-    def _pulls_at_first(self, goal: float) -> bool:
-        """Whether a contact that has no force pulls just after it, though it may push at the goal."""
-        idle = [
-            n for n, m in enumerate(self.margins) if m.kind is EventKind.RELEASE and abs(m.value) <= ROUND_OFF
-        ]
-        ahead = self._ahead(goal) if idle else None
-        return ahead is not None and not {*idle}.isdisjoint(broken(self.margins, ahead))
-
     def _advance(self, reached: Point) -> Status:
         """Accept a point if the step has no event, has followed the path and has passed no critical point."""
         last, track = self.track.last, self.track
@@ -251,7 +222,7 @@ class Follower:
             return self._meet_bifurcation(reached) if unexplained <= _STRAIGHT else self.control.refuse()
         if self.model.rubbed:
             more = spent(track, reached, self._drive(reached.t))
-            part = 1 / 2 if more is None else self._dips(more.between, reached)
+            part = 1 / 2 if more is None else self._search(reached.t).dips([*more.between, reached])
             if more is None or part is not None:
                 return self.control.refuse(part or 1 / 2)
             self.log.spent = self.log.spent + more.total
@@ -259,17 +230,6 @@ class Follower:
         self._accept(reached)
         self.control.grow(reached.t - last.t, fitting)
         return Status.CONVERGED
-
-    def _dips(self, between: list[Point], reached: Point) -> float | None:
-        """Part of the step at which a margin of slip or stick is below zero, though not at the step's end; None if none is."""
-        begin, length = self.track.last.t, reached.t - self.track.last.t
-        if length <= SHORT or all(margin.kind not in GRIPS for margin in self.margins):
-            return None
-        points = [*between, reached]
-        dip = passed_within(
-            [self.margins, *map(self._measure, points)], [begin, *(point.t for point in points)]
-        )
-        return None if dip is None else (dip - begin) / length
 
     def _accept(self, point: Point) -> None:
         """Make a point the last of the path."""
@@ -308,71 +268,22 @@ class Follower:
 
     def _turn(self, critical: Point) -> Status:
         """Let the structure fall from a critical point, pushed along its mode in both directions; accept the point of less energy."""
-        kind, fall = self.log.events[-1].kind, self._fall()
-        found = fall.beside(critical, critical.t + min(_AHEAD, (self.target - critical.t) / 2))
-        self.log.iterations += fall.iterations
+        kind = self.log.events[-1].kind
+        ahead = critical.t + min(_AHEAD, (self.target - critical.t) / 2)
+        found = self._fall().beside(critical, ahead)
         if isinstance(found, Status):
             return found
         rest, released = found
-        for k in self._overlapping(rest.state):
-            return self._meet_end(critical.state, k)
+        met = overlapping(self.model, rest.state)
+        if met is not None:
+            return self.log.note_end(self.model, critical.state, met)
         self.log.release(kind, released)
         self._begin(rest)
         self.control.step = 1.0
         return Status.CONVERGED
 
     def _fall(self) -> Fall:
-        def opened(event: Point, state: State, k: int) -> None:
-            self._note(EventKind.RELEASE, event, state, k)
-
-        return Fall(newton=self.newton, measure=self._measure, close=self._close, opened=opened)
-
-    def _stop_at_first(self, values: dict[int, float], goal: float) -> Status:
-        """End the step at the first of the events whose margins are below zero, by number, at the goal.
-
-        If a force or position jumps instead, the step is too long and is refused.
-        """
-        located: list[tuple[float, bool, int, Point]] = []
-        for n, value in values.items():
-            found = self._located(n, value, goal)
-            if isinstance(found, Status):
-                return found
-            # at one load parameter a release comes last: another contact that opens may take its pull away
-            located.append((found.t, self.margins[n].kind is EventKind.RELEASE, n, found))
-        *_, n, event = min(located)
-        measured = self.margins if event is self.track.last else self._measure(event)
-        first = measured[n]
-        past = (other for other in measured if other.value < -_COINCIDENT)
-        if any(other.kind is not EventKind.TOUCH or other.pair != first.pair for other in past):
-            return self.control.refuse()
-        together = [
-            other
-            for before, other in zip(self.margins, measured, strict=True)
-            if {other.kind, first.kind} == {EventKind.TOUCH, EventKind.SLIP_OFF}
-            and other.value <= _COINCIDENT
-            and other.value < before.value
-        ]
-        return self._switch(event, sorted([first, *together], key=lambda m: m.kind is EventKind.TOUCH))
-
-    def _located(self, n: int, value: float, goal: float) -> Point | Status:
-        """Point at an event, by the number of its margin and the margin's value at the goal."""
-        before, last = self.margins[n], self.track.last
-        if before.value <= ROUND_OFF:
-            if before.kind in GRIPS:
-                return self.control.fail(Status.JAMMED)
-            ahead = self._ahead(goal)
-            return self.control.refuse(_PROBE) if ahead is not None and ahead[n].value > ROUND_OFF else last
-        found = locate(
-            (last.t, before.value), (goal, value), self._solve, lambda point: self._measure(point)[n].value
-        )
-        if found is None:
-            return self.control.failure
-        jumps = (
-            before.kind is EventKind.TOUCH
-            and before.value < 1.0
-            and self._measure(found)[n].value < -ROUND_OFF
-        )
-        return self.control.refuse() if jumps else found
+        return Fall(newton=self.newton, measure=self._measure, log=self.log)
 
     def _switch(self, event: Point, changes: list[Margin]) -> Status:
         """Accept the configuration of the events, then open and close its contacts."""
@@ -400,49 +311,19 @@ class Follower:
         self.chatter[k, state.load_parameter] += 1
         if self.chatter[k, state.load_parameter] > _MOST_CHANGES:
             return Status.CHATTER
-        if margin.kind is EventKind.TOUCH:
-            return self._close(event, state, margin)
-        after = applied(event, state, margin, alone=alone)
+        after: State | Status = Status.END_CONTACT
         if margin.kind is not EventKind.END_CONTACT:
-            self._note(margin.kind, event, state, k)
-        return self._meet_end(state, k) if after is Status.END_CONTACT else after
-
-    def _close(self, point: Point, state: State, margin: Margin) -> State:
-        closed = close(point, state, margin, True)
-        if closed.touches[margin.pair] is not None:
-            self._note(EventKind.TOUCH, point, closed, margin.pair)
-        return closed
-
-    def _overlapping(self, state: State) -> list[int]:
-        """Pairs whose pin or node overlaps an end of its beam, or a side that it does not touch."""
-        model, deep = self.model, -ROUND_OFF * self.model.length
-        thick = [k for k, pair in enumerate(model.pairs) if pair.pair.offset > 0]
-        return [k for k in thick if clearance(model, state, k).distance < deep]
-
-    def _on_held_end(self, state: State) -> bool:
-        """Whether a contact lies on a held end, which takes any force: nothing that happens there has a tangent."""
-        there = zip(self.model.pairs, state.touches, strict=True)
-        closed = ((pair, pair.arc_position(touch)) for pair, touch in there if touch is not None)
-        return any(
-            min(arc, pair.target.beam.length - arc) <= ROUND_OFF * self.model.length
-            and forbidden(self.model, EventKind.SLIP_OFF, pair, arc, alone=False) is Status.FOLDED
-            for pair, arc in closed
-        )
-
-    def _meet_end(self, state: State, k: int) -> Status:
-        """End the path where pair k meets an end, or the side that it does not touch."""
-        pair, arc = self.model.pairs[k], clearance(self.model, state, k).arc
-        t, kind = state.load_parameter, EventKind.END_CONTACT
-        self.log.events.append(Event(kind=kind, load_parameter=t, pair=pair.pair.name, arc_position=arc))
-        return Status.END_CONTACT
+            after = self.log.applied(event, state, margin, alone=alone)
+        return self.log.note_end(self.model, state, k) if after is Status.END_CONTACT else after
 
     def _resume(self, event: Point, state: State, *, jump: bool) -> Status:
         """Find equilibrium with the changed contacts and accept it."""
-        found = self._after_slip_off(event, state) if jump else self._settled(state)
+        found = self._jumped(event, state) if jump else self._settled(state)
         if isinstance(found, Status):
             return found
-        for k in self._overlapping(found.state):
-            return self._meet_end(event.state, k)
+        met = overlapping(self.model, found.state)
+        if met is not None:
+            return self.log.note_end(self.model, event.state, met)
         gripped = self._gripped(found, event.state)
         if isinstance(gripped, Status):
             return gripped
@@ -452,10 +333,9 @@ class Follower:
             return self._meet_limit_point()
         return Status.CONVERGED
 
-    def _after_slip_off(self, event: Point, state: State) -> Point | Status:
-        fall = self._fall()
-        found = fall.after(event, state)
-        self.log.iterations += fall.iterations
+    def _jumped(self, event: Point, state: State) -> Point | Status:
+        """Point after a slip-off."""
+        found = self._fall().after(event, state)
         if isinstance(found, Status):
             return found
         rest, released = found

@@ -13,31 +13,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-import numpy as np
-
 from tsm import scales
 from tsm.contact_set import changed, closed_at, forbidden
-from tsm.elements.properties import Array
 from tsm.ends import clearance
 from tsm.events import ROUND_OFF, EventKind, normal_force
 from tsm.friction import cone, slip_rate, turned, with_grips
 from tsm.newton import Newton
 from tsm.path import Point
-from tsm.root import find_root
 from tsm.state import State, Touch
 from tsm.status import Status
 from tsm.system import Drive
 
 GRIPS = frozenset({EventKind.SLIP, EventKind.STICK})
 """Events at which a contact stays closed."""
-SHORT = 2e-3
-"""Length of a step within which contacts are not searched for a slip or stick that has passed at its end."""
-_DEGREE, _FINE = 4, 41
-"""Degree of the polynomial through a margin, and points at which it is evaluated."""
-_LOCATED = 1e-12
-"""Largest margin of a located event. Results at the event may depend on its load parameter with a factor of a thousand."""
-_APART = 1e-14
-"""Width of the bracket of load parameters at which a margin that jumps is located."""
 
 
 class Margin(NamedTuple):
@@ -123,7 +111,7 @@ def _gap(point: Point, k: int, _drive: Drive) -> float:
     return seen.gap / length if seen.overshoot <= ROUND_OFF * length else 1.0
 
 
-def close(point: Point, state: State, margin: Margin, _alone: bool) -> State:
+def _close(point: Point, state: State, margin: Margin, _alone: bool) -> State:
     """State with an open pair closed without force. A pair whose node is on the far side stays open and may not close (not armed)."""
     k, model = margin.pair, point.model
     if margin.value < -ROUND_OFF:
@@ -153,7 +141,7 @@ WATCHES = (
     Watch(EventKind.STICK, _slips, _slip_rate, _turn),
     Watch(EventKind.SLIP, _sticks, _in_cone, _turn),
     Watch(EventKind.LINE_CONTACT, lambda point, k: _closed(point, k) and _thick(point, k), _roundness, _end),
-    Watch(EventKind.TOUCH, lambda point, k: not _closed(point, k) and point.state.armed[k], _gap, close),
+    Watch(EventKind.TOUCH, lambda point, k: not _closed(point, k) and point.state.armed[k], _gap, _close),
 )
 """The events of a contact."""
 
@@ -181,43 +169,3 @@ def least_push(newton: Newton, k: int) -> float:
     own = max(ROUND_OFF, newton.tolerance) * section.EI / beam.length**2
     noise = scales.ROUND_OFF * section.EA * beam.elements
     return max(own, noise if pair.node < 0 else newton.noise * newton.model.least_force)
-
-
-def broken(before: list[Margin], after: list[Margin]) -> list[int]:
-    """Numbers of the margins that became negative; a node over the beam touches its surface before the end."""
-    past = [n for n, (_, b) in enumerate(zip(before, after, strict=True)) if b.value < -ROUND_OFF]
-    over = {before[n].pair for n in past if before[n].kind is EventKind.TOUCH and before[n].value < 1.0}
-    return [n for n in past if before[n].kind is not EventKind.END_CONTACT or before[n].pair not in over]
-
-
-def locate(
-    before: tuple[float, float],
-    after: tuple[float, float],
-    solve: Callable[[float], Point | None],
-    measure: Callable[[Point], float],
-) -> Point | None:
-    """Point at the root of a margin, or just past its jump to below zero, located to round-off.
-
-    ``before, after``: load parameter and margin. ``solve``: point at a load parameter, None where none is found.
-    """
-
-    def evaluate(t: float) -> tuple[float, Point] | None:
-        point = solve(t)
-        return None if point is None else (measure(point), point)
-
-    return find_root(evaluate, before, after, small=_LOCATED, apart=_APART)
-
-
-def passed_within(measured: list[list[Margin]], times: list[float]) -> float | None:
-    """First load parameter at which the margin of a slip or stick is below zero between others, from margins at all these times."""
-    trails = (trail for trail in zip(*measured, strict=True) if trail[0].kind in GRIPS)
-    dips = [_below(np.array([margin.value for margin in trail]), np.array(times)) for trail in trails]
-    return min((t for t in dips if t is not None), default=None)
-
-
-def _below(values: Array, times: Array) -> float | None:
-    """Load parameter at which the polynomial through some values of a margin is least, if it is below zero there; else None."""
-    line = np.polynomial.Polynomial.fit(times, values, min(len(values) - 1, _DEGREE))
-    fine, low = line.linspace(_FINE)
-    least = int(np.argmin(found := np.append(values, low)))
-    return float(np.append(times, fine)[least]) if found[least] < -ROUND_OFF else None

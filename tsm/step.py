@@ -9,9 +9,13 @@ import numpy as np
 
 from tsm.critical import CriticalPoint
 from tsm.elements.properties import Array
-from tsm.events import Event, EventKind
+from tsm.ends import clearance
+from tsm.events import Event, EventKind, normal_force
+from tsm.margins import Margin, applied
+from tsm.model import Model
 from tsm.newton import Equilibrium
-from tsm.path import FOLLOWED
+from tsm.path import FOLLOWED, Point
+from tsm.state import State
 from tsm.status import Status
 
 NEAR = 1e-9
@@ -68,6 +72,42 @@ class Step:
     critical: list[CriticalPoint] = field(default_factory=list)
     index: int = -1
     spent: Array = field(default_factory=lambda: np.zeros(0))
+
+    def note(self, kind: EventKind, point: Point, state: State, k: int) -> None:
+        """Record an event of a contact that is closed in a state, with its force at a point."""
+        pair, touch = point.model.pairs[k], state.touches[k]
+        assert touch is not None, "the contact is closed"
+        pushes = kind is not EventKind.TOUCH and point.state.touches[k] is not None
+        self.events.append(
+            Event(
+                kind=kind,
+                load_parameter=state.load_parameter,
+                pair=pair.pair.name,
+                element=touch.element - pair.target.first,
+                arc_position=pair.arc_position(touch),
+                force=normal_force(point.model, point.equilibrium, k) if pushes else 0.0,
+            )
+        )
+
+    def applied(self, point: Point, state: State, margin: Margin, *, alone: bool = True) -> State | Status:
+        """State after an event at a point, which is recorded, or why the path ends there; `alone` if no contact takes over."""
+        after, k = applied(point, state, margin, alone=alone), margin.pair
+        closed = after if margin.kind is EventKind.TOUCH and isinstance(after, State) else state
+        if closed.touches[k] is not None:
+            self.note(margin.kind, point, closed, k)
+        return after
+
+    def note_end(self, model: Model, state: State, k: int) -> Status:
+        """Record that pair k meets an end, or the side that it does not touch, where the path ends."""
+        self.events.append(
+            Event(
+                kind=EventKind.END_CONTACT,
+                load_parameter=state.load_parameter,
+                pair=model.pairs[k].pair.name,
+                arc_position=clearance(model, state, k).arc,
+            )
+        )
+        return Status.END_CONTACT
 
     def release(self, kind: EventKind, energy: float) -> None:
         """Record the energy released in a fall with the last event of a kind, which caused it."""
