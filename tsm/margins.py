@@ -147,7 +147,13 @@ WATCHES = (
 
 
 def margins(point: Point, drive: Drive) -> list[Margin]:
-    """Margins of the events that may come next, under what changes on the way."""
+    """Margins of the events that may come next, under what changes on the way; computed once for each change."""
+    if drive not in point.margins:
+        point.margins[drive] = _margins(point, drive)
+    return point.margins[drive]
+
+
+def _margins(point: Point, drive: Drive) -> list[Margin]:
     return [
         Margin(watch.kind, k, watch.margin(point, k, drive))
         for k in range(len(point.model.pairs))

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -71,6 +71,7 @@ class Point:
             equilibrium.state.load_parameter,
         )
         self._rates: dict[Drive, Rates | None] = {}
+        self.margins: dict[Drive, list[Any]] = {}  # see `tsm.margins`
 
     def with_state(self, state: State) -> Point:
         """The same with other contacts, in equilibrium too."""
