@@ -30,6 +30,8 @@ FOLLOWED = 0.35
 _LONGEST = 1.0
 """Longest step whatever its tangents are, in largest Newton steps (0.3 L, 0.7 rad); the farthest equilibrium
 from its prediction where no tangent is usable. With 2 instead of 1, one random pin in a hundred ends on another branch."""
+_PROMISED = 0.8
+"""Longest step at the last speed, in the same measure: most of the longer ones would be refused."""
 _RESOLVED = 1e-8
 """Smaller motions, in the same measure, are round-off, as of a column that stays straight: it moves along itself only."""
 _MEMORY, _ON_CHORDS = 3, 4
@@ -188,11 +190,12 @@ class Track:
         return self.newton.apart(start, reached) > _LONGEST
 
     def room(self) -> float:
-        """Part of the way to a limit point ahead that a step can follow; infinite where the last two speeds show none."""
+        """Longest step that the last two speeds promise to follow; infinite where they promise nothing."""
         one, two = self.before, self.last
+        short = _PROMISED / two.speed if two.speed < _FOLD and not two.on_chords else math.inf
         if len(self.history) < 2 or one.t >= two.t or not two.speed > _GROWING * one.speed:
-            return math.inf
-        return _ROOM * (self.limit() - two.t) or math.inf
+            return short
+        return min(short, _ROOM * (self.limit() - two.t) or math.inf)
 
     def limit(self) -> float:
         """Load parameter of the limit point ahead."""
