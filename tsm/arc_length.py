@@ -21,19 +21,21 @@ import numpy as np
 
 from tsm.contact_set import initial_state
 from tsm.elements.properties import Array
-from tsm.events import Event, EventKind, Margin, broken, margins
-from tsm.friction import regripped, slip_rates
+from tsm.events import Event, EventKind
+from tsm.friction import regripped
+from tsm.margins import Margin, margins
 from tsm.model import Model
-from tsm.newton import Equilibrium, Newton
-from tsm.path import PathTangent
+from tsm.newton import Newton
+from tsm.path import Point
 from tsm.result import Result, collect
 from tsm.root import find_root
+from tsm.search import broken
 from tsm.settings import Settings
 from tsm.solve import SolveError
-from tsm.state import State
 from tsm.status import Status
-from tsm.step import Step
+from tsm.step import SMALLEST, Step
 from tsm.structure import Structure
+from tsm.system import Drive
 
 _LOCATED, _APART = 1e-9, 1e-12
 """Load component, in parts of the one before, and bracket of lengths, in parts of the step, at which a limit point is found."""
@@ -58,7 +60,7 @@ def trace(
     steps : int
         Number of steps.
     settings : Settings, optional
-        Numerical settings; `smallest_step` bounds the arc length after cut-backs.
+        Numerical settings.
     throw : bool
         Whether to raise where the path cannot be followed.
 
@@ -83,14 +85,18 @@ def trace(
         raise ValueError(f"stages = {structure.stages}: arc-length control follows a single stage, use solve")
     begin = time.perf_counter()
     model = Model(structure)
-    path = _Path(model, settings or Settings())
+    path, status = _Path(model, settings or Settings()), Status.COMPLETED
     taken: list[Step] = []
-    status = path.here.status
-    while status is Status.CONVERGED and len(taken) < steps:
-        step, status = path.advance(arc_length)
-        if status is Status.CONVERGED:
+    while status is Status.COMPLETED and len(taken) < steps:
+        step = (
+            path.advance(arc_length)
+            if path.status is Status.CONVERGED
+            else Step(equilibrium=path.here.equilibrium, status=path.status)
+        )
+        if step.status is Status.CONVERGED:
             taken.append(step)
-    status = Status.COMPLETED if status is Status.CONVERGED else status
+        else:
+            status = step.status
     result = collect(model, taken, status, time.perf_counter() - begin)
     if throw and status is not Status.COMPLETED:
         raise SolveError(result)
@@ -98,104 +104,90 @@ def trace(
 
 
 class _Direction(NamedTuple):
-    """Unit vector along the path at an equilibrium."""
+    """Unit vector along the path."""
 
     x: Array  # its part over the unknowns of the system; shape (equations + contact unknowns,)
     load: float  # its part along the load parameter
-    tangent: PathTangent  # tangent of the path there
 
 
 class _Path:
-    """The path up to its last equilibrium."""
+    """The path up to its last point."""
 
     def __init__(self, model: Model, settings: Settings) -> None:
-        self.model, self.settings = model, settings
         self.newton = Newton(model, settings)
-        self.here = self._start()
+        start = Point(self.newton, self.newton.solve(initial_state(model)))
+        gripped = regripped(start, self._drive(start), start.state) if model.rubbed else start
+        self.status = gripped if isinstance(gripped, Status) else gripped.equilibrium.status
+        self.here = start if isinstance(gripped, Status) else gripped
         per_beam = np.where(model.kind < 2, model.extent / model.length, 1.0) * self.newton.per_step
         self.weight = np.where(model.kind < 3, per_beam, 0.0) ** 2
         self.direction = self._direction(self.here, None)
-        self.growth, self.iterations = 1.0, 0
-        self.failure = Status.SINGULAR_TANGENT
+        self.growth = 1.0
 
-    def advance(self, arc_length: float) -> tuple[Step, Status]:
+    def _drive(self, point: Point) -> Drive:
+        return self.newton.assembler.drive(point.t)
+
+    def advance(self, arc_length: float) -> Step:
         """One step, shortened where it does not converge, with the limit point it passed if any."""
-        cutbacks, self.iterations = 0, 0
-        while (reached := self._step(length := arc_length * self.growth)) is None:
-            cutbacks += 1
+        step = Step(equilibrium=self.here.equilibrium)
+        while isinstance(reached := self._step(length := arc_length * self.growth, step), Status):
+            step.cutbacks += 1
             self.growth /= 2
-            if self.growth < self.settings.smallest_step:
-                return self._record(self.here, cutbacks), self.failure
+            if self.growth < SMALLEST:
+                return replace(step, status=reached)
         there, direction = reached
         assert self.direction is not None, "a step needs a direction"
-        if broken(self._margins(self.here, self.direction), self._margins(there, direction)):
-            return self._record(there, cutbacks), Status.CONTACT_CHANGED
         begin = self.direction.load
-        turns = direction.load * begin < 0
-        events = (self._limit_point(length, begin, direction.load),) if turns else ()
-        self.direction.tangent.release()
+        if broken(self._margins(self.here, begin), self._margins(there, direction.load)):
+            return replace(step, status=Status.CONTACT_CHANGED)
+        if direction.load * begin < 0:
+            step.events.append(self._limit_point(length, begin, direction.load, step))
+        self.here.release()
         self.here, self.direction = there, direction
         self.growth = min(2 * self.growth, 1.0)
-        return self._record(there, cutbacks, events), Status.CONVERGED
+        step.equilibrium = there.equilibrium
+        return step
 
-    def _margins(self, equilibrium: Equilibrium, direction: _Direction) -> list[Margin]:
-        drive = self.newton.assembler.drive(equilibrium.state.load_parameter)
-        rates = slip_rates(self.newton, equilibrium, drive)
-        ahead = {k: math.copysign(rate, rate * direction.load) for k, rate in rates.items()}
-        return margins(self.newton, equilibrium, ahead)
+    def _margins(self, point: Point, load: float) -> list[Margin]:
+        """Margins on the way on which the load parameter grows or falls."""
+        found = margins(point, self._drive(point))
+        return [
+            m._replace(value=math.copysign(1, load) * m.value) if m.kind is EventKind.STICK else m
+            for m in found
+        ]
 
-    def _start(self) -> Equilibrium:
-        """Undeformed equilibrium whose contacts with friction slip or stick as the load grows."""
-        start = self.newton.solve(initial_state(self.model))
-        if not self.model.rubbed:
-            return start
-        state = regripped(self.newton, start.state, self.newton.assembler.drive(0.0), start.state)
-        if isinstance(state, Status):
-            return replace(start, status=state)
-        return replace(start, state=state, system=self.newton.assembler.linearise(state))
-
-    def _record(self, equilibrium: Equilibrium, cutbacks: int, events: tuple[Event, ...] = ()) -> Step:
-        return Step(
-            equilibrium=equilibrium,
-            requested=True,
-            status=Status.CONVERGED,
-            iterations=self.iterations,
-            cutbacks=cutbacks,
-            events=events,
-        )
-
-    def _direction(self, equilibrium: Equilibrium, last: _Direction | None) -> _Direction | None:
+    def _direction(self, point: Point, last: _Direction | None) -> _Direction | None:
         """Direction of the path in the sense of the last one; at first, towards an increasing load."""
-        t, tangent = equilibrium.state.load_parameter, PathTangent(self.newton, equilibrium)
-        x = tangent.rates(t, t)
-        if x is None:
+        rates = point.rates(self._drive(point))
+        if rates is None:
             return None
+        x = rates.unknowns
         size = float(np.sqrt(x @ (self.weight * x)))
         ahead = 1.0 if last is None else float(x @ (self.weight * last.x))
         sign = 1.0 if ahead >= 0 else -1.0
-        return _Direction(sign * x / size, sign / size, tangent)
+        return _Direction(sign * x / size, sign / size)
 
-    def _step(self, length: float) -> tuple[Equilibrium, _Direction] | None:
-        """Equilibrium a distance along the direction of the path."""
+    def _step(self, length: float, log: Step) -> tuple[Point, _Direction] | Status:
+        """Point a distance along the direction of the path, or why there is none."""
         if self.direction is None:
-            return None
-        here, (x, load, _) = self.here, self.direction
-        t = here.state.load_parameter + length * load
-        start = self.newton.update(here.state, length * x, here.system, t=t)
+            return Status.SINGULAR_TANGENT
+        here, (x, load) = self.here, self.direction
+        start = self.newton.update(here.state, length * x, here.system, t=here.t + length * load)
         there = self.newton.solve(start, across=self.weight * x)
-        self.iterations += there.iterations
-        direction = self._direction(there, self.direction) if there.status is Status.CONVERGED else None
-        self.failure = Status.SINGULAR_TANGENT if there.status is Status.CONVERGED else there.status
-        return None if direction is None else (there, direction)
+        log.iterations += there.iterations
+        if not there.converged:
+            return there.status
+        point = Point(self.newton, there)
+        direction = self._direction(point, self.direction)
+        return Status.SINGULAR_TANGENT if direction is None else (point, direction)
 
-    def _limit_point(self, length: float, before: float, after: float) -> Event:
+    def _limit_point(self, length: float, before: float, after: float, log: Step) -> Event:
         """Limit point within a step: where the direction of the path has no load component."""
 
-        def evaluate(s: float) -> tuple[float, State] | None:
-            reached = self._step(s)
-            return None if reached is None else (reached[1].load, reached[0].state)
+        def evaluate(s: float) -> tuple[float, float] | None:
+            reached = self._step(s, log)
+            return None if isinstance(reached, Status) else (reached[1].load, reached[0].t)
 
         small, apart = _LOCATED * abs(before), _APART * length
-        state = find_root(evaluate, (0.0, before), (length, after), small=small, apart=apart)
-        t = (state or self.here.state).load_parameter
-        return Event(kind=EventKind.LIMIT_POINT, load_parameter=t)
+        t = find_root(evaluate, (0.0, before), (length, after), small=small, apart=apart)
+        return Event(kind=EventKind.LIMIT_POINT, load_parameter=self.here.t if t is None else t)

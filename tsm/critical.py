@@ -20,11 +20,9 @@ import numpy as np
 
 from tsm.axis import axis_line
 from tsm.elements.properties import Array
-from tsm.newton import Equilibrium, Newton
-from tsm.path import PathTangent
+from tsm.path import Point
 from tsm.root import find_root
 from tsm.stability import mode
-from tsm.system import Linearisation
 
 _LOCATED = 1e-13
 """Tolerance of the search: width of the bracket of the critical load parameter, and g over its value at the ends of the step."""
@@ -60,16 +58,14 @@ class CriticalPoint:
     mode: dict[str, Array]
 
 
-def _bordered(newton: Newton, system: Linearisation, across: Array | None = None) -> tuple[float, Array]:
-    """Return g and v of the module's equation, v over the equations and the contacts' unknowns.
-
-    ``across``: the vector c; by default a fixed vector with components along all displacements.
-    """
+def _bordered(point: Point, across: Array | None = None) -> tuple[float, Array]:
+    """Return g and v of the module's equation; the vector c is `across`, or by default along all displacements."""
+    newton = point.newton
     size = len(newton.scale)
     draw = np.random.default_rng(1)
     b = draw.uniform(0.5, 1.0, size) * draw.choice([-1.0, 1.0], size) / newton.scale
     c = draw.uniform(0.5, 1.0, size) * newton.per_unknown if across is None else across
-    solved = newton.assembler.solve(system, b)
+    solved = newton.assembler.solve(point.system, b)
     if solved is None or not np.isfinite(solved[:, 1]).all():
         return 0.0, np.zeros(size)
     y = solved[:, 1]
@@ -79,80 +75,56 @@ def _bordered(newton: Newton, system: Linearisation, across: Array | None = None
     return (-1 / along, v) if along and np.isfinite(v).all() else (0.0, np.zeros(size))
 
 
-def locate_bifurcation(
-    newton: Newton, before: PathTangent, after: PathTangent, solve: Callable[[float], Equilibrium | None]
-) -> Equilibrium | None:
-    """Locate a bifurcation, the equilibrium with a singular tangent on a path that goes on.
+def locate_bifurcation(before: Point, after: Point, solve: Callable[[float], Point | None]) -> Point | None:
+    """Locate a bifurcation, the point with a singular tangent on a path that goes on; None where the path is not found.
 
-    The index of an equilibrium shows the side of the bifurcation, and g measures the distance to it.
+    The index shows the side of the bifurcation, and g measures the distance to it.
 
-    ``before, after``: two ends of a step between which the index changes. ``solve``: equilibrium of the path
-    at a load parameter, None where none is found. Returns the equilibrium at the point, None where the path
-    is
-    not found between the two ends.
+    ``before, after``: ends of a step between which the index changes. ``solve``: point of the path at a load parameter.
     """
-    _, v = _bordered(newton, before.system)
-    weights = newton.per_unknown**2
+    _, v = _bordered(before)
+    weights = before.newton.per_unknown**2
     length = float(v @ (weights * v))
     if not 0 < length < np.inf:
         return None
-    across = weights * v / length
 
-    def distance(tangent: PathTangent) -> float:
-        g = abs(_bordered(newton, tangent.system, across)[0])
-        return g if tangent.index == before.index else -g
+    def distance(point: Point) -> float:
+        g = abs(_bordered(point, weights * v / length)[0])
+        return g if point.index == before.index else -g
 
-    def evaluate(t: float) -> tuple[float, Equilibrium] | None:
-        equilibrium = solve(t)
-        if equilibrium is None:
-            return None
-        return distance(PathTangent(newton, equilibrium)), equilibrium
+    def evaluate(t: float) -> tuple[float, Point] | None:
+        point = solve(t)
+        return None if point is None else (distance(point), point)
 
-    (t0, g0), (t1, g1) = ((end.state.load_parameter, distance(end)) for end in (before, after))
-    apart = _LOCATED * max(1.0, t1)
-    return find_root(evaluate, (t0, g0), (t1, g1), small=_LOCATED * max(g0, -g1), apart=apart)
+    g0, g1 = distance(before), distance(after)
+    apart, small = _LOCATED * max(1.0, after.t), _LOCATED * max(g0, -g1)
+    return find_root(evaluate, (before.t, g0), (after.t, g1), small=small, apart=apart)
 
 
-def limit_load(before: tuple[float, float], last: tuple[float, float]) -> float:
-    """Load parameter of a limit point from two load parameters before it and the speeds of the path there.
-
-    Near it the speed is ``a/sqrt(t_c - t)``.
-
-    >>> round(limit_load((0.0, 1.0), (0.75, 2.0)), 12)
-    1.0
-    """
-    (t0, v0), (t1, v1) = before, last
-    ratio = v0 / v1 if np.isfinite(v1) and v1 > v0 > 0 else 0.0
-    return t1 + (t1 - t0) * ratio**2 / (1 - ratio**2) if ratio < 1 else t1
-
-
-def critical_point(
-    newton: Newton, kind: CriticalKind, equilibrium: Equilibrium, load_parameter: float
-) -> CriticalPoint:
-    """Critical point with the mode of the tangent at an equilibrium beside it."""
-    shape = mode_shape(newton, equilibrium)
+def critical_point(kind: CriticalKind, point: Point, load_parameter: float) -> CriticalPoint:
+    """Critical point with the mode of the tangent at a point beside it."""
+    shape = mode_shape(point)
     shapes = {} if shape is None else shape[1]
     return CriticalPoint(kind=kind, load_parameter=load_parameter, mode=shapes)
 
 
-def mode_shape(newton: Newton, equilibrium: Equilibrium) -> tuple[Array, dict[str, Array]] | None:
+def mode_shape(point: Point) -> tuple[Array, dict[str, Array]] | None:
     """Buckling mode near a critical point, of the sign with which it begins to the left: see `_side`.
 
-    Returns the change of the unknowns that moves some point of an axis by 1, and the displacements (m, 2) of
-    the
+    Returns the change of the unknowns that moves some point of an axis by 1, and the displacements (m, 2) of the
     axes; None without a single mode.
     """
-    model, state = newton.model, equilibrium.state
-    soft = mode(newton.assembler, state, equilibrium.system)
+    newton, model, state = point.newton, point.model, point.state
+    soft = mode(newton.assembler, state, point.system)
     if soft is None:
         return None
-    moved = newton.update(state, soft.x * _SHIFT, equilibrium.system)
+    moved = newton.update(state, soft[0] * _SHIFT, point.system)
     system = newton.assembler.linearise(moved)
-    axes = {beam: axis_line(model, state, equilibrium.system, beam)[1] for beam in model.beams}
+    axes = {beam: axis_line(model, state, point.system, beam)[1] for beam in model.beams}
     shapes = {beam: axis_line(model, moved, system, beam)[1] - axis for beam, axis in axes.items()}
     most = max(float(np.abs(shape).max()) for shape in shapes.values()) or 1.0
     most *= _side(np.concatenate([_leftwards(axes[beam], shape) for beam, shape in shapes.items()]))
-    return soft.x * (_SHIFT / most), {beam: shape / most for beam, shape in shapes.items()}
+    return soft[0] * (_SHIFT / most), {beam: shape / most for beam, shape in shapes.items()}
 
 
 def _leftwards(axis: Array, shape: Array) -> Array:

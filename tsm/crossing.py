@@ -1,7 +1,7 @@
 """Crossings: within one step, a node goes through a beam and on past the beam's end, or a round pin through an end and on.
 
-After such a step the node no longer projects onto the beam, or is clear of its end, so that the end of the step does not show the missed
-contact.
+After such a step the node no longer projects onto the beam, or is clear of its end, so that the end of the step does
+not show the missed contact. All points are assumed to move on straight lines in the step.
 """
 
 from __future__ import annotations
@@ -10,31 +10,27 @@ import math
 
 import numpy as np
 
+from tsm.contact_set import forbidden
 from tsm.ends import clearance
-from tsm.events import ROUND_OFF
+from tsm.events import ROUND_OFF, EventKind
 from tsm.model import Model
 from tsm.pairs import PairModel
 from tsm.predictor import extrapolate
 from tsm.projection import Projection
 from tsm.root import find_root
 from tsm.state import State
+from tsm.status import Status
 
 _CROSSED = 1e-14
 """Tolerance of a crossing: its gap over the longest beam, and the width of the bracket of its load parameter."""
-
 _SAMPLES, _NARROWED = 33, 5
 """States of a step at which a clearance is measured, and how often as many are measured about the least of them."""
 
 
 def crossing(model: Model, before: State, after: State) -> tuple[float, int] | None:
-    """First crossing between two configurations with the same closed contacts.
+    """Load parameter and pair of the first crossing between two configurations with the same closed contacts.
 
-    All points are assumed to move on straight lines between the configurations. The contact surface is extended beyond the beam's ends
-    along its tangents.
-
-    ``before, after``: accepted configuration, and one at a later load parameter. Returns the load parameter
-    and
-    number of the pair.
+    The contact surface is extended beyond the beam's ends along its tangents.
     """
     crossings = []
     for k, (pair, armed) in enumerate(zip(model.pairs, before.armed, strict=True)):
@@ -72,6 +68,24 @@ def through_end(model: Model, before: State, after: State) -> float | None:
         if least < -small:
             dips.append(deepest)
     return min(dips, default=None)
+
+
+def overlapping(model: Model, state: State) -> int | None:
+    """First pair whose pin or node overlaps an end of its beam, or a side that it does not touch."""
+    thick = (k for k, pair in enumerate(model.pairs) if pair.pair.offset > 0)
+    deep = -ROUND_OFF * model.length
+    return next((k for k in thick if clearance(model, state, k).distance < deep), None)
+
+
+def on_held_end(model: Model, state: State) -> bool:
+    """Whether a contact lies on a held end, which takes any force: nothing that happens there has a tangent."""
+    there = zip(model.pairs, state.touches, strict=True)
+    closed = ((pair, pair.arc_position(touch)) for pair, touch in there if touch is not None)
+    return any(
+        min(arc, pair.target.beam.length - arc) <= ROUND_OFF * model.length
+        and forbidden(model, EventKind.SLIP_OFF, pair, arc, alone=False) is Status.FOLDED
+        for pair, arc in closed
+    )
 
 
 def _over(model: Model, seen: Projection) -> bool:

@@ -1,8 +1,8 @@
 """Slip and stick of contacts with friction: the rates of the slips, and the state in which a contact goes on.
 
-A contact without force, or whose force lies on the edge of the cone ``|F_t| <= mu F_n``, may stick or slip. Its next state follows from
-rates: those of the structure with the contact in that state, as the load parameter grows. Stick is admissible if the force stays in the
-cone, slip if the surfaces slip the way in which the friction was taken.
+A contact without force, or whose force lies on the edge of the cone ``|F_t| <= mu F_n``, may stick or slip. Its next
+state follows from rates: those of the structure with the contact in that state, as the load parameter grows. Stick
+is admissible if the force stays in the cone, slip if the surfaces slip the way in which the friction was taken.
 """
 
 from __future__ import annotations
@@ -11,11 +11,9 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import islice, product
-from typing import NamedTuple
 
-from tsm.elements.properties import Array
 from tsm.model import Model
-from tsm.newton import Equilibrium, Newton
+from tsm.path import Point, Rates
 from tsm.state import UNDECIDED, Grip, State, Traction
 from tsm.status import Status
 from tsm.system import Drive, Linearisation
@@ -27,18 +25,14 @@ _NOISE = 1e-13
 _STILL = 1e-9
 """Slip rate, in longest beams per whole load, that counts as zero."""
 _FLAT = 1e-6
-"""Rate at which a force leaves its cone, in ``EI/L^2`` per whole load, that counts as zero. Where a slip ends, the force moves along the cone.
-A slip at the rate `_STILL` moves the force of a stick by up to EA times this rate, which counts as zero where no other state is admissible."""
+"""Rate at which a force leaves its cone, in ``EI/L^2`` per whole load, that counts as zero. Where a slip ends, the
+force moves along the cone. A slip at the rate `_STILL` moves the force of a stick by up to EA times this rate, which
+counts as zero where no other state is admissible."""
 _MOST = 4096
 """Combinations of states that are tried: six contacts without force."""
 
-
-class Rates(NamedTuple):
-    """Derivatives in the load parameter."""
-
-    system: Linearisation  # the configuration
-    unknowns: Array  # derivatives of the unknowns; shape (equations + contact unknowns,)
-    stage: int  # number of the stage, from 0
+Grips = tuple[tuple[int, Grip], ...]
+"""Numbers and states of contacts."""
 
 
 def traction(model: Model, state: State, system: Linearisation, k: int) -> Traction:
@@ -47,78 +41,57 @@ def traction(model: Model, state: State, system: Linearisation, k: int) -> Tract
     return pair.group.traction(k, state, system.groups[pair.group.number])
 
 
-def cone(model: Model, state: State, system: Linearisation, k: int) -> float:
+def traction_at(point: Point, k: int) -> Traction:
+    """Force and place of closed pair k, which has friction."""
+    return traction(point.model, point.state, point.system, k)
+
+
+def cone(point: Point, k: int) -> float:
     """Distance of the force of closed pair k from the edge of its cone, ``mu F_n - |F_t|``."""
-    here = traction(model, state, system, k)
-    return model.pairs[k].pair.friction * here.normal - abs(here.tangential)
+    here = traction_at(point, k)
+    return point.model.pairs[k].pair.friction * here.normal - abs(here.tangential)
 
 
-def rates(newton: Newton, system: Linearisation, drive: Drive) -> Rates | None:
-    """Derivatives in the load parameter under a drive, None where the tangent is singular."""
-    solved = newton.assembler.solve(system, -newton.assembler.rate(system, drive))
-    return None if solved is None else Rates(system, solved[:, 1], drive.stage)
-
-
-def slip_rate(newton: Newton, state: State, by: Rates, k: int) -> float:
+def slip_rate(point: Point, rates: Rates, k: int) -> float:
     """Slip rate of closed pair k."""
-    model = newton.model
-    pair = model.pairs[k]
-    dofs = newton.assembler.prescribed_rate(by.stage)
-    dofs[model.free] = by.unknowns[: model.equations]
-    tangent = by.system.tangent.groups[pair.group.number]
-    return pair.group.slip_rate(k, state, tangent, dofs, by.unknowns[model.equations :])
+    group = point.model.pairs[k].group
+    tangent = point.system.tangent.groups[group.number]
+    return group.slip_rate(k, point.state, tangent, rates.dofs, rates.contacts)
 
 
-def slip_rates(newton: Newton, equilibrium: Equilibrium, drive: Drive) -> dict[int, float]:
-    """Rates of all pairs that slip, positive the way they slip; none where the tangent is singular."""
-    state = equilibrium.state
-    slipping = [(k, grip.slip) for k, grip in grips(state) if grip.slip]
-    by = rates(newton, equilibrium.system, drive) if slipping else None
-    return {} if by is None else {k: slip * slip_rate(newton, state, by, k) for k, slip in slipping}
+def regripped(point: Point, drive: Drive, last: State) -> Point | Status:
+    """Equilibrium whose contacts with friction slip or stick as the load parameter grows, after a state `last`.
 
-
-def regripped(newton: Newton, state: State, drive: Drive, last: State) -> State | Status:
-    """State in equilibrium whose contacts with friction slip or stick as the load parameter grows.
-
-    Where a slip ends, its rate is zero, and the force of the stick that follows moves along the cone: its rate out of the cone is round-off.
-
-    ``drive``: what changes. ``last``: the same configuration before its contacts changed. Returns JAMMED if
-    no state of the contacts is admissible, TWO_SLIPS if a contact without force could slip either way.
+    Where a slip ends, its rate is zero, and the force of the stick that follows moves along the cone: its rate out
+    of the cone is round-off. Returns JAMMED if no state of the contacts is admissible, TWO_SLIPS if a contact
+    without force could slip either way.
     """
-    system = newton.assembler.linearise(state)
-    here = {k: traction(newton.model, state, system, k) for k, _ in grips(state)}
+    model, now = point.model, grips(point.state)
+    here = {k: traction_at(point, k) for k, _ in now}
     # a contact that has just closed has a force of round-off, which may be considerable near a support
-    here |= {k: here[k]._replace(tangential=0.0, normal=0.0) for k, grip in grips(state) if grip == UNDECIDED}
-    choices = [[(k, grip) for grip in _choices(newton.model, k, grip, here[k])] for k, grip in grips(state)]
-    stiff = max(beam.section.EA for beam in newton.model.structure.beams)
-    # the round-off of a slip rate is a force in a stiff beam, so more is allowed where a slip ends, and where nothing else is admissible
-    flat = _FLAT * newton.model.force_scale
+    here |= {k: here[k]._replace(tangential=0.0, normal=0.0) for k, grip in now if grip == UNDECIDED}
+    choices = [[(k, grip) for grip in _choices(model, k, grip, here[k])] for k, grip in now]
+    # the round-off of a slip rate is a force in a stiff beam, so more is allowed where a slip ends, and where nothing
+    # else is admissible
+    flat, more = _FLAT * model.force_scale, _STILL * _stiffest(model)
     slipped = {k for k, grip in grips(last) if grip.slip}
-    ended = {k for k, grip in grips(state) if not grip.slip and k in slipped}
-    for least in (flat, flat + _STILL * stiff):
-        leaving = {k: flat + _STILL * stiff if k in ended else least for k in here}
+    ended = {k for k, grip in now if not grip.slip and k in slipped}
+    for least in (flat, flat + more):
+        leaving = {k: flat + more if k in ended else least for k in here}
         for chosen in islice(product(*choices), _MOST):
-            if not _admissible(newton, with_grips(state, chosen), drive, here, leaving):
+            going = _going_on(point, chosen, drive, here, leaving)
+            if going is None:
                 continue
-            for other in _reversed(newton.model, chosen, here):
-                if _admissible(newton, with_grips(state, other), drive, here, leaving):
-                    return Status.TWO_SLIPS
-            return with_grips(state, chosen)
+            if any(_going_on(point, other, drive, here, leaving) for other in _reversed(model, chosen, here)):
+                return Status.TWO_SLIPS
+            return going
     return Status.JAMMED
 
 
-def turned(model: Model, state: State, system: Linearisation, k: int) -> State:
-    """State in which pair k sticks where it slipped, or slips the way of its force where it stuck."""
-    touch = state.touches[k]
-    assert touch is not None, "only a closed contact slips or sticks"
-    here = traction(model, state, system, k)
-    slips = touch.grip is not None and touch.grip.slip
-    return with_grips(state, ((k, Grip(0, here.place) if slips else Grip(here.way, None)),))
-
-
-def same(before: Grip, after: Grip) -> bool:
-    """Whether a contact goes on as before; one that has just closed has no state before."""
-    return before == UNDECIDED or before.slip == after.slip
+def turned(point: Point, k: int) -> Grip:
+    """State of pair k that sticks where it slipped, or slips the way of its force where it stuck."""
+    here = traction_at(point, k)
+    return Grip(0, here.place) if dict(grips(point.state))[k].slip else Grip(here.way, None)
 
 
 def grips(state: State) -> list[tuple[int, Grip]]:
@@ -130,7 +103,7 @@ def grips(state: State) -> list[tuple[int, Grip]]:
     ]
 
 
-def with_grips(state: State, grips: tuple[tuple[int, Grip], ...]) -> State:
+def with_grips(state: State, grips: Grips) -> State:
     """State whose contacts slip or stick otherwise."""
     touches = list(state.touches)
     for k, grip in grips:
@@ -138,6 +111,10 @@ def with_grips(state: State, grips: tuple[tuple[int, Grip], ...]) -> State:
         assert touch is not None, "only a closed contact slips or sticks"
         touches[k] = replace(touch, grip=grip)
     return replace(state, touches=tuple(touches))
+
+
+def _stiffest(model: Model) -> float:
+    return max(beam.section.EA for beam in model.structure.beams)
 
 
 def _idle(model: Model, here: Traction) -> bool:
@@ -155,54 +132,53 @@ def _choices(model: Model, k: int, grip: Grip, here: Traction) -> list[Grip]:
     return [slip, stick] if grip.slip else [stick, slip]
 
 
-def _reversed(
-    model: Model, chosen: tuple[tuple[int, Grip], ...], here: dict[int, Traction]
-) -> Iterator[tuple[tuple[int, Grip], ...]]:
+def _reversed(model: Model, chosen: Grips, here: dict[int, Traction]) -> Iterator[Grips]:
     """The same states with the slip of one contact without force reversed."""
     for n, (k, grip) in enumerate(chosen):
         if grip.slip and _idle(model, here[k]):
             yield (*chosen[:n], (k, Grip(-grip.slip, None)), *chosen[n + 1 :])
 
 
-def _admissible(
-    newton: Newton, state: State, drive: Drive, here: dict[int, Traction], leaving: dict[int, float]
-) -> bool:
-    """Whether the structure can go on with its contacts as they are stated; forces may leave their cones at the rates `leaving`."""
-    model = newton.model
-    by = rates(newton, newton.assembler.linearise(state), drive)
-    if by is None:
-        return not here
-    for k, grip in grips(state):
-        if _idle(model, here[k]) and not _grows(model, k, here[k], by, grip):
-            return False
-        if grip.slip:
-            if grip.slip * slip_rate(newton, state, by, k) <= _STILL * model.length:
-                return False
-        elif not _idle(model, here[k]) and cone(model, state, by.system, k) <= _EDGE * model.force_scale:
-            slipping = with_grips(state, ((k, Grip(here[k].way, None)),))
-            if here[k].way * _row_rate(newton, slipping, by, k) > leaving[k]:
-                return False
-    return True
+def _going_on(
+    point: Point, chosen: Grips, drive: Drive, here: dict[int, Traction], leaving: dict[int, float]
+) -> Point | None:
+    """Point with contacts in the chosen states, if they can go on; forces may leave their cones at the rates `leaving`."""
+    state = with_grips(point.state, chosen)
+    going = point if state.touches == point.state.touches else point.with_state(state)
+    by = going.rates(drive) if here else None
+    lasting = by and all(_lasts(going, by, k, grip, here[k], leaving[k]) for k, grip in chosen)
+    return going if lasting or not here else None
+
+
+def _lasts(point: Point, by: Rates, k: int, grip: Grip, here: Traction, leaving: float) -> bool:
+    """Whether a contact can go on in its state."""
+    model, idle = point.model, _idle(point.model, here)
+    if idle and not _grows(model, k, here, by, grip):
+        return False
+    if grip.slip:
+        return grip.slip * slip_rate(point, by, k) > _STILL * model.length
+    if idle or cone(point, k) > _EDGE * model.force_scale:
+        return True
+    return here.way * _row_rate(point, by, k, here.way) <= leaving
 
 
 def _grows(model: Model, k: int, here: Traction, by: Rates, grip: Grip) -> bool:
     """Whether the force of a contact without force grows as its state says: into its cone, or below zero where it opens."""
     pair = model.pairs[k]
-    fx, fy = by.unknowns[model.equations :][pair.slots][:2]
+    fx, fy = by.contacts[pair.slots][:2]
     c, s = math.cos(here.place.direction), math.sin(here.place.direction)
     tangential, normal = fx * c + fy * s, pair.side * (fy * c - fx * s)
-    stiff = max(beam.section.EA for beam in model.structure.beams)
-    edge = _EDGE * model.force_scale + _NOISE * stiff
+    edge = _EDGE * model.force_scale + _NOISE * _stiffest(model)
     if grip == UNDECIDED:
         return bool(normal < -edge)
     return bool(normal >= -edge if grip.slip else abs(tangential) <= pair.pair.friction * normal + edge)
 
 
-def _row_rate(newton: Newton, slipping: State, by: Rates, k: int) -> float:
+def _row_rate(point: Point, by: Rates, k: int, way: int) -> float:
     """Derivative of ``F_t - sigma mu F_n``, times a positive number, along rates that do not hold it at zero."""
-    model, slot = newton.model, newton.model.pairs[k].slot + 2
-    system, aside = newton.assembler.linearise(slipping), model.border_dofs
-    held, tangent = newton.assembler.rate(system)[model.equations + slot], system.tangent
+    model, assembler = point.model, point.newton.assembler
+    slipping, slot = with_grips(point.state, ((k, Grip(way, None)),)), model.pairs[k].slot + 2
+    system, aside = assembler.linearise(slipping), model.border_dofs
+    held, tangent = assembler.rate(system)[model.equations + slot], system.tangent
     along = tangent.below[aside + slot, : model.equations] @ by.unknowns[: model.equations]
-    row = held + along + tangent.corner[aside + slot, aside:] @ by.unknowns[model.equations :]
-    return float(row)
+    return float(held + along + tangent.corner[aside + slot, aside:] @ by.contacts)

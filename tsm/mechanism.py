@@ -8,25 +8,19 @@ import numpy as np
 
 from tsm.contact_set import changed
 from tsm.elements.properties import Array
-from tsm.friction import rates
 from tsm.model import Model
-from tsm.newton import Equilibrium, Newton
+from tsm.path import Point
 from tsm.stability import IDLE, loose
 from tsm.state import State
-from tsm.system import Assembler, Drive, Linearisation
+from tsm.system import Drive
 
 _LEAST = 1e-9
 """Singular value of the equations of rigid motions, in coordinates over the structure's size, that counts as zero."""
 
 
-def mechanism(newton: Newton, equilibrium: Equilibrium, drive: Drive) -> bool:
-    """Whether a structure can move without strain as a drive begins.
-
-    A contact without force holds a structure only if it begins to push.
-
-    ``equilibrium``: the equilibrium in which the drive begins. ``drive``: what changes.
-    """
-    model, assembler, state = newton.model, newton.assembler, equilibrium.state
+def mechanism(point: Point, drive: Drive) -> bool:
+    """Whether a structure can move without strain as a drive begins. A contact without force holds it only if it begins to push."""
+    model, state = point.model, point.state
     edge, opened = IDLE * model.force_scale, state
     idle = [
         (k, pair, touch)
@@ -37,22 +31,22 @@ def mechanism(newton: Newton, equilibrium: Equilibrium, drive: Drive) -> bool:
         opened = changed(model, opened, k, None, armed=True)
     if not (model.joints or _moves(model, opened)):
         return False
-    if _free(assembler, state, equilibrium.system):
+    if _free(point):
         return True
-    by = rates(newton, equilibrium.system, drive) if idle else None
+    by = point.rates(drive) if idle else None
     if by is None:
         return False
     for k, pair, touch in idle:
-        x, y = pair.group.direction(touch, state.q)
-        fx, fy, *_ = by.unknowns[model.equations :][pair.slots]
+        x, y = pair.group.direction(touch, point.state.q)
+        fx, fy, *_ = by.contacts[pair.slots]
         if pair.side * (fy * x - fx * y) <= edge:
             state = changed(model, state, k, None, armed=True)
-    return state is not equilibrium.state and _free(assembler, state, assembler.linearise(state))
+    return state is not point.state and _free(point.with_state(state))
 
 
-def _free(assembler: Assembler, state: State, system: Linearisation) -> bool:
+def _free(point: Point) -> bool:
     """Whether beams that are rigid can move, and no load stiffens the motion; the tangent of many slender elements is loose too."""
-    return loose(assembler, state, system) and _moves(assembler.model, state)
+    return loose(point.newton.assembler, point.state, point.system) and _moves(point.model, point.state)
 
 
 def _moves(model: Model, state: State) -> bool:

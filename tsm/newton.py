@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -35,43 +34,18 @@ _CRITICAL = 1e-6
 
 @dataclass(frozen=True, kw_only=True)
 class Equilibrium:
-    """A configuration with its residual, and the iterations that led to it.
-
-    Attributes
-    ----------
-    state : State
-        Configuration.
-    status : Status
-        CONVERGED or the reason why not.
-    iterations : int
-        Linear systems solved.
-    residuals : tuple of float
-        Scaled norm before the first and after every iteration.
-    system : Linearisation
-        Residual and tangent at the configuration.
-    """
+    """A configuration with its residual, and the iterations that led to it."""
 
     state: State
-    status: Status
-    iterations: int
-    residuals: tuple[float, ...]
-    system: Linearisation
+    status: Status  # CONVERGED or the reason why not
+    iterations: int  # linear systems solved
+    residuals: tuple[float, ...]  # scaled norm before the first and after every iteration
+    system: Linearisation  # residual and tangent at the configuration
 
-
-class _Iteration(NamedTuple):
-    """An iteration, or a part of it."""
-
-    state: State  # state, system: configuration before the iteration
-    system: Linearisation
-    step: Array  # step, load: change of the unknowns and of the load parameter
-    load: float
-    residual: float  # scaled norm before the iteration
-    part: float = 1.0  # part of the step that is taken
-    past: float = 0.0  # part of an element's length by which a contact may lie past its end
-
-    def to_halve(self, residual: float) -> bool:
-        """Whether the residual has risen so much that half of the step is tried instead."""
-        return not residual <= _RISE * self.residual and self.part > _SHORTEST
+    @property
+    def converged(self) -> bool:
+        """Whether it is one."""
+        return self.status is Status.CONVERGED
 
 
 def _scales(model: Model) -> tuple[Array, Array, float]:
@@ -163,56 +137,50 @@ class Newton:
         inside = max(forces.inside for forces in system.groups)
         return max(largest(system.residual, self.scale), inside / SHARP)
 
+    def at(self, equilibrium: Equilibrium, state: State) -> Equilibrium:
+        """The equilibrium in a state with other contacts."""
+        return replace(equilibrium, state=state, system=self.assembler.linearise(state))
+
     def solve(self, start: State, drag: Drag | None = None, *, across: Array | None = None) -> Equilibrium:
-        """Iterate from a start to equilibrium.
+        """Iterate from a start to equilibrium, or to the last iterate with its status.
 
-        Parameters
-        ----------
-        start : State
-            Start of the iteration. The load parameter is held unless there is a constraint.
-        drag : Drag, optional
-            Resistance to leaving a configuration.
-        across : ndarray, shape (equations + contact unknowns,), optional
-            Constraint row: the load parameter is an unknown too, and every step is orthogonal to this vector.
-
-        Returns
-        -------
-        Equilibrium
-            The last iterate with its status.
+        ``start``: its load parameter is held unless there is a constraint. ``drag``: resistance to leaving a
+        configuration. ``across`` (equations + contact unknowns,): constraint row; the load parameter is an
+        unknown too, and every step is orthogonal to this vector.
         """
-        state = start
+        state, past, part = start, 0.0, 0.0
+        taken: tuple[State, Array, Linearisation] | None = None
         residuals: list[float] = []
         owners: list[tuple[int, ...]] = []
-        last: _Iteration | None = None
-        past = 0.0
         for iteration in range(self.max_iterations + 1):
             system = self.assembler.linearise(state, drag)
-            residual = self.norm(system)
-            left = self.max_iterations - iteration
-            if last and last.to_halve(residual) and left:
-                last = last._replace(part=last.part / 2)
-                state = self._after(last)
-                continue
-            residuals.append(residual)
-            owners.append(tuple(touch.element for touch in state.touches if touch is not None))
-            status = self._status(system, residuals, owners, left)
-            more = self.with_more_nodes(state, system, residuals) if left else None
-            if more is not None:
-                state, last = more, None
-                continue
-            step = self._step(system, across) if status is None else None
-            if step is None:
-                return Equilibrium(
-                    state=state,
-                    status=status or Status.SINGULAR_TANGENT,
-                    iterations=iteration,
-                    residuals=tuple(residuals),
-                    system=system,
-                )
-            past = _PAST if past or _alternates(owners) else 0.0
-            taken = _Iteration(state, system, *step, residual, past=past)
-            state = self._after(taken)
-            last = taken if self.assembler.internal else None
+            residual, left = self.norm(system), self.max_iterations - iteration
+            risen = taken is not None and self.assembler.internal and not residual <= _RISE * residuals[-1]
+            if risen and part > _SHORTEST and left:
+                part /= 2
+            else:
+                residuals.append(residual)
+                owners.append(tuple(touch.element for touch in state.touches if touch is not None))
+                status = self._status(system, residuals, owners, left)
+                more = self.with_more_nodes(state, system, residuals) if left else None
+                if more is not None:
+                    state, taken = more, None
+                    continue
+                step = self._step(system, across) if status is None else None
+                if step is None:
+                    return Equilibrium(
+                        state=state,
+                        status=status or Status.SINGULAR_TANGENT,
+                        iterations=iteration,
+                        residuals=tuple(residuals),
+                        system=system,
+                    )
+                past = _PAST if past or _alternates(owners) else 0.0
+                (change, load), part = step, 1.0
+                taken = state, change, system
+            assert taken is not None, "a part of a step is of a step"
+            t = taken[0].load_parameter + part * load
+            state = self.update(*taken, t=t, residual=True, part=part, past=past)
         raise AssertionError("the last iteration returns")
 
     def _step(self, system: Linearisation, across: Array | None) -> tuple[Array, float] | None:
@@ -226,12 +194,6 @@ class Newton:
         back, rate = solved.T
         load = -float(across @ back) / float(across @ rate)
         return back + load * rate, load
-
-    def _after(self, taken: _Iteration) -> State:
-        t = taken.state.load_parameter + taken.part * taken.load
-        return self.update(
-            taken.state, taken.step, taken.system, t=t, residual=True, part=taken.part, past=taken.past
-        )
 
     def _status(
         self, system: Linearisation, residuals: list[float], owners: list[tuple[int, ...]], left: int

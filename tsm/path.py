@@ -1,43 +1,83 @@
-"""The tangent of the equilibrium path, and whether a step kept to the path.
+"""Points of the equilibrium path, with their tangents; the prediction of the next one; whether a step kept to the path.
 
-Newton's method finds some equilibrium; after a long step it may belong to another branch. A step from A to B has followed the path if the
-tangents at both its ends explain it: with the displacements and rotations q, at nodes and inside exact elements (`Newton.motion`), their
-rates q' and the step h of the load parameter::
+Newton's method finds some equilibrium; after a long step it may belong to another branch. A step from A to B
+has followed the path if the tangents at both its ends explain it: with the displacements and rotations q, at
+nodes and inside exact elements (`Newton.motion`), their rates q' and the step h of the load parameter::
 
     |q_B - q_A - h q'_A| <= c |q_B - q_A|,    |q_B - q_A - h q'_B| <= c |q_B - q_A|
 
-The tangent at A does not lead to an equilibrium of another branch, nor does the tangent there lead back to A. The decision therefore depends on
-the path, and not on the prescribed load parameters.
+The tangent at A does not lead to an equilibrium of another branch, nor does the tangent there lead back to A.
+The decision therefore depends on the path, and not on the prescribed load parameters.
 """
 
 from __future__ import annotations
 
 import math
 from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tsm.elements.properties import Array
 from tsm.newton import Equilibrium, Newton
+from tsm.predictor import extrapolate
 from tsm.stability import index
 from tsm.state import State
 from tsm.system import Drive
 
 FOLLOWED = 0.35
 """The bound c. A limit point is approached by a factor of (1 + 2 c)^2 = 2.9 a step."""
-LONGEST_STEP = 1.0
-"""Longest step whatever its tangents are, in largest Newton steps (0.3 L, 0.7 rad)."""
+_LONGEST = 1.0
+"""Longest step whatever its tangents are, in largest Newton steps (0.3 L, 0.7 rad); the farthest equilibrium
+from its prediction where no tangent is usable. With 2 instead of 1, one random pin in a hundred ends on another branch."""
+_PROMISED = 0.8
+"""Longest step at the last speed, in the same measure: most of the longer ones would be refused."""
 _RESOLVED = 1e-8
 """Smaller motions, in the same measure, are round-off, as of a column that stays straight: it moves along itself only."""
+_MEMORY, _ON_CHORDS = 3, 4
+"""Points in the prediction, a polynomial in the load parameter through their states and tangents; the second value
+holds where no tangent is usable."""
+_BEFORE_KINK = 1
+"""Points before a contact passed from element to element that the prediction still uses: the path has a kink there."""
+_AHEAD = 1e-6
+"""Part of a step at which a state along the tangent stands for the tangent."""
+_NEAR = 1e-3
+"""Part of a step up to which this state is near."""
+_SHORTEST = 1e-6
+"""Step of the load parameter below which the tangent alone predicts: the others would be round-off."""
+_FOLD = 100.0
+"""Speed of the path, in largest Newton steps per whole load, above which a limit point is near, where it is infinite."""
+_GROWING, _ROOM = 1.4, 0.6
+"""Growth of the speed that shows a limit point ahead, and the next step over the distance to it."""
 
 
-class PathTangent:
-    """Tangent of the path at an equilibrium."""
+class Rates(NamedTuple):
+    """Derivatives in the load parameter."""
+
+    unknowns: Array  # of the equations and the contacts' unknowns
+    dofs: Array  # of all degrees of freedom
+    contacts: Array  # of the contacts' unknowns
+    motion: Array  # of the motion, see `Newton.motion`
+
+
+class Point:
+    """An equilibrium with what the path has there; each is computed once."""
+
+    unexplained_behind = 0.0  # part of the step to here that the tangent at its start does not explain
 
     def __init__(self, newton: Newton, equilibrium: Equilibrium) -> None:
-        self.newton, self.state, self.system = newton, equilibrium.state, equilibrium.system
-        self._known: dict[Drive, tuple[Array, Array] | None] = {}
-        self._left: tuple[State, State, float] | None = None
+        self.newton, self.model, self.equilibrium = newton, newton.model, equilibrium
+        self.state, self.system, self.t = (
+            equilibrium.state,
+            equilibrium.system,
+            equilibrium.state.load_parameter,
+        )
+        self._rates: dict[Drive, Rates | None] = {}
+        self.margins: dict[Drive, list[Any]] = {}  # see `tsm.margins`
+
+    def with_state(self, state: State) -> Point:
+        """The same with other contacts, in equilibrium too."""
+        return Point(self.newton, self.newton.at(self.equilibrium, state))
 
     @cached_property
     def index(self) -> int:
@@ -45,63 +85,139 @@ class PathTangent:
         _ = self.system.tangent  # which the rates need besides, and the index is cheaper with
         return index(self.newton.assembler, self.state, self.system)
 
-    def rates(self, begin: float, end: float) -> Array | None:
-        """Rates of the unknowns while the pins go straight from where they are at one load parameter to where they are at another.
+    @cached_property
+    def on_chords(self) -> bool:
+        """Whether a closed contact has a stiffness that grows without bound at the beam nodes: round-off spoils its tangent."""
+        pairs = zip(self.model.pairs, self.state.touches, strict=True)
+        return any(touch is not None and pair.slot < 0 for pair, touch in pairs)
 
-        Returns the derivatives in the load parameter, (equations + contact unknowns,); None where the tangent
-        is singular.
-        """
-        along = self._along(begin, end)
-        return None if along is None else along[0]
+    def rates(self, drive: Drive) -> Rates | None:
+        """Rates while the pins go straight and the loads grow as the drive says; None where the tangent is singular."""
+        if drive not in self._rates:
+            self._rates[drive] = self._solved(drive)
+        return self._rates[drive]
 
-    def _along(self, begin: float, end: float) -> tuple[Array, Array] | None:
-        """Rates, and motion per unit of the load parameter, see `Newton.motion`."""
-        assembler, model = self.newton.assembler, self.newton.model
-        drive = assembler.drive(begin, end)
-        if drive not in self._known:
-            solved = assembler.solve(self.system, -assembler.rate(self.system, drive))
-            if solved is None or not np.isfinite(solved[:, 1]).all():
-                self._known[drive] = None
-                return None
-            rates, dofs = solved[:, 1], assembler.prescribed_rate(drive.stage)
-            dofs[model.free], contacts = rates[: model.equations], rates[model.equations :]
-            inside = [
-                group.turning(self.state, tangent, dofs, contacts)
-                for group, tangent in zip(model.groups, self.system.tangent.groups, strict=True)
-            ]
-            self._known[drive] = rates, np.concatenate([dofs[model.free], *inside])
-        return self._known[drive]
+    def _solved(self, drive: Drive) -> Rates | None:
+        assembler, model = self.newton.assembler, self.model
+        solved = assembler.solve(self.system, -assembler.rate(self.system, drive))
+        if solved is None or not np.isfinite(solved[:, 1]).all():
+            return None
+        rates, dofs = solved[:, 1], assembler.prescribed_rate(drive.stage)
+        dofs[model.free], contacts = rates[: model.equations], rates[model.equations :]
+        inside = [
+            group.turning(self.state, tangent, dofs, contacts)
+            for group, tangent in zip(model.groups, self.system.tangent.groups, strict=True)
+        ]
+        return Rates(rates, dofs, contacts, np.concatenate([dofs[model.free], *inside]))
+
+    def _rates_to(self, t: float) -> Rates | None:
+        return self.rates(self.newton.assembler.drive(self.t, t))
 
     @cached_property
     def speed(self) -> float:
         """Size of the motion per whole load, no less than what round-off may be; infinite at a limit point."""
-        t = self.state.load_parameter
-        along = self._along(t, t)
-        return math.inf if along is None else max(self.newton.size(along[1]), _RESOLVED)
+        rates = self._rates_to(self.t)
+        return math.inf if rates is None else max(self.newton.size(rates.motion), _RESOLVED)
 
     def release(self) -> None:
         """Let go of the assembled tangent, which every accepted configuration would hold otherwise; its speed stays known."""
         _ = self.speed
         self.system.__dict__.pop("tangent", None)
 
-    def predicted(self, state: State, t: float) -> State:
-        """State at a load parameter along the tangent from a state, which has the tangent's displacements."""
-        rates = self.rates(state.load_parameter, t)
+    def predicted(self, t: float) -> State:
+        """State at a load parameter along the tangent."""
+        rates = self._rates_to(t)
         if rates is None:
-            return self.newton.prescribed(state, t)
-        return self.newton.update(state, (t - state.load_parameter) * rates, self.system, t=t)
+            return self.newton.prescribed(self.state, t)
+        return self.newton.update(self.state, (t - self.t) * rates.unknowns, self.system, t=t)
 
     def unexplained(self, before: State, after: State) -> float:
-        """Part of the step between two states that the tangent does not explain, ``|q_B - q_A - h q'|/|q_B - q_A|``."""
-        if self._left is None or self._left[0] is not before or self._left[1] is not after:
-            self._left = before, after, self._unexplained(before, after)
-        return self._left[2]
-
-    def _unexplained(self, before: State, after: State) -> float:
-        along = self._along(before.load_parameter, after.load_parameter)
-        if along is None:
+        """Part of a step that the tangent here does not explain, ``|q_B - q_A - h q'|/|q_B - q_A|``."""
+        begin, end = before.load_parameter, after.load_parameter
+        rates = self.rates(self.newton.assembler.drive(begin, end))
+        if rates is None:
             return 0.0
         step = self.newton.motion(before, after, self.state)
-        size, length = self.newton.size(step), after.load_parameter - before.load_parameter
-        left = self.newton.size(step - length * along[1])
+        size, left = self.newton.size(step), self.newton.size(step - (end - begin) * rates.motion)
         return left / size if min(left, size) > _RESOLVED else 0.0
+
+
+class Track:
+    """The path up to its last point."""
+
+    def __init__(self, point: Point) -> None:
+        self.newton, self.last, self.before = point.newton, point, point
+        self.index = (
+            max(point.index, 0) if point.equilibrium.converged else 0
+        )  # of the last point that has one
+        # states, each with one a little ahead of it along its tangent if there is any; all have the same contacts
+        self.history: list[tuple[State, ...]] = [(point.state,)]
+
+    def accept(self, point: Point) -> None:
+        """Make a point the last of the path."""
+        self.history = [*self._remembered(point), (point.state,)]
+        self.before, self.last = self.last, point
+        self.before.release()
+        self.index = point.index if point.index >= 0 else self.index
+
+    def _remembered(self, point: Point) -> list[tuple[State, ...]]:
+        """Earlier states that serve for the prediction beyond a point."""
+        kept: list[tuple[State, ...]] = []
+        kinks, memory = 0, _ON_CHORDS if point.on_chords else _MEMORY
+        for state, *ahead in reversed(self.history[1 - memory :]):
+            kinks += _owners(state) != _owners(point.state)
+            if kinks > _BEFORE_KINK and not point.on_chords:
+                break
+            step = point.t - state.load_parameter
+            near = (one for one in ahead if one.load_parameter - state.load_parameter <= _NEAR * step)
+            kept += [(state, *near)] * (step > 0)
+        return kept[::-1]
+
+    def predicted(self, t: float) -> State:
+        """State at t from the last states and their tangents, or along the last tangent."""
+        last, step = self.last, t - self.last.t
+        if not last.on_chords:
+            if len(self.history) == 1 or step < _SHORTEST:
+                return last.predicted(t)
+            if self.history[-1][-1].load_parameter - last.t > _NEAR * step or len(self.history[-1]) == 1:
+                self.history[-1] = (last.state, last.predicted(last.t + _AHEAD * step))
+        states = [state for near in self.history for state in near]
+        return self.newton.prescribed(extrapolate(last.model, states, t), t)
+
+    def strays(self, predicted: State, reached: State) -> bool:
+        """Whether an equilibrium lies too far away, or too far from its prediction where no tangent is usable."""
+        start = predicted if self.last.on_chords else self.last.state
+        return self.newton.apart(start, reached) > _LONGEST
+
+    def room(self) -> float:
+        """Longest step that the last two speeds promise to follow; infinite where they promise nothing."""
+        one, two = self.before, self.last
+        short = _PROMISED / two.speed if two.speed < _FOLD and not two.on_chords else math.inf
+        if len(self.history) < 2 or one.t >= two.t or not two.speed > _GROWING * one.speed:
+            return short
+        return min(short, _ROOM * (self.limit() - two.t) or math.inf)
+
+    def limit(self) -> float:
+        """Load parameter of the limit point ahead."""
+        return limit_load((self.before.t, self.before.speed), (self.last.t, self.last.speed))
+
+    def folds(self) -> bool:
+        """Whether the path is as fast as beside a limit point."""
+        return self.last.speed > _FOLD
+
+
+def limit_load(before: tuple[float, float], last: tuple[float, float]) -> float:
+    """Load parameter of a limit point from two load parameters before it and the speeds of the path there.
+
+    Near it the speed is ``a/sqrt(t_c - t)``.
+
+    >>> round(limit_load((0.0, 1.0), (0.75, 2.0)), 12)
+    1.0
+    """
+    (t0, v0), (t1, v1) = before, last
+    ratio = v0 / v1 if np.isfinite(v1) and v1 > v0 > 0 else 0.0
+    return t1 + (t1 - t0) * ratio**2 / (1 - ratio**2) if ratio < 1 else t1
+
+
+def _owners(state: State) -> list[int]:
+    return [touch.element for touch in state.touches if touch is not None]

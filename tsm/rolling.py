@@ -23,7 +23,7 @@ from tsm.predictor import extrapolate
 from tsm.state import Grip, Place, State
 from tsm.status import Status
 
-_ORDER = (0.5, 0.5 - (3 / 28) ** 0.5, 0.5 + (3 / 28) ** 0.5)
+LOBATTO = (0.5 - (3 / 28) ** 0.5, 0.5, 0.5 + (3 / 28) ** 0.5)
 """Inner points of Lobatto's rule of order 8 in the unit interval."""
 _ZERO = 1e-14
 """Area, in longest beams, that counts as zero."""
@@ -41,11 +41,10 @@ Held = dict[int, Place]
 
 
 def rolled(newton: Newton, before: State, reached: Equilibrium) -> Equilibrium:
-    """Equilibrium whose contacts in stick have not slipped since a state, from one whose rows are the trapezium since then.
+    """Equilibrium whose contacts in stick have not slipped since an equilibrium before, and are held in their own places.
 
-    ``before``: equilibrium in whose places the contacts are held. ``reached``: equilibrium at another load
-    parameter. Returns an equilibrium whose contacts are held in their own places; one that has not converged
-    where none is found.
+    ``before``: in whose places the contacts of `reached` are held, so that their rows are the trapezium since then.
+    Returns one that has not converged where none is found.
     """
     model, small = newton.model, _ZERO * newton.model.length
     held = {
@@ -53,18 +52,18 @@ def rolled(newton: Newton, before: State, reached: Equilibrium) -> Equilibrium:
         for k, grip in grips(reached.state)
         if grip.held is not None and (model.pairs[k].lever or model.pairs[k].roll)
     }
-    if not held or reached.status is not Status.CONVERGED:
+    if not held or not reached.converged:
         return reached
     begin, end = before.load_parameter, reached.state.load_parameter
     found = {1.0: reached}
-    for part, least in zip(_ORDER, (_ZERO, _LARGE, _LARGE), strict=True):
+    for part, least in ((LOBATTO[1], _ZERO), (LOBATTO[0], _LARGE), (LOBATTO[2], _LARGE)):
         arcs, stretches = np.ptp(_curves(newton, held, list(found.values())), axis=-1)
         if (arcs * stretches).max() <= least * model.length:
             break
         t = begin + part * (end - begin)
         start = extrapolate(model, [before, *(node.state for node in reversed(found.values()))], t)
         found[part] = newton.solve(newton.prescribed(start, t))
-        if found[part].status is not Status.CONVERGED:
+        if not found[part].converged:
             return found[part]
     if len(found) == 1:
         return _anchored(newton, held, reached)
@@ -76,7 +75,7 @@ def rolled(newton: Newton, before: State, reached: Equilibrium) -> Equilibrium:
         first = rolled(newton, before, middle)
         grips_there = tuple((k, grip) for k, grip in grips(first.state) if k in held)
         second = newton.solve(with_grips(reached.state, grips_there))
-        return rolled(newton, first.state, second) if first.status is Status.CONVERGED else first
+        return rolled(newton, first.state, second) if first.converged else first
     for _ in range(_SWEEPS):
         nodes = [_corrected(newton, held, node, area) for node, area in zip(nodes, areas.T, strict=True)]
         last, areas = areas, _areas(newton, held, nodes, places)
@@ -85,10 +84,13 @@ def rolled(newton: Newton, before: State, reached: Equilibrium) -> Equilibrium:
     return replace(reached, status=Status.ITERATION_LIMIT)
 
 
+def _place(newton: Newton, node: Equilibrium, k: int) -> Place:
+    return traction(newton.model, node.state, node.system, k).place
+
+
 def _curves(newton: Newton, held: Held, nodes: list[Equilibrium]) -> Array:
     """Arc positions s and lengths A of the contacts in their held places and at equilibria, shape (2, contacts, 1 + nodes)."""
-    here = [[traction(newton.model, node.state, node.system, k).place for node in nodes] for k in held]
-    trails = [[place, *own] for place, own in zip(held.values(), here, strict=True)]
+    trails = [[place, *(_place(newton, node, k) for node in nodes)] for k, place in held.items()]
     points = np.array([[(place.arc, place.stretch) for place in trail] for trail in trails])
     return np.moveaxis(points, -1, 0)
 
@@ -116,13 +118,11 @@ def _corrected(newton: Newton, held: Held, node: Equilibrium, areas: Array) -> E
         (k, _shifted(newton.model.pairs[k], place, area))
         for (k, place), area in zip(held.items(), areas.tolist(), strict=True)
     )
-    state = with_grips(node.state, tuple((k, Grip(0, place)) for k, place in places))
-    system = newton.assembler.linearise(state)
-    solved = newton.assembler.solve(system)
+    held_there = newton.at(node, with_grips(node.state, tuple((k, Grip(0, place)) for k, place in places)))
+    solved = newton.assembler.solve(held_there.system)
     if solved is None:
         return node
-    state = newton.update(state, solved[:, 0], system, residual=True)
-    return replace(node, state=state, system=newton.assembler.linearise(state))
+    return newton.at(node, newton.update(held_there.state, solved[:, 0], held_there.system, residual=True))
 
 
 def _anchored(newton: Newton, held: Held, node: Equilibrium) -> Equilibrium:
@@ -130,15 +130,10 @@ def _anchored(newton: Newton, held: Held, node: Equilibrium) -> Equilibrium:
     places = []
     for k, grip in grips(node.state):
         if k in held and grip.held is not None:
-            pair, there, here = (
-                newton.model.pairs[k],
-                grip.held,
-                traction(newton.model, node.state, node.system, k).place,
-            )
+            pair, there, here = newton.model.pairs[k], grip.held, _place(newton, node, k)
             left = (here.stretch + there.stretch) / 2 * (here.arc - there.arc)
             left += pair.lever * (here.shear - there.shear) + pair.roll * unwind(
                 here.direction - there.direction
             )
             places.append((k, Grip(0, _shifted(pair, here, -left))))
-    state = with_grips(node.state, tuple(places))
-    return replace(node, state=state, system=newton.assembler.linearise(state))
+    return newton.at(node, with_grips(node.state, tuple(places)))

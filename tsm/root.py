@@ -18,30 +18,37 @@ def find_root(
     small: float,
     apart: float,
 ) -> Answer | None:
-    """Find where a function changes its sign, by false position (Illinois) with a bisection every third time.
+    """Find where a function changes its sign, by inverse quadratic interpolation or bisection (Chandrupatla 1997).
 
-    ``evaluate``: value of the function at an argument, with any data that belong to it; None where the
-    function has no value. ``before, after``: argument and value on both sides of the root; the values have
-    opposite signs. ``small``: absolute value that counts as zero. ``apart``: width of the bracket at which
-    the search ends for a function that jumps. Returns the data from `evaluate` at the root, or just past a
-    jump;
-    None where `evaluate` returned None.
+    ``evaluate``: value of the function, and data that belong to it; None where it has no value. ``before, after``:
+    argument and value on both sides of the root, of opposite signs. ``small``: absolute value that counts as zero.
+    ``apart``: width of the bracket at which the search ends for a function that jumps. Returns the data at the root,
+    or just past a jump; None where the function has no value.
     """
-    (t0, y0), (t1, y1) = before, after
-    sign = 1.0 if y0 > 0 else -1.0
+    (other, g), (last, f) = before, after  # the root lies between them
+    sign = 1.0 if g > 0 else -1.0
     past: Answer | None = None
-    for count in range(_EVALUATIONS):
-        t = (t0 + t1) / 2 if count % 3 == 2 else t0 + (t1 - t0) * y0 / (y0 - y1)
-        sample = evaluate(t)
+    part = f / (f - g)
+    for _ in range(_EVALUATIONS):
+        least = min(apart / 2 / abs(other - last), 0.5)
+        at = last + min(max(part, least), 1 - least) * (other - last)
+        sample = evaluate(at)
         if sample is None:
             return None
-        y, answer = sample
-        if abs(y) <= small:
+        value, answer = sample
+        if abs(value) <= small:
             return answer
-        if sign * y > 0:
-            t0, y0, y1 = t, y, y1 / 2
+        if sign * value < 0:
+            past = answer
+        if (value > 0) == (f > 0):
+            third, h = last, f
         else:
-            t1, y1, y0, past = t, y, y0 / 2, answer
-        if abs(t1 - t0) < apart and past is not None:
+            third, h, other, g = other, g, last, f
+        last, f = at, value
+        if abs(last - other) < apart and past is not None:
             return past
+        x, y = (last - other) / (third - other), (f - g) / (h - g)
+        part = 1 / 2
+        if y**2 < x and (1 - y) ** 2 < 1 - x:
+            part = f / (g - f) * h / (g - h) + (third - last) / (other - last) * f / (h - f) * g / (h - g)
     return past

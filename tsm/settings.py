@@ -23,12 +23,6 @@ class Settings:
     integration_tolerance : float
         Bound on the estimated integration error inside exact elements: the largest error of positions over the longest beam, of
         angles, and of forces over ``EI/L^2``.
-    smallest_step : float
-        Floor of the load step, as a part of the whole load.
-    max_attempts : int
-        Largest number of load steps, with refused ones, between two prescribed load parameters.
-    max_chatter : int
-        Contact events allowed at one load parameter, per contact pair.
     branch : {"stop", "stable", "primary"}
         Continuation at a critical point. With ``stop`` the path ends there, with the kind of the point as status. With ``stable`` it
         turns to the stable branch of least energy. With ``primary`` it goes on along the unstable branch, if there is one.
@@ -37,19 +31,14 @@ class Settings:
     tolerance: float = 1e-10
     max_iterations: int = 25
     integration_tolerance: float = 1e-9
-    smallest_step: float = 1e-12
-    max_attempts: int = 1000
-    max_chatter: int = 6
     branch: Literal["stop", "stable", "primary"] = "stop"
 
     def __post_init__(self) -> None:
-        for field, least in (("tolerance", 0.0), ("integration_tolerance", 1e-14), ("smallest_step", 0.0)):
+        for field, least in (("tolerance", 0.0), ("integration_tolerance", 1e-14)):
             value = getattr(self, field)
             if not (math.isfinite(value) and least < value < 1):
                 raise ValueError(f"Settings.{field} = {value!r}: must lie between {least:g} and 1")
-        for field in ("max_iterations", "max_attempts", "max_chatter"):
-            value = getattr(self, field)
-            if value < 1:
-                raise ValueError(f"Settings.{field} = {value!r}: must be at least 1")
+        if self.max_iterations < 1:
+            raise ValueError(f"Settings.max_iterations = {self.max_iterations!r}: must be at least 1")
         if self.branch not in BRANCHES:
             raise ValueError(f"Settings.branch = {self.branch!r}: must be one of {', '.join(BRANCHES)}")

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from tsm.elements import ELEMENTS, Integrated
 from tsm.elements.properties import Array
-from tsm.memory import check_memory
+from tsm.follow import Follower
 from tsm.model import Model
 from tsm.result import Result, collect
 from tsm.settings import Settings
 from tsm.status import Status
 from tsm.step import Step
-from tsm.stepping import Stepper
 from tsm.structure import Structure
+
+_MEMORY = 0.8
+"""Part of the machine's memory that a solution may take."""
+CLOSED, EXACT_ONE, BORDER = 500, 2100, 50
+"""Measured memory of one accepted load parameter [byte]: for an element in closed form, for an exact element, and for
+each pair of an element and a contact unknown, since these couple with all other unknowns in dense columns."""
 
 
 class SolveError(RuntimeError):
@@ -50,7 +57,7 @@ def march(structure: Structure, load_parameters: Array, settings: Settings | Non
         If the load parameters do not increase in this range, or a node starts behind the surface it touches.
     """
     targets = checked(load_parameters, structure.stages)
-    yield from Stepper(Model(structure), settings or Settings()).march(targets)
+    yield from Follower(Model(structure), settings or Settings()).march(targets)
 
 
 def solve(
@@ -99,11 +106,11 @@ def solve(
     '0.002288 N'
     """
     targets = checked(load_parameters, structure.stages)
-    check_memory(structure, len(targets))
+    _check_memory(structure, len(targets))
     begin = time.perf_counter()
     model = Model(structure)
     steps = []
-    for step in Stepper(model, settings or Settings()).march(targets):
+    for step in Follower(model, settings or Settings()).march(targets):
         steps.append(step)
         if watch is not None:
             watch(step)
@@ -123,3 +130,21 @@ def checked(load_parameters: Array, stages: int) -> Array:
     if not (ok and targets[0] > 0 and targets[-1] <= stages and bool((np.diff(targets) > 0).all())):
         raise ValueError(f"load_parameters = {load_parameters!r}: must increase within (0, {stages}]")
     return targets
+
+
+def _check_memory(structure: Structure, load_parameters: int) -> None:
+    """Raise a ValueError unless the solution, with one more load parameter that is being solved, fits into the machine."""
+    kinds = {beam.name: ELEMENTS[beam.element] for beam in structure.beams}
+    elements = sum(beam.elements for beam in structure.beams)
+    own = sum(
+        beam.elements * (EXACT_ONE if isinstance(kinds[beam.name], Integrated) else CLOSED)
+        for beam in structure.beams
+    )
+    unknowns = sum(kinds[pair.beam].contact_unknowns for pair in structure.contacts)
+    needed = (load_parameters + 1) * (own + BORDER * unknowns * elements + 8 * unknowns**2)
+    there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    if needed > _MEMORY * there:
+        raise ValueError(
+            f"load_parameters = {load_parameters}: with {elements} elements and {len(structure.contacts)} contacts needs "
+            f"{needed / 1e9:.3g} GB, more than {_MEMORY:.0%} of the memory here ({there / 1e9:.3g} GB)"
+        )

@@ -12,7 +12,7 @@ closed contacts admit has ``negatives(K) - m`` negative eigenvalues (Haynsworth 
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -33,25 +33,6 @@ _TURNS = 4
 """Number of iterations for the null vectors."""
 UNDEFINED = -1
 """Index of an equilibrium for which no index is defined."""
-
-
-class Mode(NamedTuple):
-    """Softest direction at a critical point.
-
-    Attributes
-    ----------
-    x : ndarray, shape (equations + contact unknowns,)
-        Change of the unknowns, the largest one 1 in lengths of the longest beam, radians and ``EI/L^2``.
-    softness : float
-        Smallest singular value of the tangent in the same units, 0 at the critical point.
-    driven : float
-        Share of the load rate that works on the mode, ``|psi . rate| / (|psi| |rate|)`` with the left null vector psi: about 0 at a
-        bifurcation, not at a limit point.
-    """
-
-    x: Array
-    softness: float
-    driven: float
 
 
 def index(assembler: Assembler, state: State, system: Linearisation) -> int:
@@ -115,12 +96,12 @@ def _freed(symmetric: Symmetric, idle: list[int]) -> Symmetric:
     return symmetric._replace(right=right, corner=corner)
 
 
-def mode(assembler: Assembler, state: State, system: Linearisation) -> Mode | None:
-    """Null vector of a tangent near a critical point, and the share of the load that drives it.
+def mode(assembler: Assembler, state: State, system: Linearisation) -> tuple[Array, float] | None:
+    """Null vector of a tangent near a critical point, and the smallest singular value, which is 0 there.
 
-    A column and a row are added to the tangent, which makes it regular. They converge to the null vectors (Govaerts 2000).
-
-    None where the tangent has two null vectors at once, or numbers that are not finite.
+    The units are longest beams, radians and ``EI/L^2``; in them the vector is 1 at most. A column and a row are added to
+    the tangent, which makes it regular. They converge to the null vectors (Govaerts 2000). None where the tangent has two
+    null vectors at once, or numbers that are not finite.
     """
     from scipy.sparse.linalg import splu
 
@@ -139,10 +120,7 @@ def mode(assembler: Assembler, state: State, system: Linearisation) -> Mode | No
         if not (np.isfinite(x).all() and np.isfinite(left).all()):
             return None
         x, left = x / np.linalg.norm(x), left / np.linalg.norm(left)
-    rate = assembler.rate(system) * rows
-    driven = abs(float(left @ rate)) / (float(np.linalg.norm(rate)) or 1.0)
-    largest = x[np.abs(x).argmax()]
-    return Mode(x=x / largest * columns, softness=abs(float(soft)), driven=driven)
+    return x / x[np.abs(x).argmax()] * columns, abs(float(soft))
 
 
 def loose(assembler: Assembler, state: State, system: Linearisation) -> bool:
@@ -152,7 +130,7 @@ def loose(assembler: Assembler, state: State, system: Linearisation) -> bool:
         return True
     columns, rows = _units(assembler, state)
     plain = assembler.whole(system.tangent).multiply(rows[:, None]).multiply(columns)
-    return soft.softness <= _LOOSE * float(np.finfo(float).eps) * float(abs(plain).max())
+    return soft[1] <= _LOOSE * float(np.finfo(float).eps) * float(abs(plain).max())
 
 
 def _units(assembler: Assembler, state: State) -> tuple[Array, Array]:

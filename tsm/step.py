@@ -1,21 +1,43 @@
-"""Accepted steps, and the log of the march between two of them."""
+"""Accepted steps, the log of the march between two of them, and the length of the next one."""
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from tsm.critical import CriticalPoint
 from tsm.elements.properties import Array
-from tsm.events import Event, EventKind
+from tsm.ends import clearance
+from tsm.events import Event, EventKind, normal_force
+from tsm.margins import Margin, applied
+from tsm.model import Model
 from tsm.newton import Equilibrium
-from tsm.pairs import PairModel
-from tsm.state import Touch
+from tsm.path import FOLLOWED, Point
+from tsm.state import State
 from tsm.status import Status
 
+NEAR = 1e-9
+"""Distance in the load parameter below which a corner of a pin's path coincides with a prescribed load parameter."""
+SMALLEST = 1e-12
+"""Floor of the load step, as a part of the whole load."""
+_SAFE = 0.8
+"""Safety factor: next step over the step that the tangents would still allow."""
+_SHORTEST = 0.1
+"""Shortest part of a refused step that is tried next."""
+_NAMED = {
+    Status.NOT_FINITE,
+    Status.SINGULAR_TANGENT,
+    Status.INACCURATE,
+    Status.TWO_CONTACTS,
+    Status.PING_PONG,
+    Status.JAMMED,
+}
+"""Failures that are reported by their own status instead of the general status of a step at its floor."""
 
-@dataclass(frozen=True, kw_only=True)
+
+@dataclass(kw_only=True)
 class Step:
     """An accepted step, or the end of the march.
 
@@ -31,9 +53,9 @@ class Step:
         Newton iterations spent since the step before, failed attempts and location of events included.
     cutbacks : int
         Attempts given up since the step before.
-    events : tuple of Event
+    events : list of Event
         Contact events since the step before.
-    critical : tuple of CriticalPoint
+    critical : list of CriticalPoint
         Critical points since the step before.
     index : int
         Index of the equilibrium, see `tsm.stability`.
@@ -42,63 +64,104 @@ class Step:
     """
 
     equilibrium: Equilibrium
-    requested: bool
-    status: Status
-    iterations: int
-    cutbacks: int
-    events: tuple[Event, ...]
-    critical: tuple[CriticalPoint, ...] = ()
-    index: int = -1
-    spent: Array = field(default_factory=lambda: np.zeros(0))
-
-
-@dataclass(kw_only=True)
-class StepLog:
-    """Events, iterations and cut-backs since the last yielded step, and what was spent since the start; attributes as in `Step`."""
-
+    requested: bool = True
+    status: Status = Status.CONVERGED
     iterations: int = 0
     cutbacks: int = 0
     events: list[Event] = field(default_factory=list)
     critical: list[CriticalPoint] = field(default_factory=list)
+    index: int = -1
     spent: Array = field(default_factory=lambda: np.zeros(0))
 
-    def note(
-        self, kind: EventKind, load_parameter: float, pair: PairModel, touch: Touch, force: float
-    ) -> None:
-        """Record an event of a closed contact, with the force before the event."""
+    def note(self, kind: EventKind, point: Point, state: State, k: int) -> None:
+        """Record an event of a contact that is closed in a state, with its force at a point."""
+        pair, touch = point.model.pairs[k], state.touches[k]
+        assert touch is not None, "the contact is closed"
+        pushes = kind is not EventKind.TOUCH and point.state.touches[k] is not None
         self.events.append(
             Event(
                 kind=kind,
-                load_parameter=load_parameter,
+                load_parameter=state.load_parameter,
                 pair=pair.pair.name,
                 element=touch.element - pair.target.first,
                 arc_position=pair.arc_position(touch),
-                force=force,
+                force=normal_force(point.model, point.equilibrium, k) if pushes else 0.0,
             )
         )
 
-    def note_release(self, released: float) -> None:
-        """Record the released energy of a jump with the slip-off that caused it, the last one in the log."""
-        n = max(n for n, event in enumerate(self.events) if event.kind is EventKind.SLIP_OFF)
-        self.events[n] = replace(self.events[n], released=released)
+    def applied(self, point: Point, state: State, margin: Margin, *, alone: bool = True) -> State | Status:
+        """State after an event at a point, which is recorded, or why the path ends there; `alone` if no contact takes over."""
+        after, k = applied(point, state, margin, alone=alone), margin.pair
+        closed = after if margin.kind is EventKind.TOUCH and isinstance(after, State) else state
+        if closed.touches[k] is not None:
+            self.note(margin.kind, point, closed, k)
+        return after
 
-    def hand_on(
-        self, equilibrium: Equilibrium, requested: bool, status: Status, index: int, stage: int
-    ) -> Step:
-        """Return the step of a stage that ends here, and start anew."""
-        if stage > 1:
-            self.events = [replace(event, stage=stage) for event in self.events]
-        step = Step(
-            equilibrium=equilibrium,
-            requested=requested,
-            status=status,
-            iterations=self.iterations,
-            cutbacks=self.cutbacks,
-            events=tuple(self.events),
-            critical=tuple(self.critical),
-            index=index,
-            spent=self.spent.copy(),
+    def note_end(self, model: Model, state: State, k: int) -> Status:
+        """Record that pair k meets an end, or the side that it does not touch, where the path ends."""
+        self.events.append(
+            Event(
+                kind=EventKind.END_CONTACT,
+                load_parameter=state.load_parameter,
+                pair=model.pairs[k].pair.name,
+                arc_position=clearance(model, state, k).arc,
+            )
         )
-        self.iterations = self.cutbacks = 0
-        self.events, self.critical = [], []
-        return step
+        return Status.END_CONTACT
+
+    def release(self, kind: EventKind, energy: float) -> None:
+        """Record the energy released in a fall with the last event of a kind, which caused it."""
+        n = max(n for n, event in enumerate(self.events) if event.kind is kind)
+        self.events[n] = replace(self.events[n], released=energy)
+
+
+def ends(load_parameters: list[float], turns: tuple[float, ...], begin: float) -> list[float]:
+    """Load parameters at which a step must end: the prescribed ones, and the turns of pin paths after `begin` before the last of them.
+
+    A turn near a prescribed one is left out, unless a stage begins there.
+    """
+    ahead = turns[bisect_right(turns, begin + NEAR) : bisect_left(turns, load_parameters[-1])]
+    places = [bisect_left(load_parameters, turn - NEAR) for turn in ahead]
+    apart = [t for t, n in zip(ahead, places, strict=True) if load_parameters[n] > t + NEAR]
+    begins = [t for t in ahead if t == round(t) and t not in load_parameters]
+    return sorted({*load_parameters, *apart, *begins})
+
+
+def allowed(unexplained: float) -> float:
+    """Return the fraction of a step that its tangents would explain; `unexplained` is the fraction that they do not explain."""
+    return _SAFE * FOLLOWED / max(unexplained, 1e-9)
+
+
+class StepControl:
+    """Length of the next load step: it grows while the path is followed, and is cut back where an attempt fails."""
+
+    def __init__(self) -> None:
+        self.step, self.failure, self.part = (
+            1.0,
+            Status.CONVERGED,
+            1 / 2,
+        )  # why the last attempt failed, and what to try next
+
+    def fail(self, status: Status, part: float = 1 / 2) -> Status:
+        """Give up an attempt; the fraction `part` of its step is tried next."""
+        self.failure, self.part = status, min(max(part, _SHORTEST), 1 / 2)
+        return status
+
+    def refuse(self, part: float = 1 / 2) -> Status:
+        """Give up a step that is too long, whatever was found at its end."""
+        return self.fail(Status.ITERATION_LIMIT, part)
+
+    def cut_back(self, left: float) -> bool:
+        """Shorten the step, of which `left` was tried at most; return whether it is at its floor."""
+        self.step = min(self.step, left) * self.part
+        return self.step < SMALLEST
+
+    def grow(self, taken: float, fitting: float) -> None:
+        """Lengthen the step after one that was taken and could have been `fitting` times as long."""
+        self.step = min(max(min(2.0, fitting) * taken, self.step if fitting >= 1 else 0.0), 1.0)
+
+    def verdict(self, folds: bool) -> Status:
+        """Status that explains why no step succeeds; `folds` if the speed of the path shows a limit point."""
+        if self.failure in _NAMED:
+            return self.failure
+        return Status.LIMIT_POINT if folds else Status.CUTBACK_FLOOR
