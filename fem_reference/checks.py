@@ -1,7 +1,7 @@
 """Checks of input data. An error message is one line with owner, field, value and rule."""
 
 from collections.abc import Iterable
-from math import isfinite
+from math import inf, isfinite
 
 Point = tuple[float, float]
 
@@ -17,9 +17,11 @@ def require_positive(owner: str, field: str, value: float) -> None:
     require(isfinite(value) and value > 0, owner, field, value, "must be positive and finite")
 
 
-def require_point(owner: str, field: str, value: Point) -> None:
-    """Require two finite numbers."""
-    require(len(value) == 2 and all(map(isfinite, value)), owner, field, value, "must be two finite numbers")
+def require_finite(owner: str, field: str, value: tuple[float, ...], count: int, least: float = -inf) -> None:
+    """Require ``count`` finite numbers, none below ``least``."""
+    fits = len(value) == count and all(isfinite(part) and part >= least for part in value)
+    rule = f"must be {('one', 'two', 'three')[count - 1]} finite number" + "s" * (count > 1)
+    require(fits, owner, field, value, rule + (", none negative" if least == 0 else ""))
 
 
 def require_choice(owner: str, field: str, value: object, options: tuple[object, ...]) -> None:

@@ -169,24 +169,22 @@ def _fractions(n: int, grading: float) -> Floats:
     return points if grading != 1.0 else np.linspace(0.0, 1.0, n + 1)
 
 
-def edge_weights(element: str, along: Floats) -> Floats:
-    """Nodal shares ``integral N ds / length`` ``(r,)`` of a uniform traction on an edge; ``along`` are the nodes' coordinates."""
-    pattern, step = ((1 / 2, 1 / 2), 1) if element == "Q1" else ((1 / 6, 4 / 6, 1 / 6), 2)
-    weights = np.zeros(along.size)
+def edge_weights(element: str, along: Floats, traction: Floats | None = None) -> Floats:
+    """Nodal shares ``integral N p ds / length`` ``(r,)`` of a traction p on an edge; ``along`` are the nodes' coordinates.
+
+    ``traction`` is linear along the edge, ``(r,)`` at its nodes; 1 if not given.
+    """
+    p = np.ones_like(along) if traction is None else traction
+    mass = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6 if element == "Q1" else _MASS
+    step, weights = len(mass) - 1, np.zeros(along.size)
     for j in range(0, along.size - step, step):
-        weights[j : j + step + 1] += np.array(pattern) * (along[j + step] - along[j])
+        part = slice(j, j + step + 1)
+        weights[part] += (along[j + step] - along[j]) * mass @ p[part]
     return np.asarray(weights / (along[-1] - along[0]))
 
 
-def edge_moments(element: str, along: Floats) -> Floats:
-    """Nodal shares ``integral N s ds / length`` ``(r,)`` of a traction proportional to the edge's coordinate s, ``along``."""
-    pattern, step = ((1 / 2, 1 / 2), 1) if element == "Q1" else ((1 / 6, 4 / 6, 1 / 6), 2)
-    moments = np.zeros(along.size)
-    for j in range(0, along.size - step, step):
-        side, middle = along[j + step] - along[j], (along[j + step] + along[j]) / 2
-        moments[j : j + step + 1] += np.array(pattern) * side * middle
-        moments[[j, j + step]] += np.array([-1, 1]) * side**2 / 12
-    return np.asarray(moments / (along[-1] - along[0]))
+_MASS = np.array([[4.0, 2.0, -1.0], [2.0, 16.0, 2.0], [-1.0, 2.0, 4.0]]) / 30
+"""Integrals of the products of two quadratic shape functions of a unit edge."""
 
 
 def _points(basis: Any) -> Points:

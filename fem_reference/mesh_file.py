@@ -11,8 +11,8 @@ from scipy.sparse import coo_matrix, csr_matrix, kron
 from scipy.sparse.csgraph import connected_components
 
 from fem_reference.arrays import Array, Floats, Ints
-from fem_reference.mesh import EDGES, Discretisation, from_basis, scalar_basis
-from fem_reference.sampling import SECTION_LAYERS, sample_basis, section_points
+from fem_reference.mesh import EDGES, Discretisation, edge_weights, from_basis, scalar_basis
+from fem_reference.sampling import sample_basis, section_points
 from fem_reference.strip import Strip
 
 _ROUND_OFF = 1e-9
@@ -52,7 +52,7 @@ def read_mesh(strip: Strip) -> Discretisation:
         raise ValueError(f"Strip({strip.name!r}).mesh_file = {strip.mesh_file!r}: {error}") from None
     nodes = basis.doflocs.T
     stations = nodes[edges["right"], 0]
-    return from_basis(strip, basis, edges, stations, _sections(basis, nodes, edges, stations))
+    return from_basis(strip, basis, edges, stations, _sections(strip, basis, edges, stations))
 
 
 def _contents(path: Path) -> tuple[Floats, Ints, dict[str, Ints]]:
@@ -255,9 +255,13 @@ def _check_position(strip: Strip, nodes: Floats, edges: dict[str, Ints]) -> None
             raise MeshError(f'the edge "{name}" must reach from y = {-h / 2:g} to {h / 2:g}')
 
 
-def _sections(basis: Any, nodes: Floats, edges: dict[str, Ints], stations: Floats) -> csr_matrix:
-    """Weights ``(m, n)`` of the nodes in the section means, by Gauss rules over the height."""
-    points, shares, _ = section_points(nodes, edges, stations, SECTION_LAYERS)
+def _sections(strip: Strip, basis: Any, edges: dict[str, Ints], stations: Floats) -> csr_matrix:
+    """Weights ``(m, n)`` of the nodes in the section means, by Gauss rules over the height; exact ones at the ends."""
+    nodes = basis.doflocs.T
+    points, shares, _ = section_points(strip, nodes, edges, stations)
     sampled = sample_basis(basis, basis.element_dofs.T, points)
-    means = kron(np.eye(stations.size), shares[None], format="csr")
-    return csr_matrix(means @ sampled.rows(len(nodes)))
+    means = (kron(np.eye(stations.size), shares[None], format="csr") @ sampled.rows(len(nodes))).tolil()
+    for row, end in ((0, "start"), (-1, "end")):
+        means[row] = 0.0
+        means[row, edges[end]] = edge_weights(strip.element, nodes[edges[end], 1])
+    return csr_matrix(means)

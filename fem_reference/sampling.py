@@ -7,6 +7,7 @@ from scipy.sparse import csr_matrix
 
 from fem_reference.arrays import Array, Floats, Ints
 from fem_reference.mesh import Discretisation
+from fem_reference.strip import Strip
 
 SECTION_LAYERS = 8
 """Layers of Gauss points over the height by which a section of a user's mesh is integrated."""
@@ -57,13 +58,13 @@ def sample_basis(basis: object, cells: Ints, points: Floats) -> Sample:
 
 
 def section_points(
-    nodes: Floats, edges: dict[str, Ints], stations: Floats, layers: int
+    strip: Strip, nodes: Floats, edges: dict[str, Ints], stations: Floats
 ) -> tuple[Floats, Floats, Floats]:
-    """Three-point Gauss rules in equal layers of the sections at ``stations`` ``(m,)``.
+    """Points, shares that sum to one, and heights of the sections at ``stations`` ``(m,)``, section after section.
 
-    Returns ``points``, Gauss points, section after section [m]; ``shares``, weights of the points of a
-    section; they sum to one; ``heights``, distances of the two faces [m].
+    Three-point Gauss rules in the rows of elements, or in equal layers of a user's mesh.
     """
+    layers = strip.mesh[1] if strip.mesh_file is None else SECTION_LAYERS
     low, high = (np.interp(stations, *nodes[edges[name]].T) for name in ("right", "left"))
     points, weights = np.polynomial.legendre.leggauss(3)
     fractions = (np.arange(layers)[:, None] + (1 + points) / 2).ravel() / layers

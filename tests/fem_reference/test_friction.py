@@ -127,7 +127,7 @@ def test_strip_rolls_on_a_round_pin_that_sticks():
     result, contact = rubbed(0.5, n, radius=radius, mesh=(30, 1), surface="face")
     stuck = np.flatnonzero(contact.direction == 0)
     assert stuck.size > 10
-    at = [result.states[k].touches[0].projection for k in stuck]
+    at = [result.states[k].touches[0].at for k in stuck]
     zeta, stretch = contact.arc_position[stuck], np.array([one.stretch for one in at])
     angle = np.array([np.arctan2(*one.tangent[::-1]) for one in at])
     rolled = (stretch[1:] + stretch[:-1]) / 2 * np.diff(zeta) + radius * np.diff(angle)

@@ -51,10 +51,10 @@ REFUSED = {
         "strip": ["beam"],
         "node": ["nail", "cantilever.end"],
     },
-    (loaded, r"EndLoad\('.*'\)"): {
+    (loaded, r"PointLoad\('.*'\)"): {
         "strip": ["nobody"],
         "force": [(0.0, 0.0)],
-        "end": ["start"],
+        "at": [0.0, 1.1],
         "stage": [-1],
     },
     (support, r"Support\('.*'\)"): {
@@ -63,7 +63,7 @@ REFUSED = {
     },
     (spring, r"Spring\('.*'\)"): {"stiffness": [(-1.0, 0.0, 0.0)]},
     (line, r"LineLoad\('s'\)"): {"force": [((0.0, 0.0),)], "part": [(0.5, 0.5)]},
-    (point, r"PointLoad\('s'\)"): {"at": [1.0], "force": [(0.0, 0.0)]},
+    (point, r"PointLoad\('s'\)"): {"at": [-0.1], "force": [(0.0, 0.0)]},
     (joint, r"Joint\(\(.*\)\)"): {
         "ends": [("a.end",), ("a.end", "a.end")],
         "hinged": [("c.end",), ("a.end",)],
