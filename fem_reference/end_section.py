@@ -22,7 +22,7 @@ from scipy.sparse import csr_matrix, kron
 from fem_reference.arrays import Floats
 from fem_reference.contact import Carrier
 from fem_reference.mesh import Discretisation, edge_weights
-from fem_reference.sampling import sample, section_points
+from fem_reference.sampling import section_points
 from fem_reference.stages import amount
 from fem_reference.strip import Strip
 
@@ -124,8 +124,7 @@ def inner_rows(strip: Strip, mesh: Discretisation, at: float) -> tuple[csr_matri
     y = points[:, 1]
     moments = shares * (y - shares @ y)
     moments = moments * (strip.length / (moments @ y))
-    rows = csr_matrix(np.stack([shares, moments])) @ sample(mesh, points).rows(len(mesh.nodes))
-    return rows, float(heights[0])
+    return csr_matrix(np.stack([shares, moments]) @ mesh.basis.probes(points.T)), float(heights[0])
 
 
 def anchor(strip: Strip, mesh: Discretisation, expansion: csr_matrix, end: str) -> csr_matrix:

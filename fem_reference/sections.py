@@ -7,7 +7,7 @@ import numpy as np
 from fem_reference.arrays import Floats
 from fem_reference.body import Body
 from fem_reference.result import Result
-from fem_reference.sampling import sample, section_points
+from fem_reference.sampling import gradient_at, section_points
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -62,13 +62,12 @@ def section_forces(result: Result, strip: str, k: int, stations: Floats | None =
     points, shares, heights = section_points(body.strip, body.mesh.places, body.mesh.edges, X)
     weights = (body.strip.width_at(X) * heights)[:, None] * shares
     u = result.states[k].u[body.part]
-    sampled = sample(body.mesh, points)
-    F = sampled.deformation_gradient(u)
+    F = gradient_at(body.mesh, u, points)
     P = body.law.stress(F)
     N, _ = body.strip.directions(points[:, 0])
     traction = P[:, 0] * N[0] + P[:, 1] * N[1]
     eshelby = (traction * (F[:, 0] * N[0] + F[:, 1] * N[1])).sum(axis=0) - body.law.energy(F)
-    x = body.strip.placed(points) + sampled.rows(len(u)) @ u
+    x = body.strip.placed(points) + body.mesh.basis.probes(points.T) @ u
     shape = (X.size, -1)
     p = traction.T.reshape(*shape, 2)
     mean = (weights[:, :, None] * x.reshape(*shape, 2)).sum(axis=1) / weights.sum(axis=1)[:, None]
@@ -121,6 +120,6 @@ def face_strains(result: Result, strip: str, k: int) -> tuple[Floats, dict[str, 
         tangent, normal = body.strip.directions(X)
         T = ((1 - body.strip.curvature * y) * along * tangent + across * normal).T
         T = T / np.hypot(*T.T)[:, None]
-        F = sample(body.mesh, np.stack([X, y], axis=1)).deformation_gradient(result.states[k].u[body.part])
+        F = gradient_at(body.mesh, result.states[k].u[body.part], np.stack([X, y], axis=1))
         strains[name] = np.hypot(*np.einsum("ijp,pj->ip", F, T)) - 1
     return X, strains

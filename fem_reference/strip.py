@@ -63,10 +63,8 @@ class Strip:
     element
         ``"Q2"``: biquadratic with two Gauss points along the strip and three across. ``"Q2-full"``: biquadratic with
         three by three Gauss points. ``"Q1"``: bilinear; elements that are longer than high lock in bending.
-    grading
-        Length ratio of the last element along the axis to the first.
     mesh_file
-        File with a mesh of quadrilaterals in the strip's frame, which replaces ``mesh`` and ``grading``; see
+        File with a mesh of quadrilaterals in the strip's frame, which replaces ``mesh``; see
         `fem_reference.mesh_file.read_mesh`.
     material
         A key of `fem_reference.material.MATERIALS`.
@@ -93,7 +91,6 @@ class Strip:
     clamp: str = "rod"
     mesh: tuple[int, int] = (50, 2)
     element: str = "Q2"
-    grading: float = 1.0
     mesh_file: str | None = None
     material: str = "st-venant-kirchhoff"
     plane: str = "stress"
@@ -109,7 +106,7 @@ class Strip:
         require(given or not self.turn, owner, "turn", self.turn, "must be zero with a mesh file")
         rule = "must be None with a mesh file, which has the strip's shape"
         require(given or self.end_height is None, owner, "end_height", self.end_height, rule)
-        for field in ("height", "width", "youngs_modulus", "grading", "end_height", "end_width"):
+        for field in ("height", "width", "youngs_modulus", "end_height", "end_width"):
             if getattr(self, field) is not None:
                 require_positive(owner, field, getattr(self, field))
         nu, mesh = self.poissons_ratio, self.mesh

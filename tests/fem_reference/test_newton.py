@@ -109,7 +109,7 @@ def rubbed(direction):
 
 CASES = {
     f"{material}-{element}": lambda material=material, element=element: noisy(
-        held(clamped=("start",), mesh=(4, 3), height=0.3, material=material, element=element, grading=2.0)
+        held(clamped=("start",), mesh=(4, 3), height=0.3, material=material, element=element)
     )
     for material, element in zip(fr.MATERIALS, fr.ELEMENTS, strict=True)
 } | {
