@@ -1,5 +1,6 @@
 """A strip as a discrete solid in the strip's frame: elements, material law and clamps."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,7 @@ from fem_reference.assembly import (
     pattern,
 )
 from fem_reference.end_section import anchor
-from fem_reference.factor import Factor, factorise
+from fem_reference.factor import Factor, factorise, full
 from fem_reference.material import Law, elastic_law
 from fem_reference.mesh import Discretisation, structured_mesh
 from fem_reference.strip import Strip
@@ -37,6 +38,7 @@ class Body:
     # band of springs on the start's section, ``(width + 1, m)``, which make the factorised matrix of a strip without a
     # clamp regular; `fem_reference.system` takes their stiffness away in the section's columns
     anchor: Floats | None
+    offset: Floats  # start ``(2,)`` from that of the first strip, so that a distant scene loses no digits [m]
     round_off: float  # round-off of a nodal force [N], see `force_round_off`
 
     def middle(self, end: str) -> Floats:
@@ -49,7 +51,7 @@ class Body:
 
     def tangent(self, u: Floats) -> csc_matrix:
         """Tangent stiffness over the unknowns."""
-        return self.stiffness.matrix(element_entries(self.mesh, self.law.tangent, u))
+        return full(self.stiffness.band(element_entries(self.mesh, self.law.tangent, u)))
 
     def factorised(self, u: Floats) -> Factor | None:
         """Factorised tangent stiffness with the anchor; None if it is singular or not finite."""
@@ -78,14 +80,15 @@ def discretise(strip: Strip) -> Discretisation:
     return read_mesh(strip)
 
 
-def build_body(strip: Strip, last: Body | None = None) -> Body:
-    """Discretise a strip and its clamps; its nodes and unknowns follow those of the ``last`` body."""
+def build_body(strip: Strip, before: Sequence[Body] = ()) -> Body:
+    """Discretise a strip and its clamps; its nodes and unknowns follow those of the bodies ``before``."""
     mesh = discretise(strip)
     expansion = clamp(strip, mesh)
     springs = None if strip.clamped else anchor(strip, mesh, expansion, ANCHORED)
     stiffness = pattern(mesh, expansion, springs)
     law = elastic_law(strip.material, strip.youngs_modulus, strip.poissons_ratio, strip.plane)
-    n, m = (last.part.stop, last.unknowns.stop) if last else (0, 0)
+    first = before[0].strip if before else strip
+    n, m = (before[-1].part.stop, before[-1].unknowns.stop) if before else (0, 0)
     return Body(
         strip=strip,
         mesh=mesh,
@@ -95,6 +98,7 @@ def build_body(strip: Strip, last: Body | None = None) -> Body:
         expansion=expansion,
         stiffness=stiffness,
         anchor=None if springs is None else stiffness.band_of(springs),
+        offset=np.array(strip.start) - np.array(first.start),
         round_off=force_round_off(strip, mesh, law),
     )
 

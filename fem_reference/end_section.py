@@ -37,6 +37,8 @@ class EndSection:
     """An end section of the discrete model, or a section inside a strip that bears a moment."""
 
     node: str  # name of the end, ``"strip.end"``, or of the section inside, ``"strip at 0.5"``
+    strip: str  # name of the strip
+    arc: float  # axial coordinate of a section with a moment [m]; nan for others
     carrier: Carrier  # mean position, relative to the model's origin, and first moment m
     height: float  # height of the section [m]
     anchor_stiffness: float  # stiffness of the anchor's springs at this end; zero without an anchor [N/m]

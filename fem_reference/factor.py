@@ -52,13 +52,11 @@ def factorise(band: Floats) -> Factor | None:
 
 def _indefinite(band: Floats) -> Factor | None:
     """Factorise a symmetric matrix that is not positive definite; None if it is singular."""
-    width, m = len(band) - 1, band.shape[1]
-    lower = [entries[: m - k] for k, entries in enumerate(band)]
-    matrix = csc_matrix(diags([*lower[:0:-1], *lower], [*range(width, 0, -1), *range(0, -width - 1, -1)]))
+    matrix = full(band)
     symmetric = _superlu(matrix, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     accurate = symmetric is not None and bool((symmetric.perm_r == symmetric.perm_c).all())
     if symmetric is not None and accurate:
-        rows = np.abs(symmetric.L) @ (np.abs(symmetric.U) @ np.ones(m))
+        rows = np.abs(symmetric.L) @ (np.abs(symmetric.U) @ np.ones(band.shape[1]))
         accurate = bool(rows.max() <= _GROWTH * np.abs(matrix).sum(axis=1).max())
     lu = symmetric if accurate else _superlu(matrix)
     if lu is None:
@@ -67,7 +65,15 @@ def _indefinite(band: Floats) -> Factor | None:
         half=lambda right: right,
         rest=lambda half: np.asarray(lu.solve(np.ascontiguousarray(half))),
         product=lambda a, b: np.asarray(a.T @ lu.solve(np.ascontiguousarray(b))),
-        negatives=lambda: int((lu.U.diagonal() < 0).sum()) if accurate else count_negatives(band),
+        negatives=lambda: int((lu.U.diagonal() < 0).sum()) if accurate else _count_negatives(band),
+    )
+
+
+def full(band: Floats) -> csc_matrix:
+    """Symmetric matrix ``(m, m)`` from its lower band storage."""
+    lower = [entries[: band.shape[1] - k] for k, entries in enumerate(band)]
+    return csc_matrix(
+        diags([*lower[:0:-1], *lower], [*range(len(lower) - 1, 0, -1), *range(0, -len(lower), -1)])
     )
 
 
@@ -79,7 +85,7 @@ def _superlu(matrix: csc_matrix, **options: object) -> SuperLU | None:
         return None
 
 
-def count_negatives(band: Floats) -> int:
+def _count_negatives(band: Floats) -> int:
     """Count the negative eigenvalues of a matrix in lower band storage ``(width + 1, m)`` by computing them."""
     bound = 2 * band.shape[0] * float(np.abs(band).max())
     return int(eigvals_banded(band, lower=True, select="v", select_range=(-bound, 0.0)).size)

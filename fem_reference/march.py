@@ -300,7 +300,7 @@ def after_slip(before: State, goal: float, number: int) -> Attempt | None:
         return None
     strip = lost.pair.strips[0]
     body = model.bodies[strip]
-    tied = any(model.sections[tie.section].node.split(".")[0] == body.strip.name for tie in model.ties)
+    tied = any(model.sections[tie.section].strip == body.strip.name for tie in model.ties)
     held = any(touch.pair.strips[0] == strip and touch is not lost for touch in before.closed)
     free, u = not (held or tied), before.u.copy()
     if free:

@@ -106,7 +106,7 @@ def build(problem: SolidProblem, settings: Settings | None = None) -> Model:
     """Discretise a problem."""
     bodies = list[Body]()
     for strip in problem.strips:
-        bodies.append(build_body(strip, bodies[-1] if bodies else None))
+        bodies.append(build_body(strip, bodies))
     discrete = _Discrete(problem, bodies)
     sections = tuple(discrete.sections())
     numbers = {section.node: number for number, section in enumerate(sections)}
@@ -142,7 +142,6 @@ class _Discrete:
     def __init__(self, problem: SolidProblem, bodies: list[Body]) -> None:
         self.problem, self.bodies = problem, bodies
         self.numbers = {strip.name: number for number, strip in enumerate(problem.strips)}
-        self.origin = np.array(problem.strips[0].start)
         self.joined = {end for joint in problem.joints for end in joint.ends}
 
     def carrier(self, body: Body, rows: csr_matrix) -> Carrier:
@@ -153,10 +152,10 @@ class _Discrete:
             (placed.data, (placed.row, columns)), shape=(rows.shape[0], self.bodies[-1].part.stop)
         )
         # the weights of a first moment sum to zero
-        shift = np.outer(np.round(rows.sum(axis=1), 9), np.array(strip.start) - self.origin)
-        return Carrier(
-            reference=(rows @ body.mesh.nodes) @ strip.frame.T + shift, rows=everywhere, frame=strip.frame
+        reference = (rows @ body.mesh.nodes) @ strip.frame.T + np.outer(
+            np.round(rows.sum(axis=1), 9), body.offset
         )
+        return Carrier(reference=reference, rows=everywhere, frame=strip.frame)
 
     def sections(self) -> Iterator[EndSection]:
         """End sections that are supported, joined, anchored or loaded by a moment, and sections inside that are loaded by one."""
@@ -177,7 +176,15 @@ class _Discrete:
             for node, (rows, height) in found.items():
                 stiffness = anchor_stiffness(strip) if node == anchored else 0.0
                 carrier = self.carrier(body, rows)
-                yield EndSection(node=node, carrier=carrier, height=height, anchor_stiffness=stiffness)
+                arc = bent[node].at * strip.length if node in bent else np.nan
+                yield EndSection(
+                    node=node,
+                    strip=strip.name,
+                    arc=arc,
+                    carrier=carrier,
+                    height=height,
+                    anchor_stiffness=stiffness,
+                )
 
     def pair(self, contact: Contact) -> Pair:
         """Build a contact pair."""
@@ -206,7 +213,7 @@ class _Discrete:
                 for end in ENDS
                 if meets and f"{contact.strip}.{end}" not in self.joined
             },
-            origin=self.origin,
+            origin=np.array(self.problem.strips[0].start),
         )
 
 

@@ -2,11 +2,9 @@
 
 import numpy as np
 
-from fem_reference.arrays import Floats
+from fem_reference.arrays import Floats, Ints
 from fem_reference.assembly import deformation_gradient
 from fem_reference.body import Body
-from fem_reference.loads import PointLoad
-from fem_reference.model import Model
 from fem_reference.result import Result
 from fem_reference.state import State, stored_energy
 
@@ -19,34 +17,29 @@ def section_means(state: State, strip: str) -> Floats:
 
 def axis_line(result: Result, strip: str, k: int) -> Floats:
     """Section means ``(m, 2)`` from start to end at the accepted load parameter ``k``, in the global frame [m]."""
-    model, state = result.model, result.states[k]
-    arcs, numbers = _bent_sections(model, strip)
-    origin = np.array(model.problem.strips[0].start)
-    means = np.reshape([origin + state.poses[i].position for i in numbers], (-1, 2))
-    before = np.searchsorted(model.body(strip).mesh.stations, arcs)
+    state = result.states[k]
+    before, bent = _bent_sections(result, strip)
+    origin = np.array(result.model.problem.strips[0].start)
+    means = np.reshape([origin + state.poses[number].position for _, number in bent], (-1, 2))
     return np.insert(section_means(state, strip), before, means, axis=0)
 
 
 def axis_stations(result: Result, strip: str) -> Floats:
     """Undeformed axial coordinates ``(m,)`` of the points in `axis_line` [m]: the mesh's sections, and those inside that bear a moment."""
-    stations = result.model.body(strip).mesh.stations
-    arcs, _ = _bent_sections(result.model, strip)
-    return np.insert(stations, np.searchsorted(stations, arcs), arcs)
+    before, bent = _bent_sections(result, strip)
+    return np.insert(result.model.body(strip).mesh.stations, before, [arc for arc, _ in bent])
 
 
-def _bent_sections(model: Model, strip: str) -> tuple[list[float], list[int]]:
-    """Axial coordinates, increasing, and numbers of the sections inside a strip that bear a moment between two sections of its mesh."""
-    body = model.body(strip)
-    numbers = {section.node: number for number, section in enumerate(model.sections)}
-    bent = {
-        load.node: load.at
-        for load in model.problem.loads
-        if isinstance(load, PointLoad) and load.moment and load.strip == strip
-    }
-    found = sorted((at * body.strip.length, numbers[node]) for node, at in bent.items())
-    apart = 1e-9 * body.strip.length
-    between = [item for item in found if np.abs(body.mesh.stations - item[0]).min() > apart]
-    return [arc for arc, _ in between], [number for _, number in between]
+def _bent_sections(result: Result, strip: str) -> tuple[Ints, list[tuple[float, int]]]:
+    """Places among the mesh's sections, coordinates and numbers of the sections that bear a moment between two of them."""
+    body = result.model.body(strip)
+    stations, apart = body.mesh.stations, 1e-9 * body.strip.length
+    bent = sorted(
+        (section.arc, number)
+        for number, section in enumerate(result.model.sections)
+        if section.strip == strip and np.abs(stations - section.arc).min() > apart
+    )
+    return np.searchsorted(stations, [arc for arc, _ in bent]), bent
 
 
 def nodal_stress(result: Result, k: int) -> Floats:

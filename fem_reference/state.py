@@ -10,6 +10,7 @@ from fem_reference.contact import Touch
 from fem_reference.end_section import ROTATION, Pose
 from fem_reference.friction import slip_residual
 from fem_reference.model import Model
+from fem_reference.problem import Pin
 from fem_reference.stages import amount
 
 
@@ -136,22 +137,8 @@ def at_rest(model: Model, t: float = 0.0) -> State:
     return build_state(model, u, t, tuple(touches), np.zeros(len(model.ties)))
 
 
-Reaction = tuple[Floats, float]
-"""Force ``(2,)`` on a strip in the global frame [N], and moment about the supported point [N m]."""
-
-
-def spring_forces(state: State) -> dict[str, Reaction]:
-    """Forces and moments of the springs to the ground by end. They act at the mean of the section."""
-    return _tie_reactions(state, [item.node for item in state.model.problem.springs], grounded=True)
-
-
-def _tie_reactions(state: State, nodes: list[str], *, grounded: bool) -> dict[str, Reaction]:
-    """Sums of the ties' forces at the ends ``nodes`` that a support or, if ``grounded``, a spring holds."""
-    found = {node: np.zeros(3) for node in nodes}
-    for tie, value in zip(state.model.ties, state.tie_forces, strict=True):
-        if tie.other is None and tie.grounded == grounded:
-            found[state.model.sections[tie.section].node][tie.component] = value
-    return {node: (values[:2], float(values[ROTATION])) for node, values in found.items()}
+Reaction = tuple[Floats, float, Floats]
+"""Force ``(2,)`` on a strip in the global frame [N], moment about the held point [N m], and the place of this point ``(2,)`` [m]."""
 
 
 def reactions(state: State) -> dict[str, Reaction]:
@@ -159,12 +146,31 @@ def reactions(state: State) -> dict[str, Reaction]:
     found = dict[str, Reaction]()
     for body in state.model.bodies:
         for end in body.strip.clamped:
-            edge = body.mesh.edges[end]
+            edge, frame, middle = body.mesh.edges[end], body.strip.frame, body.middle(end)
             forces = state.residual[body.part][edge]
-            arm = body.mesh.nodes[edge] + state.u[body.part][edge] - body.middle(end)
-            found[f"{body.strip.name}.{end}"] = body.strip.frame @ forces.sum(axis=0), moment(arm, forces)
-    nodes = [support.node for support in state.model.problem.supports]
-    return found | _tie_reactions(state, nodes, grounded=False)
+            turning = moment(body.mesh.nodes[edge] + state.u[body.part][edge] - middle, forces)
+            found[f"{body.strip.name}.{end}"] = (
+                frame @ forces.sum(axis=0),
+                turning,
+                body.offset + frame @ middle,
+            )
+    return found | _tie_reactions(state, grounded=False)
+
+
+def spring_forces(state: State) -> dict[str, Reaction]:
+    """Forces and moments of the springs to the ground by end. They act at the mean of the section."""
+    return _tie_reactions(state, grounded=True)
+
+
+def _tie_reactions(state: State, *, grounded: bool) -> dict[str, Reaction]:
+    """Sums of the ties' forces at the ends that a support or, if ``grounded``, a spring holds."""
+    forces, places = dict[str, Floats](), dict[str, Floats]()
+    for tie, value in zip(state.model.ties, state.tie_forces, strict=True):
+        if tie.other is None and tie.grounded == grounded:
+            node = state.model.sections[tie.section].node
+            forces.setdefault(node, np.zeros(3))[tie.component] = value
+            places[node] = state.poses[tie.section].position
+    return {node: (found[:2], float(found[ROTATION]), places[node]) for node, found in forces.items()}
 
 
 def imbalance(state: State) -> float:
@@ -173,23 +179,17 @@ def imbalance(state: State) -> float:
     External are the reactions of clamps, supports and springs, the forces of the pins and the dead loads. Moments refer to the start
     of the first strip and are divided by the length of the longest one.
     """
-    model, origin = state.model, np.array(state.model.problem.strips[0].start)
+    model, nodal = state.model, amount(state.model.loads, state.t)
     total, turning = np.zeros(2), float(amount(model.moments, state.t).sum())
-    nodal = amount(model.loads, state.t)
-    places = {item.node: pose.position for item, pose in zip(model.sections, state.poses, strict=True)}
     for body in model.bodies:
-        strip = body.strip
-        start = np.array(strip.start) - origin
-        loads = nodal[body.part] @ strip.frame.T
+        loads = nodal[body.part] @ body.strip.frame.T
         total += loads.sum(axis=0)
-        turning += moment(start + (body.mesh.nodes + state.u[body.part]) @ strip.frame.T, loads)
-        for end in strip.clamped:
-            places[f"{strip.name}.{end}"] = start + strip.frame @ body.middle(end)
-    for node, (force, free_moment) in (*reactions(state).items(), *spring_forces(state).items()):
+        turning += moment(body.offset + (body.mesh.nodes + state.u[body.part]) @ body.strip.frame.T, loads)
+    for force, free_moment, place in (*reactions(state).values(), *spring_forces(state).values()):
         total += force
-        turning += free_moment + moment(places[node], force)
+        turning += free_moment + moment(place, force)
     for touch in state.closed:
-        if len(touch.pair.strips) == 1:
+        if isinstance(touch.pair.node, Pin):
             total += touch.vector
             turning += moment(touch.pair.position(state.u, state.t), touch.vector)
         turning += touch.tangential * touch.at.distance  # T acts on the touched curve, not at the node

@@ -195,26 +195,19 @@ class Tangent:
     def _count(self, chosen: NDArray[np.bool_]) -> int:
         """Index with the contacts ``chosen`` among the closed ones.
 
-        The Hessian is the Schur complement of a bordered matrix with K in the upper left and a diagonal D in the lower right.
-        With the spectral decomposition ``-A = sum m v v^T``, each term borders K by the column ``sqrt |m| U v`` with the
-        diagonal entry ``-sign m``. A constraint's column has the diagonal entry -C. By Haynsworth's theorem the index is
-        ``negatives(K) + negatives(D - U^T K^-1 U) - negatives(D)``, where -C counts as negative even if it is zero.
+        The Hessian is the Schur complement of a matrix over du, its part ``y = U^T du`` in the columns with the multiplier z, and the
+        forces of the constraints. By Haynsworth's theorem the other complement S counts its negative eigenvalues, one for every multiplier.
         """
-        negatives, border = sum(factor.negatives() for factor in self.factors), self.border
-        if not len(border.A):
-            return negatives
-        kept = np.append(chosen, np.ones(border.N.shape[1] - chosen.size, dtype=bool))
-        A = border.A.copy()
-        for place in compress(border.contacts, ~chosen):
+        A, N = self.border.A.copy(), self.border.N
+        kept = np.append(chosen, np.ones(N.shape[1] - chosen.size, dtype=bool))
+        for place in compress(self.border.contacts, ~chosen):
             A[place] = 0.0
-        values, vectors = np.linalg.eigh(-A)
-        signs = np.where(values > 0, -1.0, 1.0)
-        T = np.hstack([border.N[:, kept], vectors * np.sqrt(np.abs(values))])
-        D = np.concatenate([-np.diag(border.rates)[kept], signs])
-        S = np.diag(D) - T.T @ self.W @ T
-        scale = 1 / np.sqrt(np.maximum(np.abs(S).max(axis=0), np.finfo(float).tiny))
-        eigenvalues = np.linalg.eigvalsh(scale[:, None] * (S + S.T) / 2 * scale)
-        return negatives + int((eigenvalues < 0).sum()) - int(kept.sum()) - int((signs < 0).sum())
+        N, C = N[:, kept], self.border.rates[np.ix_(kept, kept)]
+        (k, c), one = N.shape, np.eye(len(A))
+        S = np.block([[-A, one, -N], [one, -self.W, np.zeros((k, c))], [-N.T, np.zeros((c, k)), -C]])
+        scale = 1 / np.sqrt(np.maximum(np.abs(S).max(axis=0, initial=0.0), np.finfo(float).tiny))
+        negatives = int((np.linalg.eigvalsh(scale[:, None] * (S + S.T) / 2 * scale) < 0).sum())
+        return negatives + sum(factor.negatives() for factor in self.factors) - int(k + c)
 
 
 def pin_motion(touch: Touch, before: float, after: float) -> Floats:
