@@ -51,17 +51,8 @@ class CriticalPoint:
     mode: dict[str, Floats]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Located:
-    """A critical point with the nearest accepted state and the null vector ``(n, 2)``."""
-
-    point: CriticalPoint
-    near: Accepted
-    vector: Floats
-
-
-def bifurcation(a: Accepted, b: Accepted) -> Located | None:
-    """Locate a bifurcation between two states with different indices; None if they are on different branches.
+def bifurcation(a: Accepted, b: Accepted) -> Accepted | None:
+    """State at a bifurcation between two states with different indices; None if they are on different branches.
 
     The root of the eigenvalue nearest to zero. Where it has one sign at both states, no eigenvalue passes zero between them,
     and where it does not vanish at the root, the branch changes there.
@@ -77,10 +68,8 @@ def bifurcation(a: Accepted, b: Accepted) -> Located | None:
     found = root(evaluate, (a.t, abs(ends[0]), a), b.t, _LOCATED * (b.t - a.t))
     assert found is not None, "the eigenvalue has the other sign at the end"
     near = found[1]
-    least, vector = smallest_eigenpair(near)
-    if abs(least) > _VANISHING * max(map(abs, ends)):
-        return None
-    return Located(point=_point(near, BIFURCATION, vector), near=near, vector=vector)
+    vanished = abs(smallest_eigenpair(near)[0]) <= _VANISHING * max(map(abs, ends))
+    return near if vanished else None
 
 
 def _between(a: Accepted, b: Accepted, t: float) -> Accepted | None:
@@ -102,7 +91,7 @@ def displacement_tolerance(state: State) -> float:
     return 10 * state.model.settings.tolerance * state.model.length
 
 
-def limit_point(a: Accepted, step: float) -> Located | None:
+def limit_point(a: Accepted, step: float) -> CriticalPoint | None:
     """Search for a maximum of the load parameter beyond a state, starting with ``step``; None without one nearby.
 
     The path is continued by displacement control: the displacement along the last rate is prescribed,
@@ -138,10 +127,9 @@ def limit_point(a: Accepted, step: float) -> Located | None:
     near = None if found is None else accept(found[1])
     if near is None:
         return None
-    vector = smallest_eigenpair(near)[1]
     # At a bifurcation the load and thus the rate have no component along the null vector.
-    limit = abs(float(np.sum(vector * c))) > 0.5
-    return Located(point=_point(near, LIMIT, vector), near=near, vector=vector) if limit else None
+    limit = abs(float(np.sum(smallest_eigenpair(near)[1] * c))) > 0.5
+    return critical_point(near, LIMIT) if limit else None
 
 
 def opening_limit(a: Accepted) -> CriticalPoint | None:
@@ -159,7 +147,7 @@ def opening_limit(a: Accepted) -> CriticalPoint | None:
         touches[number] = touch.opened()
         free = accept(a.state.touching(touches))
         if free is not None and free.index > max(a.index, 0):
-            return _point(free, LIMIT, smallest_eigenpair(free)[1])
+            return critical_point(free, LIMIT)
     return None
 
 
@@ -209,8 +197,9 @@ def smallest_eigenpair(at: Accepted) -> tuple[float, Floats]:
     return value, vector / np.linalg.norm(vector)
 
 
-def _point(near: Accepted, kind: str, vector: Floats) -> CriticalPoint:
-    """Return a critical point with the mode of the section means."""
+def critical_point(near: Accepted, kind: str) -> CriticalPoint:
+    """Return a critical point at a state, with the mode of the section means."""
+    vector = smallest_eigenpair(near)[1]
     mode = {
         body.strip.name: (body.mesh.sections @ vector[body.part]) @ body.strip.frame.T
         for body in near.state.model.bodies
@@ -221,42 +210,43 @@ def _point(near: Accepted, kind: str, vector: Floats) -> CriticalPoint:
     return CriticalPoint(kind=kind, load_parameter=near.t, mode=scaled)
 
 
-def stable_branch(located: Located, limit: float) -> Accepted | None:
+def stable_branch(near: Accepted, limit: float) -> Accepted | None:
     """State on a stable branch from a bifurcation, at a load parameter below ``limit``; None without one.
 
     Equilibrium is sought at prescribed amplitudes of the mode, with both signs and successively halved. Of two stable
     branches the one with lower energy at a common load parameter is returned; with equal energies, the one on which the strips
-    turn to the left, see `_side`.
+    turn to the left.
     """
-    near, entries = located.near, list[Accepted]()
-    unit = _side(located) * located.vector / np.sqrt(np.mean(located.vector**2))
+    entries, vector, state = list[Accepted](), smallest_eigenpair(near)[1], near.state
+    unit = _side(state, vector) * vector / np.sqrt(np.mean(vector**2))
     for sign in (1.0, -1.0):
         for halvings in range(_MAX_ITERATIONS // 4):
-            offset = sign * _FIRST_AMPLITUDE * near.state.model.length / 2**halvings * unit
+            offset = sign * _FIRST_AMPLITUDE * state.model.length / 2**halvings * unit
             size = float(np.linalg.norm(offset))
-            guess = near.state.moved(near.state.u + offset, near.t)
-            state = _displacement_controlled(guess, near.state.u, offset / size, size)
-            entered = None if state is None else accept(state)
+            found = _displacement_controlled(
+                state.moved(state.u + offset, near.t), state.u, offset / size, size
+            )
+            entered = None if found is None else accept(found)
             if entered is not None and near.t < entered.t < limit and entered.index == 0:
                 entries.append(entered)
                 break
     if len(entries) == 2:
         common = max(entry.t for entry in entries)
         entries = [state_at(entry, common) or entry for entry in entries]
-        energies = [potential(entry.state, near.state) for entry in entries]
-        margin = _EQUAL * max(map(abs, energies))
-        return entries[1] if energies[1] < energies[0] - margin else entries[0]
+        energies = [potential(entry.state, state) for entry in entries]
+        if energies[1] < energies[0] - _EQUAL * max(map(abs, energies)):
+            return entries[1]
     return entries[0] if entries else None
 
 
-def _side(located: Located) -> float:
+def _side(state: State, vector: Floats) -> float:
     """Sign with which the first displacement across a strip that is not small is to the left, strip by strip from start to end."""
-    left, state = [], located.near.state
+    left = []
     for body in state.model.bodies:
-        axis = body.mesh.sections @ (body.mesh.nodes + state.u[body.part])
-        moved = body.mesh.sections @ located.vector[body.part]
-        x, y = np.gradient(axis, axis=0).T
-        left.append((x * moved[:, 1] - y * moved[:, 0]) / np.hypot(x, y))
+        axis = body.mesh.sections @ (body.mesh.nodes + state.u[body.part]) @ (1, 1j)
+        moved = body.mesh.sections @ vector[body.part] @ (1, 1j)
+        along = np.gradient(axis)
+        left.append((along.conj() * moved).imag / np.abs(along))
     across = np.concatenate(left)
     first = np.argmax(np.abs(across) > _NOT_SMALL * np.abs(across).max())
     return 1.0 if across[first] >= 0 else -1.0

@@ -5,6 +5,7 @@ radius of its pin; a point goes through it.
 """
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 
 from fem_reference.arrays import Floats
 from fem_reference.contact import Pair
@@ -74,23 +75,24 @@ def _overlap(pair: Pair, number: int, last: Accepted, candidate: Accepted) -> fl
     if before.touches[number].closed:
         return None
     span = after.t - before.t
-    first = span * last.rate(before.t, after.t).u
-    bend = np.zeros((2, *first.shape))
+    first = last.rate(before.t, after.t).u
+    end, final = before.u + span * first, first
     if before.contact_set == after.contact_set:
-        final, d = span * candidate.rate(before.t, after.t).u, after.u - before.u
-        bend = np.array([3 * d - 2 * first - final, first + final - 2 * d])
-    way = pair.position(before.u + first + bend.sum(axis=0), after.t) - pair.position(before.u, before.t)
-    moved = float(np.hypot(*way)) + float(np.abs(first).max(initial=0.0))
+        end, final = after.u, candidate.rate(before.t, after.t).u
+    path = CubicHermiteSpline([before.t, after.t], [before.u, end], [first, final])
+    moved = (
+        np.hypot(*(pair.position(end, after.t) - pair.position(before.u, before.t)))
+        + span * np.abs(first).max()
+    )
     size = pair.radius or pair.curve.stations[-1] / _PARTS
     count = int(np.clip(np.ceil(_PARTS * moved / size), 2, _SAMPLES))
     ahead = True
-    for part in np.linspace(0.0, 1.0, count + 1).tolist():
-        t = before.t + part * span
-        u = before.u + part * (first + part * (bend[0] + part * bend[1]))
+    for t in np.linspace(before.t, after.t, count + 1).tolist():
+        u = path(t)
         node = pair.position(u, t)
         was_ahead, ahead = ahead, 0 < room(pair, u, node, inside=True) < np.inf
         # the projection is dear, and decides only beside an end
-        if part == 0 or room(pair, u, node, inside=False) >= 0:
+        if t == before.t or room(pair, u, node, inside=False) >= 0:
             continue
         at = pair.project(u, t)
         if at.inside and not was_ahead and pair.gap(at) < 0:

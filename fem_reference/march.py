@@ -12,8 +12,10 @@ import numpy as np
 from fem_reference.arrays import Floats
 from fem_reference.contact import Touch
 from fem_reference.critical import (
+    BIFURCATION,
     CriticalPoint,
     bifurcation,
+    critical_point,
     displacement_tolerance,
     limit_point,
     opening_limit,
@@ -167,16 +169,23 @@ class _March:
 
     def bifurcate(self, candidate: Accepted, h: float) -> Status | None:
         """Continue on the branch of `Settings.branch` from a bifurcation before a state; return a status if the path ends there."""
-        found = bifurcation(self.last, candidate)
-        if found is None:
+        near = bifurcation(self.last, candidate)
+        if near is None:
             return self.shorten(h, Status.ANOTHER_BRANCH)
-        stable = stable_branch(found, candidate.t) if self.settings.branch == "stable" else None
-        if stable is None and self.settings.branch != "primary":
-            return self.end_critical(Status.BIFURCATION, found.point)
-        self.step.critical.append(found.point)
-        self.accept(stable or candidate, restart=stable is not None)
-        if stable is not None:
-            self.trial = stable.t - found.point.load_parameter
+        point, branch = critical_point(near, BIFURCATION), self.settings.branch
+        following = (
+            candidate
+            if branch == "primary"
+            else stable_branch(near, candidate.t)
+            if branch == "stable"
+            else None
+        )
+        if following is None:
+            return self.end_critical(Status.BIFURCATION, point)
+        self.step.critical.append(point)
+        self.accept(following, restart=following is not candidate)
+        if following is not candidate:
+            self.trial = following.t - near.t
         return None
 
     def accept(self, state: Accepted, *, restart: bool = False) -> None:
@@ -228,8 +237,8 @@ class _March:
         if not at_floor and self.failures % _SEARCH_INTERVAL and not self.approaches_fold():
             return None
         found = limit_point(last, max(self.trial, min_step))
-        if found is not None and last.t <= found.point.load_parameter <= target:
-            return self.end_critical(Status.LIMIT_POINT, found.point)
+        if found is not None and last.t <= found.load_parameter <= target:
+            return self.end_critical(Status.LIMIT_POINT, found)
         return self.at_smallest_step(attempt, goal) if at_floor else None
 
     def approaches_fold(self) -> bool:
