@@ -40,10 +40,7 @@ class Pattern:
 
 
 def pattern(mesh: Discretisation, expansion: csr_matrix, added: csr_matrix | None = None) -> Pattern:
-    """Build the pattern of the stiffness over the unknowns of ``expansion`` ``(2 n, m)``, and of a matrix ``added`` ``(m, m)``.
-
-    A row of the expansion has at most one entry: a displacement is a multiple of one unknown, or zero.
-    """
+    """Pattern of the stiffness over the unknowns of an ``expansion`` with at most one entry a row, and of ``added``."""
     size = expansion.shape[1]
     given = expansion.tocoo()
     unknown, factor = np.full(expansion.shape[0], -1), np.zeros(expansion.shape[0])
@@ -72,10 +69,7 @@ def _entries(shapes: int) -> list[tuple[Ints, Ints]]:
 
 
 def deformation_gradient(mesh: Discretisation, u: Array, points: Points | None = None) -> Array:
-    """``F = I + du/dX`` at the quadrature points, ``(2, 2, e, q)``, from nodal displacements ``u`` ``(n, 2)``.
-
-    With ``points`` such as ``mesh.at_nodes``, F is evaluated there instead.
-    """
+    """``F = I + du/dX`` ``(2, 2, e, q)`` at the quadrature or other ``points`` from displacements ``u`` ``(n, 2)``."""
     at = mesh.gauss if points is None else points
     elements, shapes = mesh.cells.shape
     nodal = u.T.take(mesh.cells, axis=1)

@@ -52,11 +52,7 @@ class CriticalPoint:
 
 
 def bifurcation(a: Accepted, b: Accepted) -> Accepted | None:
-    """State at a bifurcation between two states with different indices; None if they are on different branches.
-
-    The root of the eigenvalue nearest to zero. Where it has one sign at both states, no eigenvalue passes zero between them,
-    and where it does not vanish at the root, the branch changes there.
-    """
+    """State at a bifurcation between two states with different indices; None if they are on different branches."""
     ends = [smallest_eigenpair(at)[0] for at in (a, b)]
     if not ends[0] * ends[1] < 0:
         return None
@@ -73,14 +69,12 @@ def bifurcation(a: Accepted, b: Accepted) -> Accepted | None:
 
 
 def _between(a: Accepted, b: Accepted, t: float) -> Accepted | None:
-    """Equilibrium between two states that departs little from their chord; None without one.
-
-    The tangents are unsuitable here: near a critical point their component along the null vector is round-off.
-    """
+    """Equilibrium between two states that departs little from their chord; None without one."""
     middle, model = state_at(a, t), a.state.model
     if middle is None or middle.state.contact_set != a.state.contact_set:
         return None
     d = b.state.u - a.state.u
+    # near a critical point the tangents are unsuitable: their component along the null vector is round-off
     off = middle.state.u - a.state.u - (t - a.t) / (b.t - a.t) * d
     allowed = model.settings.largest_departure * np.linalg.norm(d) + displacement_tolerance(a.state)
     return middle if np.linalg.norm(off) <= allowed else None
@@ -133,11 +127,7 @@ def limit_point(a: Accepted, step: float) -> CriticalPoint | None:
 
 
 def opening_limit(a: Accepted) -> CriticalPoint | None:
-    """Limit point at which a contact is about to open and leaves an unstable state; None without one.
-
-    No eigenvalue passes zero there: the contact that opens sets a displacement free. The mode is the unstable mode without
-    this contact.
-    """
+    """Limit point at which a contact opens, sets a displacement free and leaves an unstable state; None without one."""
     step = a.state.model.settings.min_step
     forces = iter(a.rate(a.t, a.t + step).forces)
     for number, touch in enumerate(a.state.touches):
@@ -152,11 +142,7 @@ def opening_limit(a: Accepted) -> CriticalPoint | None:
 
 
 def _displacement_controlled(guess: State, origin: Floats, c: Floats, delta: float) -> State | None:
-    """Equilibrium with ``c . (u - origin) = delta`` and the contact set of the guess.
-
-    Newton's method with the load parameter as an additional unknown. None if it does not converge, if the set of closed
-    contacts would change, or if a contact leaves its strip.
-    """
+    """Equilibrium with ``c . (u - origin) = delta``, an unknown t, and the contact set of the guess; None without one."""
     state, settings = guess, guess.model.settings
     for _ in range(settings.max_iterations):
         status = converged(state).status
@@ -253,10 +239,7 @@ def _side(state: State, vector: Floats) -> float:
 
 
 def potential(state: State, near: State) -> float:
-    """Total potential energy: strain energy, energy of contacts and springs, minus the work of the dead loads [J].
-
-    Dead moments do work on the rotation from the state ``near``, which is less than half a turn away.
-    """
+    """Total potential energy; dead moments work on the turn from the state ``near``, less than half a turn away [J]."""
     model, poses = state.model, zip(state.poses, near.poses, strict=True)
     turns = [
         np.remainder(pose.motion[2] - other.motion[2] + np.pi, 2 * np.pi) - np.pi for pose, other in poses

@@ -96,10 +96,7 @@ class ContactCurve:
 
 
 def cardinal_slopes(stations: Floats) -> csr_matrix:
-    """Slopes ``(m, m)`` at the stations of the not-a-knot splines that are one at one station and zero at all others.
-
-    They decrease from station to station by the factor 0.27, at worst 0.5. In windows, work and memory are proportional to m.
-    """
+    """Slopes ``(m, m)`` at the stations of the not-a-knot splines that are one at one station and zero at the others."""
     m, entries = stations.size, list[tuple[Ints, Ints, Floats]]()
     for first in range(0, m, _WINDOW):
         low, last = max(0, first - _REACH), min(m, first + _WINDOW)

@@ -21,10 +21,7 @@ _BESIDE = 1e-6
 
 
 def room(pair: Pair, u: Floats, node: Floats, *, inside: bool) -> float:
-    """Least distance of the node's surface from the free ends; negative where they overlap, infinite beside the strip.
-
-    ``node`` is its position ``(2,)`` [m], and ``inside`` tells whether a point of the contact curve is closest to it.
-    """
+    """Least distance of the node's surface from the free ends; negative where they overlap, infinite beside the strip."""
     beyond, behind = list[float](), list[float]()
     for end, corners in pair.ends.items():
         first, last = corners.points(u)
@@ -67,10 +64,7 @@ def end_contact(last: Accepted, candidate: Accepted) -> tuple[Accepted, int] | N
 
 
 def _overlap(pair: Pair, number: int, last: Accepted, candidate: Accepted) -> float | None:
-    """First load parameter in a step at which an open contact's node is over an end.
-
-    The displacements between the states are Hermite's polynomial; where contacts change, they go on at their rate from the first state.
-    """
+    """First load parameter in a step at which an open contact's node is over an end."""
     before, after = last.state, candidate.state
     if before.touches[number].closed:
         return None

@@ -142,10 +142,7 @@ def _rest(last: Accepted, candidate: Accepted, pair: int) -> Event | None:
 
 
 def clearance(state: State) -> tuple[float, int]:
-    """Least clearance ``1 - R kappa`` of a closed contact with a round pin, positive where the strip is less curved, and its index.
-
-    ``kappa = s n . r'' / |r'|^2`` is the curvature of the contact curve towards the pin on the side s.
-    """
+    """Least clearance ``1 - R kappa`` of a closed contact with a round pin, positive before they touch along a line, and its index."""
     found = [
         (1.0 - touch.pair.radius * touch.pair.contact.sign * touch.at.bend / touch.at.stretch**2, number)
         for number, touch in enumerate(state.touches)

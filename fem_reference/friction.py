@@ -108,8 +108,5 @@ def settled(touch: Touch) -> Touch:
 
 
 def force_before_slip(direction: int, force: float, last: float) -> float:
-    """Tangential force at which a slip began since a state with the force ``last`` [N].
-
-    It is that force, or the present one where the contact has turned in between: it slips only after that.
-    """
+    """Force at which a slip began since a state with the force ``last``; behind a turn in between, the present one [N]."""
     return force if direction * last < 0 else last

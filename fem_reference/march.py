@@ -211,15 +211,13 @@ class _March:
         return None
 
     def line_contact(self, end: float) -> Status | None:
-        """End the path where the least clearance vanishes up to a load parameter; None if it does not.
-
-        Near this place only short steps converge, so that it is extrapolated along the tangent of the nearest state.
-        """
+        """End the path where the least clearance vanishes up to a load parameter; None if it does not."""
         last, h = self.last.state, self.settings.min_step
         at = located(self.last, end, lambda at: clearance(at.state)[0]) if clearance(last)[0] > 0 else None
         least, pair = clearance(last if at is None else at.state)
         if at is None or least > _TOUCHES_ALONG_A_LINE:
             return None
+        # only short steps converge near this place, so that it is extrapolated along the tangent
         ahead = at.state.moved(at.state.u + h * at.rate(at.t, at.t + h).u, at.t + h)
         fall = (least - clearance(ahead)[0]) / h
         self.end(Status.LINE_CONTACT, at, pair)
@@ -286,10 +284,7 @@ def _start(model: Model) -> State:
 
 
 def slipped_off(before: State, attempt: Attempt) -> int | None:
-    """Contact that an attempt lost over an end which its node had reached in the state before; None without one.
-
-    An attempt that diverges may lose a contact anywhere.
-    """
+    """Contact that an attempt lost over an end which its node had reached before; one that diverges may lose any."""
     if attempt.status is not Status.LOST_CONTACT or attempt.pair is None:
         return None
     touch = before.touches[attempt.pair]

@@ -167,10 +167,7 @@ def inverted(J: Floats) -> tuple[Floats, Floats]:
 
 
 def edge_weights(element: str, along: Floats, traction: Floats | None = None) -> Floats:
-    """Nodal shares ``integral N p ds / length`` ``(r,)`` of a traction p on an edge; ``along`` are the nodes' coordinates.
-
-    ``traction`` is linear along the edge, ``(r,)`` at its nodes; 1 if not given.
-    """
+    """Nodal shares ``integral N p ds / length`` ``(r,)`` of a linear ``traction`` p, or of p = 1, on an edge with nodes ``along``."""
     p = np.ones_like(along) if traction is None else traction
     mass = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6 if element == "Q1" else _MASS
     step, weights = len(mass) - 1, np.zeros(along.size)

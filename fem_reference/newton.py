@@ -165,10 +165,7 @@ def augmented(touch: Touch) -> Touch:
 
 
 def _verified(attempt: Attempt) -> Attempt:
-    """Check slip-off, penetration and global balance of a converged state, and arm or disarm its open contacts.
-
-    A node beyond an end on the far side has slipped round the end, and is armed again when it has returned to its side.
-    """
+    """Check slip-off, penetration and balance of a converged state, and arm or disarm its open contacts."""
     state, model, touches = attempt.state, attempt.state.model, list[Touch]()
     for number, touch in enumerate(state.touches):
         behind, inside = touch.gap < -model.length_round_off, touch.at.inside
@@ -176,6 +173,7 @@ def _verified(attempt: Attempt) -> Attempt:
             return replace(attempt, status=Status.LOST_CONTACT, pair=number)
         if touch.closed and -touch.gap > model.settings.max_penetration * touch.pair.length:
             return replace(attempt, status=Status.TOO_DEEP, pair=number)
+        # a node beyond an end on the far side has slipped round it, and is armed again when it is back on its side
         armed = touch.armed if touch.closed else not behind or (inside and touch.armed)
         touches.append(touch if armed == touch.armed else replace(touch, armed=armed))
     if imbalance(state) > _BALANCE * state.force_scale + model.balance_round_off:

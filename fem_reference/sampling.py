@@ -11,10 +11,7 @@ SECTION_LAYERS = 8
 
 
 def gradient_at(mesh: Discretisation, u: Floats, points: Floats) -> Floats:
-    """``F = I + du/dX`` ``(2, 2, p)`` at the places ``points`` ``(p, 2)``: axial coordinate and distance to the left of the axis.
-
-    Raises ValueError if a point is not in the strip.
-    """
+    """``F = I + du/dX`` ``(2, 2, p)`` at the places ``points`` ``(p, 2)``; ValueError where one is not in the strip."""
     containing = mesh.basis.mesh.element_finder()(*points.T)
     local = mesh.basis.mapping.invF(points.T[:, :, None], tind=containing)[:, :, 0]
     slopes, cells = shape_slopes(mesh.basis.elem, local), mesh.cells[containing]
@@ -25,10 +22,7 @@ def gradient_at(mesh: Discretisation, u: Floats, points: Floats) -> Floats:
 def section_points(
     strip: Strip, nodes: Floats, edges: dict[str, Ints], stations: Floats
 ) -> tuple[Floats, Floats, Floats]:
-    """Points, shares that sum to one, and heights of the sections at ``stations`` ``(m,)``, section after section.
-
-    Three-point Gauss rules in the rows of elements, or in equal layers of a user's mesh.
-    """
+    """Gauss points, shares that sum to one, and heights of the sections at ``stations`` ``(m,)``, section after section."""
     layers = strip.mesh[1] if strip.mesh_file is None else SECTION_LAYERS
     low, high = (np.interp(stations, *nodes[edges[name]].T) for name in ("right", "left"))
     points, weights = np.polynomial.legendre.leggauss(3)

@@ -88,10 +88,7 @@ class State:
 
     @property
     def force_scale(self) -> float:
-        """Force that tolerances refer to: the largest of contact and tie forces, dead loads and ``E I / L^2`` [N].
-
-        Moments count over the length of the longest strip.
-        """
+        """Largest of contact and tie forces, dead loads and ``E I / L^2``, to which tolerances refer; moments count over L [N]."""
         model, forces = self.model, np.abs(self.forces)
         turning = [tie.component == ROTATION for tie in model.ties]
         forces[forces.size - len(turning) :] /= np.where(turning, model.length, 1.0)

@@ -49,10 +49,7 @@ class Accepted:
         return self.rates[before, after]
 
     def slip_rates(self, pair: int, *, forward: bool) -> Floats:
-        """Rates of slip [m] and of tangential force [N] per load parameter of a closed contact ``(2,)``; nan if they are singular.
-
-        At a corner of a pin's path, the rates ``forward`` differ from those of the path before.
-        """
+        """Rates of slip [m] and tangential force [N] of a closed contact ``(2,)``, before a corner of a pin's path or ``forward``."""
         state, touch = self.state, self.state.touches[pair]
         before, after = (self.t, self.t + _INTERVAL) if forward else (self.t - _INTERVAL, self.t)
         rate = self.rate(before, after)
@@ -62,10 +59,7 @@ class Accepted:
 
 
 def accept(state: State, last: Accepted | None = None) -> Accepted | None:
-    """Linearise at a state, from which slip then counts; None if its tangent is singular.
-
-    Friction dissipates energy since the ``last`` accepted state, none without one.
-    """
+    """Linearise at a state, from which slip then counts; None if its tangent is singular. Energy is dissipated since ``last``."""
     if any(touch.begin for touch in state.touches):
         state = state.touching(tuple(map(settled, state.touches)))
     tangent = linearise(state)
@@ -144,10 +138,7 @@ def _size(u: Floats) -> float:
 
 
 def predict(states: tuple[Accepted, ...], t: float, degree: int) -> State:
-    """Extrapolate the last states to ``t`` by Hermite's polynomial, with the contact set of the last state.
-
-    Only states with this contact set are used, so that the degree may be lower than ``degree``.
-    """
+    """Extrapolate the last states that have the contact set of the last one to ``t`` by Hermite's polynomial."""
     last = states[-1].state
     same = [item for item in states[-TRACK_LENGTH:] if item.state.contact_set == last.contact_set]
     nodes, conditions = list[float](), list[Floats]()
