@@ -1,11 +1,11 @@
 """Critical points of a path, at which the energy's Hessian is singular, and branches that leave them."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from fem_reference.arrays import Floats
-from fem_reference.newton import converged, corrected, revised
+from fem_reference.newton import Control, displacement_tolerance, iterate, revised
 from fem_reference.stages import amount
 from fem_reference.state import State, stored_energy
 from fem_reference.status import Status
@@ -80,11 +80,6 @@ def _between(a: Accepted, b: Accepted, t: float) -> Accepted | None:
     return middle if np.linalg.norm(off) <= allowed else None
 
 
-def displacement_tolerance(state: State) -> float:
-    """Displacement [m] below which differences of two states are within Newton's tolerance."""
-    return 10 * state.model.settings.tolerance * state.model.length
-
-
 def limit_point(a: Accepted, step: float) -> CriticalPoint | None:
     """Search for a maximum of the load parameter beyond a state, starting with ``step``; None without one nearby.
 
@@ -99,7 +94,7 @@ def limit_point(a: Accepted, step: float) -> CriticalPoint | None:
     c = rate / size
 
     def evaluate(delta: float, near: State) -> tuple[float, State] | None:
-        state = _displacement_controlled(near, a.state.u, c, delta)
+        state = displacement_controlled(near, Control(origin=a.state.u, c=c, delta=delta))
         tangent = None if state is None else linearise(state)
         rate = (
             None
@@ -141,29 +136,12 @@ def opening_limit(a: Accepted) -> CriticalPoint | None:
     return None
 
 
-def _displacement_controlled(guess: State, origin: Floats, c: Floats, delta: float) -> State | None:
-    """Equilibrium with ``c . (u - origin) = delta``, an unknown t, and the contact set of the guess; None without one."""
-    state, settings = guess, guess.model.settings
-    for _ in range(settings.max_iterations):
-        status = converged(state).status
-        missing = delta - float(np.sum(c * (state.u - origin)))
-        if status is Status.CONVERGED and abs(missing) <= displacement_tolerance(state):
-            inside = all(touch.at.inside for touch in state.closed)
-            return state if inside and revised(state).contact_set == state.contact_set else None
-        if status not in (Status.CONVERGED, Status.ITERATION_LIMIT):
-            return None
-        tangent = linearise(state)
-        step = None if tangent is None else tangent.correction()
-        rate = None if tangent is None else tangent.rate(state.t, state.t + settings.min_step)
-        if step is None or rate is None:
-            return None
-        along = float(np.sum(c * rate.u))
-        dt = (missing - float(np.sum(c * step.u))) / along if along else np.inf
-        if not np.isfinite(dt):
-            return None
-        both = replace(step, u=step.u + dt * rate.u, forces=step.forces + dt * rate.forces)
-        state = corrected(state, both, dt=dt)
-    return None
+def displacement_controlled(guess: State, control: Control) -> State | None:
+    """Equilibrium at a prescribed displacement with the contact set of the guess, none of it off its strip; None without one."""
+    attempt = iterate(guess, control)
+    state = attempt.state
+    held = attempt.status is Status.CONVERGED and all(touch.at.inside for touch in state.closed)
+    return state if held and revised(state).contact_set == state.contact_set else None
 
 
 def smallest_eigenpair(at: Accepted) -> tuple[float, Floats]:
@@ -209,9 +187,8 @@ def stable_branch(near: Accepted, limit: float) -> Accepted | None:
         for halvings in range(_MAX_ITERATIONS // 4):
             offset = sign * _FIRST_AMPLITUDE * state.model.length / 2**halvings * unit
             size = float(np.linalg.norm(offset))
-            found = _displacement_controlled(
-                state.moved(state.u + offset, near.t), state.u, offset / size, size
-            )
+            control = Control(origin=state.u, c=offset / size, delta=size)
+            found = displacement_controlled(state.moved(state.u + offset, near.t), control)
             entered = None if found is None else accept(found)
             if entered is not None and near.t < entered.t < limit and entered.index == 0:
                 entries.append(entered)

@@ -16,7 +16,6 @@ from fem_reference.critical import (
     CriticalPoint,
     bifurcation,
     critical_point,
-    displacement_tolerance,
     limit_point,
     opening_limit,
     stable_branch,
@@ -25,7 +24,7 @@ from fem_reference.ends import end_contact
 from fem_reference.events import SLIP_OFF, ContactEvent, changes, clearance, contact_event, first_event
 from fem_reference.friction import slipping
 from fem_reference.model import Model
-from fem_reference.newton import Attempt, equilibrium
+from fem_reference.newton import Attempt, displacement_tolerance, equilibrium
 from fem_reference.state import State, at_rest
 from fem_reference.status import Status
 from fem_reference.track import ORDER, TRACK_LENGTH, Accepted, accept, departure, located, predict

@@ -4,12 +4,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fem_reference.arrays import Floats
 from fem_reference.contact import Touch
 from fem_reference.end_section import ROTATION
 from fem_reference.friction import mapped, slipping
 from fem_reference.state import State, imbalance
 from fem_reference.status import Status
-from fem_reference.system import Correction, linearise
+from fem_reference.system import Correction, Tangent, linearise
 
 _SMALLEST_DAMPING = 1 / 64
 """Least part of a correction that is taken."""
@@ -27,7 +28,30 @@ class Attempt:
     pair: int | None = None  # index of the contact that the status refers to, or None
 
 
-def iterate(state: State) -> Attempt:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Control:
+    """Displacement control ``c . (u - origin) = delta``, by which the load parameter is an unknown."""
+
+    origin: Floats  # displacements ``(n, 2)`` [m]
+    c: Floats  # unit vector ``(n, 2)``
+    delta: float  # displacement along it [m]
+
+    def missing(self, state: State) -> float:
+        """Displacement that is missing in a state [m]."""
+        return self.delta - float(np.sum(self.c * (state.u - self.origin)))
+
+    def completed(self, tangent: Tangent, correction: Correction) -> Correction | None:
+        """Correction with a change of the load parameter; None if it is not finite."""
+        t = tangent.state.t
+        rate = tangent.rate(t, t + tangent.state.model.settings.min_step)
+        along = 0.0 if rate is None else float(np.sum(self.c * rate.u))
+        dt = (self.missing(tangent.state) - float(np.sum(self.c * correction.u))) / along if along else np.inf
+        if rate is None or not np.isfinite(dt):
+            return None
+        return Correction(u=correction.u + dt * rate.u, forces=correction.forces + dt * rate.forces, t=dt)
+
+
+def iterate(state: State, control: Control | None = None) -> Attempt:
     """Iterate with a fixed set of closed contacts; never raises.
 
     If a correction is larger than the previous one by `Settings.largest_growth`, the previous step is repeated with half
@@ -37,10 +61,15 @@ def iterate(state: State) -> Attempt:
     base, last, damping = state, Correction(u=np.full((1, 2), np.inf), forces=np.zeros(0)), 1.0
     for iteration in range(settings.max_iterations + 1):
         attempt = converged(state)
+        done = control is None or abs(control.missing(state)) <= displacement_tolerance(state)
+        if attempt.status is Status.CONVERGED and not done:
+            attempt = replace(attempt, status=Status.ITERATION_LIMIT)
         if attempt.status is not Status.ITERATION_LIMIT or iteration == settings.max_iterations:
             break
         tangent = linearise(state)
         correction = None if tangent is None else tangent.correction()
+        if control is not None and tangent is not None and correction is not None:
+            correction = control.completed(tangent, correction)
         if correction is None:
             attempt = replace(attempt, status=Status.SINGULAR)
             break
@@ -52,10 +81,15 @@ def iterate(state: State) -> Attempt:
     return replace(attempt, iterations=iteration)
 
 
-def corrected(state: State, correction: Correction, damping: float = 1.0, dt: float = 0.0) -> State:
+def corrected(state: State, correction: Correction, damping: float = 1.0) -> State:
     """Return the state after ``damping`` times a correction."""
     u, forces = state.u + damping * correction.u, state.forces + damping * correction.forces
-    return state.moved(u, state.t + dt, forces)
+    return state.moved(u, state.t + damping * correction.t, forces)
+
+
+def displacement_tolerance(state: State) -> float:
+    """Displacement [m] below which differences of two states are within Newton's tolerance."""
+    return 10 * state.model.settings.tolerance * state.model.length
 
 
 def converged(state: State) -> Attempt:

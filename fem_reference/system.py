@@ -34,10 +34,11 @@ from fem_reference.state import State
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Correction:
-    """Changes of the displacements ``(n, 2)`` and of the forces ``(c,)`` of the constraints, see `State.forces`."""
+    """Change of a state."""
 
-    u: Floats
-    forces: Floats
+    u: Floats  # change of the displacements ``(n, 2)`` [m]
+    forces: Floats  # change of the forces of the constraints ``(c,)``, see `State.forces`
+    t: float = 0.0  # change of the load parameter
 
     @property
     def size(self) -> float:
@@ -205,7 +206,12 @@ class Tangent:
         N, C = N[:, kept], self.border.rates[np.ix_(kept, kept)]
         (k, c), one = N.shape, np.eye(len(A))
         S = np.block([[-A, one, -N], [one, -self.W, np.zeros((k, c))], [-N.T, np.zeros((c, k)), -C]])
-        scale = 1 / np.sqrt(np.maximum(np.abs(S).max(axis=0, initial=0.0), np.finfo(float).tiny))
+        tiny = np.finfo(float).tiny
+        units = np.sqrt(np.abs(np.diag(self.W)) + tiny)  # of y; those of z are their inverse
+        forces = 1 / np.maximum(
+            np.abs(np.vstack([units[:, None] * N, np.sqrt(C)])).max(axis=0, initial=0.0), tiny
+        )
+        scale = np.concatenate([units, 1 / units, forces])
         negatives = int((np.linalg.eigvalsh(scale[:, None] * (S + S.T) / 2 * scale) < 0).sum())
         return negatives + sum(factor.negatives() for factor in self.factors) - int(k + c)
 

@@ -10,15 +10,16 @@ from scipy.linalg import block_diag, null_space
 
 import fem_reference as fr
 from fem_reference.body import build_body  # the stiffness of a strip alone, against scikit-fem's
-from fem_reference.critical import _displacement_controlled  # as is a search that diverges
 from fem_reference.friction import force_before_slip  # a turn within a step is rare
 from fem_reference.march import slipped_off  # no path is known on which Newton's method diverges so
 from fem_reference.material import Law, lame_constants
 from fem_reference.model import build  # drawn states are in no equilibrium: no solution has them
-from fem_reference.newton import (  # one attempt: steps that are cut would hide its status
+from fem_reference.newton import (  # steps that are cut would hide a status
     Attempt,
+    Control,
     corrected,
     equilibrium,
+    iterate,
 )
 from fem_reference.state import at_rest
 from fem_reference.status import Status
@@ -220,7 +221,8 @@ def test_a_step_of_displacement_control_that_is_not_finite_ends_without_a_state(
     problem = make_problem(path=((0.7, -0.1), (0.7, 0.3)), mesh=(10, 1))
     start = at_rest(build(replace(problem, loads=(load(force=(0.0, EI)),))))
     rate = linearise(start).rate(0.0, 1e-6).u
-    assert _displacement_controlled(start, start.u, rate / np.linalg.norm(rate), np.inf) is None
+    control = Control(origin=start.u, c=rate / np.linalg.norm(rate), delta=np.inf)
+    assert iterate(start, control).status is Status.SINGULAR
 
 
 def test_slip_begins_with_the_force_before_it_unless_the_contact_has_turned():
