@@ -37,24 +37,22 @@ from fem_reference.problem import Contact, Pin
 class Carrier:
     """Vectors that are weighted means of the positions of a strip's nodes: points, or first moments of a section."""
 
-    reference: (
-        Floats  # undeformed, relative to the model's origin, in the global frame's directions, ``(m, 2)`` [m]
-    )
-    rows: csr_matrix  # weights ``(m, n)`` of all nodes of the model
-    frame: Floats  # rotation ``(2, 2)`` from the strip's frame, the frame of the displacements, to the global frame
+    reference: Floats  # undeformed, relative to the model's origin, in the global frame, ``(m, 2)`` [m]
+    rows: csr_matrix  # derivatives ``(2 m, 2 n)`` by the displacements, each in the frame of its strip
 
     @cached_property
     def transposed(self) -> csr_matrix:
-        """Transposed weights ``(n, m)``."""
+        """Transposed rows ``(2 n, 2 m)``."""
         return csr_matrix(self.rows.T)
 
     def points(self, u: Floats) -> Floats:
         """Positions ``(m, 2)`` at the nodal displacements ``u`` ``(n, 2)``."""
-        return np.asarray(self.reference + (self.rows @ u) @ self.frame.T)
+        return np.asarray(self.reference + (self.rows @ u.ravel()).reshape(-1, 2))
 
-    def nodal_forces(self, weights: Floats, forces: Floats) -> Floats:
-        """Nodal forces ``(n, 2, c)`` of global ``forces`` ``(c, 2)`` that act on the points with ``weights`` ``(c, m)``."""
-        return np.asarray((self.transposed @ weights.T)[:, None] * (forces @ self.frame).T)
+    def columns(self, weights: Floats, directions: Floats) -> Floats:
+        """Nodal forces ``(2 n, c)`` of the unit forces ``directions`` ``(c, 2)`` on the points with ``weights`` ``(c, m)``."""
+        forces = weights[:, :, None] * directions[:, None]
+        return np.asarray(self.transposed @ forces.reshape(len(forces), -1).T)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -67,13 +65,9 @@ class Pair:
     node: Pin | Carrier  # the pin, or the point at the end of another strip
     penalty: float  # contact stiffness eps [N/m]
     length: float  # length of the touched strip [m]
-    strips: tuple[
-        int, ...
-    ]  # indices of the touched strip and, if the node is an end, of the strip with this end
-    ends: dict[
-        str, Carrier
-    ]  # corners of the touched strip's free ends, upwards, unless a point meets a line there
-    origin: Floats  # origin of all positions ``(2,)`` [m], at the first strip, so that a distant scene loses no digits
+    strips: tuple[int, ...]  # indices of the touched strip and, if the node is an end, of the end's
+    ends: dict[str, Carrier]  # corners of the strip's free ends, upwards, unless a point meets a line there
+    origin: Floats  # origin of positions ``(2,)``, at the first strip: a distant scene loses no digits [m]
 
     @property
     def name(self) -> str:
@@ -172,10 +166,10 @@ class Touch:
         directions = np.stack([-pair.contact.sign * n, t, n, t])
         if self.begin is None:
             basis, directions = basis[:3], directions[:3]
-        U = pair.carrier.nodal_forces(basis, directions)
+        U = pair.carrier.columns(basis, directions)
         if isinstance(pair.node, Carrier):
-            U[..., :2] -= pair.node.nodal_forces(np.ones((2, 1)), directions[:2])
-        return U.reshape(-1, len(directions))
+            U[:, :2] -= pair.node.columns(np.ones((2, 1)), directions[:2])
+        return U
 
     @property
     def curvature(self) -> Floats:

@@ -40,9 +40,7 @@ class ContactCurve:
     """A twice continuously differentiable curve through points that move with the nodes."""
 
     stations: Floats  # undeformed axial coordinates of the points, increasing, ``(m,)`` [m]
-    slopes: (
-        csr_matrix  # matrix ``(m, m)`` from the points to the slopes of their spline at the stations [1/m]
-    )
+    slopes: csr_matrix  # from the points to the slopes of their spline at the stations, ``(m, m)`` [1/m]
     rows: csr_matrix  # weights ``(m, n)`` of the nodes in the points
     offsets: Floats  # offsets ``(q,)`` of the points in the moving average [m]
     kernel: Floats  # weights ``(q,)`` of these points

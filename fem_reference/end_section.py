@@ -46,9 +46,7 @@ class EndSection:
     @property
     def columns(self) -> Floats:
         """Derivatives ``(2 n, 4)`` of mean displacement and first moment with respect to the nodal displacements."""
-        return self.carrier.nodal_forces(np.eye(2)[[0, 0, 1, 1]], np.eye(2)[[0, 1, 0, 1]]).reshape(
-            -1, COLUMNS
-        )
+        return np.asarray(self.carrier.transposed.toarray())
 
     def pose(self, u: Floats) -> "Pose":
         """Motion of the section at the nodal displacements ``u`` ``(n, 2)``."""
@@ -63,9 +61,7 @@ class Pose:
     """Motion of an end section."""
 
     position: Floats  # mean position ``(2,)``, relative to the model's origin [m]
-    motion: (
-        Floats  # mean displacements x and y [m], and rotation from the undeformed section in (-pi, pi] [rad]
-    )
+    motion: Floats  # mean displacements x and y [m], rotation from the undeformed section in (-pi, pi] [rad]
     first_moment: Floats  # first moment m ``(2,)`` [m]
 
     @property

@@ -31,9 +31,7 @@ class ContactEvent:
 
     kind: str  # ``"touch"``, ``"release"``, ``"slip"``, ``"stick"`` or ``"slip-off"``
     pair: int  # index of the contact
-    load_parameter: (
-        float  # with friction in the scene that of the event, else of the first accepted state behind it
-    )
+    load_parameter: float  # with friction in the scene that of the event, else of the next accepted state
     arc_position: float  # coordinate before the event [m]
     force: float  # magnitude of the force before the event [N]
     direction: int  # direction of the slip behind it, 1 or -1; 0 without slip

@@ -25,9 +25,7 @@ _GROWTH = 1e3
 class Factor:
     """A factorised symmetric matrix K. A solution is found in two halves, of which columns need the first one only."""
 
-    half: Callable[
-        [Floats], Floats
-    ]  # first half h(b) for ``b`` ``(m,)`` or ``(m, c)``: ``L^-1 b`` by Cholesky, else b itself
+    half: Callable[[Floats], Floats]  # first half h(b) for ``b`` ``(m, ...)``: ``L^-1 b``, or b itself
     rest: Callable[[Floats], Floats]  # second half: ``K^-1 b`` from ``h(b)``
     product: Callable[[Floats, Floats], Floats]  # ``a^T K^-1 b`` from ``h(a)`` and ``h(b)``
     negatives: Callable[[], int]  # the number of negative eigenvalues

@@ -29,6 +29,9 @@ from fem_reference.state import State, at_rest
 from fem_reference.status import Status
 from fem_reference.track import ORDER, TRACK_LENGTH, Accepted, accept, departure, located, predict
 
+_RESOLVED = 0.05
+"""Largest round-off of a nodal force, over the forces that bend or load the strips. Measured on strips of one bending stiffness: at .018
+the tip is right to 2e-6 of the length, at .14 Newton's method takes no steps of use."""
 _LOAD_ROUND_OFF = 1e-9
 """Largest distance at which the turn of a pin's path and the end of a step coincide."""
 _RATE_GROWTH = 1.5
@@ -47,9 +50,7 @@ _AT_END = 1e-2
 class Step:
     """Progress to one requested load parameter; what it counts since the previous one."""
 
-    status: Status = (
-        Status.CONVERGED
-    )  # ``CONVERGED`` if it was reached; otherwise the reason why the march ended
+    status: Status = Status.CONVERGED  # the reason why the march ended, else ``CONVERGED``
     cause: Status = Status.CONVERGED  # status of the last attempt
     pair: int | None = None  # index of the contact that the cause refers to
     load_parameter: float  # last accepted load parameter, or that of the event which ends the path
@@ -85,13 +86,12 @@ class _March:
 
     def steps(self, load_parameters: Floats) -> Iterator[Step]:
         """Yield a step to every load parameter."""
+        model, largest = self.model, max(self.model.force_scale, *self.model.largest_loads)
+        resolved = model.round_off <= _RESOLVED * largest and self.last.index <= 0
         for target in map(float, load_parameters):
             self.step = Step(load_parameter=self.last.t, state=self.last.state, index=self.last.index)
             self.order, self.failures = ORDER, 0
-            if self.model.ill_conditioned or (not self.last.t and self.last.index > 0):
-                status: Status | None = self.end(Status.ILL_CONDITIONED)
-            else:
-                status = self.advance(target)
+            status = self.advance(target) if resolved else self.end(Status.ILL_CONDITIONED)
             step, last = self.step, self.last
             step.status, step.state, step.index = status or Status.CONVERGED, last.state, last.index
             yield step

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import block_diag, csr_matrix, identity
+from scipy.sparse import block_diag, csr_matrix, identity, kron
 
 from fem_reference.arrays import Floats
 from fem_reference.body import ANCHORED, Body, build_body
@@ -16,10 +16,6 @@ from fem_reference.end_section import ROTATION, EndSection, Tie, anchor_stiffnes
 from fem_reference.loads import PointLoad
 from fem_reference.problem import Contact, Pin, SolidProblem
 from fem_reference.settings import Settings
-
-_RESOLVED = 0.05
-"""Largest round-off of a nodal force, over the forces that bend or load the strips. Measured on strips of one bending stiffness: at .018
-the tip is right to 2e-6 of the length, at .14 Newton's method takes no steps of use."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -32,15 +28,16 @@ class Model:
     pairs: tuple[Pair, ...]  # contacts
     expansion: csr_matrix  # matrix ``(2 n, m)`` from the unknowns to the displacements
     loads: Floats  # dead nodal forces added in every stage, in the frames of their strips, ``(s, n, 2)`` [N]
-    sections: tuple[
-        EndSection, ...
-    ]  # end sections with a support, joint, anchor or moment, and those inside with a moment
+    sections: tuple[EndSection, ...]  # sections with a support, joint, anchor or moment
     columns: Floats  # columns ``(2 n, 4 e)`` of the sections
     ties: tuple[Tie, ...]  # ties of these sections: components of supports, then of springs, then of joints
     moments: Floats  # dead moments on the sections that are added in every stage, ``(s, e)`` [N m]
-    largest_loads: (
-        Floats  # largest dead force, or moment over the longest strip, added in every stage, ``(s,)`` [N]
-    )
+    largest_loads: Floats  # largest dead force, or moment over L, added in every stage, ``(s,)`` [N]
+    length: float  # length L of the longest strip [m]
+    force_scale: float  # largest ``E I / L^2`` of the strips, a scale of forces without load [N]
+    axial_stiffness: float  # largest ``E A / L`` of the strips [N/m]
+    round_off: float  # round-off of a nodal force [N]
+    length_round_off: float  # round-off of a position: 8 machine epsilons of the largest coordinate [m]
 
     @cached_property
     def restriction(self) -> csr_matrix:
@@ -57,41 +54,10 @@ class Model:
         """Number of unknown displacements m."""
         return int(self.expansion.shape[1])
 
-    @cached_property
-    def force_scale(self) -> float:
-        """Largest ``E I / L^2`` of the strips, a scale of forces that is independent of the load [N]."""
-        return max(strip.bending_stiffness / strip.length**2 for strip in self.problem.strips)
-
-    @cached_property
-    def axial_stiffness(self) -> float:
-        """Largest ``E A / L`` of the strips [N/m]."""
-        return max(strip.axial_stiffness for strip in self.problem.strips)
-
-    @property
-    def length(self) -> float:
-        """Length of the longest strip [m]."""
-        return self.problem.length
-
-    @cached_property
-    def round_off(self) -> float:
-        """Round-off of a nodal force [N]."""
-        return max(body.round_off for body in self.bodies)
-
-    @property
-    def ill_conditioned(self) -> bool:
-        """Whether round-off hides the forces that bend the strips; measured, answers are right up to half of this limit."""
-        return bool(self.round_off > _RESOLVED * max(self.force_scale, *self.largest_loads))
-
     @property
     def balance_round_off(self) -> float:
         """Round-off of a sum of nodal forces, which grows like a random walk [N]."""
         return float(np.sqrt(2 * self.nodes)) * self.round_off
-
-    @cached_property
-    def length_round_off(self) -> float:
-        """Round-off of a position [m]: 8 machine epsilons times the largest distance of a strip from the global origin."""
-        distances = [np.hypot(*point) for strip in self.problem.strips for point in (strip.start, strip.end)]
-        return 8 * float(np.finfo(float).eps) * max(*map(float, distances), self.length)
 
     def body(self, strip: str) -> Body:
         """Return the body of a strip."""
@@ -121,6 +87,7 @@ def build(problem: SolidProblem, settings: Settings | None = None) -> Model:
         size = max(float(np.hypot(*forces.sum(axis=0))), abs(load.moment) / problem.length)
         largest[load.stage] = max(largest[load.stage], size)
     columns = [section.columns for section in sections]
+    distances = [float(np.hypot(*point)) for strip in problem.strips for point in (strip.start, strip.end)]
     return Model(
         problem=problem,
         settings=settings or Settings(),
@@ -133,6 +100,11 @@ def build(problem: SolidProblem, settings: Settings | None = None) -> Model:
         ties=tuple(_ties(problem, numbers)),
         moments=moments,
         largest_loads=largest,
+        length=problem.length,
+        force_scale=max(strip.bending_stiffness / strip.length**2 for strip in problem.strips),
+        axial_stiffness=max(strip.axial_stiffness for strip in problem.strips),
+        round_off=max(body.round_off for body in bodies),
+        length_round_off=8 * float(np.finfo(float).eps) * max(*distances, problem.length),
     )
 
 
@@ -146,16 +118,12 @@ class _Discrete:
 
     def carrier(self, body: Body, rows: csr_matrix) -> Carrier:
         """Points with the weights ``rows`` of a body's nodes."""
-        strip, placed = body.strip, rows.tocoo()
-        columns = placed.col + body.part.start
-        everywhere = csr_matrix(
-            (placed.data, (placed.row, columns)), shape=(rows.shape[0], self.bodies[-1].part.stop)
-        )
+        both = kron(rows, body.strip.frame, format="csr")
+        shape = both.shape[0], 2 * self.bodies[-1].part.stop
+        everywhere = csr_matrix((both.data, both.indices + 2 * body.part.start, both.indptr), shape=shape)
         # the weights of a first moment sum to zero
-        reference = (rows @ body.mesh.nodes) @ strip.frame.T + np.outer(
-            np.round(rows.sum(axis=1), 9), body.offset
-        )
-        return Carrier(reference=reference, rows=everywhere, frame=strip.frame)
+        shift = np.outer(np.round(rows.sum(axis=1), 9), body.offset)
+        return Carrier(reference=shift + (rows @ body.mesh.nodes) @ body.strip.frame.T, rows=everywhere)
 
     def sections(self) -> Iterator[EndSection]:
         """End sections that are supported, joined, anchored or loaded by a moment, and sections inside that are loaded by one."""
