@@ -22,17 +22,12 @@ class AtEnd:
     end: str
 
     def __post_init__(self) -> None:
-        require_choice(self.owner, "end", self.end, ENDS)
+        require_choice(self, "end", ENDS)
 
     @property
     def node(self) -> str:
         """Name of the end, ``"strip.end"``."""
         return f"{self.strip}.{self.end}"
-
-    @property
-    def owner(self) -> str:
-        """Name of the condition in error messages."""
-        return f"{type(self).__name__}({self.node!r})"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,15 +56,9 @@ class Support(AtEnd):
     def __post_init__(self) -> None:
         super().__post_init__()
         for change in self.onward:
-            require_finite(self.owner, "onward", change, 3)
-        require_finite(self.owner, "motion", tuple(value or 0.0 for value in self.motion), 3)
-        require(
-            any(value is not None for value in self.motion),
-            self.owner,
-            "motion",
-            self.motion,
-            "must hold one",
-        )
+            require_finite(self, "onward", change, 3)
+        require_finite(self, "motion", [value or 0.0 for value in self.motion], 3)
+        require(self, "motion", any(value is not None for value in self.motion), "must hold one")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,8 +82,8 @@ class Spring(AtEnd):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_finite(self.owner, "stiffness", self.stiffness, 3, least=0.0)
-        require(any(self.stiffness), self.owner, "stiffness", self.stiffness, "must not be zero")
+        require_finite(self, "stiffness", self.stiffness, 3, least=0.0)
+        require(self, "stiffness", any(self.stiffness), "must not be zero")
 
     @property
     def motion(self) -> Motion:
@@ -128,15 +117,14 @@ class Joint:
     stiffness: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        owner = f"Joint({self.ends!r})"
         distinct = len(self.ends) == len(set(self.ends)) >= 2
-        require(distinct, owner, "ends", self.ends, "must be at least two different ends")
+        require(self, "ends", distinct, "must be at least two different ends")
         known = len(self.hinged) == len(set(self.hinged)) and set(self.hinged) <= set(self.ends[1:])
-        require(known, owner, "hinged", self.hinged, f"must be different ends among {self.ends[1:]}")
-        rule = "must be one value for every hinged end"
-        require(len(self.stiffness) in (0, len(self.hinged)), owner, "stiffness", self.stiffness, rule)
+        require(self, "hinged", known, f"must be different ends among {self.ends[1:]}")
+        counted = len(self.stiffness) in (0, len(self.hinged))
+        require(self, "stiffness", counted, "must be one value for every hinged end")
         for value in self.stiffness:
-            require_finite(owner, "stiffness", (value,), 1, least=0.0)
+            require_finite(self, "stiffness", (value,), least=0.0)
 
     def stiffness_of(self, end: str) -> float | None:
         """Stiffness of a hinge [N m/rad]; None for an end without a hinge."""
@@ -149,28 +137,29 @@ Holding = tuple[Support | Spring, ...]
 """What holds end sections."""
 
 
-def require_known_ends(strips: tuple[Strip, ...], holding: Holding, joints: tuple[Joint, ...]) -> None:
+def require_known_ends(
+    problem: object, strips: tuple[Strip, ...], holding: Holding, joints: tuple[Joint, ...]
+) -> None:
     """Require known ends without clamps, one support and one spring at a joint or end, and joints at one position."""
     positions = {f"{strip.name}.{end}": getattr(strip, end) for strip in strips for end in ENDS}
     clamps = [f"{strip.name}.{end}" for strip in strips for end in strip.clamped]
     for condition in holding:
-        require(condition.node in positions, condition.owner, "strip", condition.strip, "must name a strip")
-        require(
-            condition.node not in clamps, condition.owner, "end", condition.end, "must not be a clamped end"
-        )
+        require(condition, "strip", condition.node in positions, "must name a strip")
+        require(condition, "end", condition.node not in clamps, "must not be a clamped end")
     for joint in joints:
         for end in joint.ends:
             fits = end in positions and end not in clamps and positions[end] == positions[joint.ends[0]]
             rule = "must be an end without a clamp, at the position of the first one"
-            require(fits, f"Joint({joint.ends!r})", "ends", end, rule)
-    require_distinct("SolidProblem", "joints", (end for joint in joints for end in joint.ends))
+            require(joint, "ends", fits, rule, end)
+    require_distinct(problem, "joints", (end for joint in joints for end in joint.ends))
     first = {end: joint.ends[0] for joint in joints for end in joint.ends}
     for name, kind in (("supports", Support), ("springs", Spring)):
         nodes = (first.get(item.node, item.node) for item in holding if isinstance(item, kind))
-        require_distinct("SolidProblem", name, nodes)
+        require_distinct(problem, name, nodes)
 
 
 def require_held(
+    problem: object,
     strips: tuple[Strip, ...],
     holding: Holding,
     joints: tuple[Joint, ...],
@@ -206,4 +195,4 @@ def require_held(
         sorted(name for name, number in numbers.items() if np.abs(free[number]).max(initial=0.0) > 1e-6)
     )
     rule = f"must hold {loose}, with the pins that touch at the start"
-    require(not loose, "SolidProblem", "supports", tuple(given for _, given in motions), rule)
+    require(problem, "supports", not loose, rule, tuple(given for _, given in motions))

@@ -47,13 +47,11 @@ class PointLoad:
     stage: int = 0
 
     def __post_init__(self) -> None:
-        owner = f"PointLoad({self.strip!r})"
-        require(self.stage >= 0, owner, "stage", self.stage, "must not be negative")
-        require(0 <= self.at <= 1, owner, "at", self.at, "must lie between 0 and 1")
-        require_finite(owner, "force", self.force, 2)
-        require_finite(owner, "moment", (self.moment,), 1)
-        rule = "must not be zero without a moment"
-        require(any((*self.force, self.moment)), owner, "force", self.force, rule)
+        require(self, "stage", self.stage >= 0, "must not be negative")
+        require(self, "at", 0 <= self.at <= 1, "must lie between 0 and 1")
+        require_finite(self, "force", self.force, 2)
+        require_finite(self, "moment", (self.moment,))
+        require(self, "force", any((*self.force, self.moment)), "must not be zero without a moment")
 
     @property
     def node(self) -> str:
@@ -103,13 +101,12 @@ class LineLoad:
     moment = 0.0  # of a load that has none; no field
 
     def __post_init__(self) -> None:
-        owner, (low, high) = f"LineLoad({self.strip!r})", self.part
-        require(self.stage >= 0, owner, "stage", self.stage, "must not be negative")
+        low, high = self.part
+        require(self, "stage", self.stage >= 0, "must not be negative")
         for coefficient in self.force:
-            require_finite(owner, "force", coefficient, 2)
-        require(any(map(any, self.force)), owner, "force", self.force, "must not be zero")
-        rule = "must be two increasing numbers between 0 and 1"
-        require(0 <= low < high <= 1, owner, "part", self.part, rule)
+            require_finite(self, "force", coefficient, 2)
+        require(self, "force", any(map(any, self.force)), "must not be zero")
+        require(self, "part", 0 <= low < high <= 1, "must be two increasing numbers between 0 and 1")
 
     def on_sections(self, strip: Strip, stations: Floats) -> Floats:
         """Forces ``(m, 2)`` on the mean displacements of the sections at ``stations`` ``(m,)``, in the global frame [N]."""

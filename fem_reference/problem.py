@@ -50,15 +50,14 @@ class Pin:
     onward: tuple[tuple[Point, ...], ...] = ()
 
     def __post_init__(self) -> None:
-        owner, onward = f"Pin({self.name!r})", [point for points in self.onward for point in points]
+        onward = [point for points in self.onward for point in points]
         for field, points in (("path", self.path), ("onward", onward)):
             for point in points:
-                require_finite(owner, field, point, 2)
+                require_finite(self, field, point, 2)
         whole = (*self.path, *onward)
-        require(len(self.path) > 0, owner, "path", self.path, "must have at least one point")
-        long = len(whole) == 1 or len(set(whole)) > 1
-        require(long, owner, "path", self.path, "must have a positive length")
-        require_finite(owner, "radius", (self.radius,), 1, least=0.0)
+        require(self, "path", len(self.path) > 0, "must have at least one point")
+        require(self, "path", len(whole) == 1 or len(set(whole)) > 1, "must have a positive length")
+        require_finite(self, "radius", (self.radius,), least=0.0)
 
     def position(self, t: float) -> Floats:
         """Return the position ``(2,)`` of the pin's centre at the load parameter ``t``."""
@@ -143,16 +142,13 @@ class Contact:
     friction: float = 0.0
 
     def __post_init__(self) -> None:
-        owner = f"Contact({self.name!r})"
-        require_choice(owner, "side", self.side, ("right", "left"))
-        require_choice(owner, "surface", self.surface, ("axis", "face"))
-        if self.penalty is not None:
-            require_positive(owner, "penalty", self.penalty)
-        if self.penetration is not None:
-            fits = 1e-13 <= self.penetration <= 1
-            require(fits, owner, "penetration", self.penetration, "must lie between 1e-13 and 1")
-        require_finite(owner, "spread", (self.spread or 0.0,), 1, least=0.0)
-        require_finite(owner, "friction", (self.friction,), 1, least=0.0)
+        require_choice(self, "side", ("right", "left"))
+        require_choice(self, "surface", ("axis", "face"))
+        require_positive(self, "penalty")
+        fits = self.penetration is None or 1e-13 <= self.penetration <= 1
+        require(self, "penetration", fits, "must lie between 1e-13 and 1")
+        require_finite(self, "spread", (self.spread or 0.0,), least=0.0)
+        require_finite(self, "friction", (self.friction,), least=0.0)
 
     @property
     def name(self) -> str:
@@ -185,26 +181,24 @@ class SolidProblem:
     springs: tuple[Spring, ...] = ()
 
     def __post_init__(self) -> None:
-        require(len(self.strips) > 0, "SolidProblem", "strips", self.strips, "must hold at least one strip")
+        require(self, "strips", len(self.strips) > 0, "must hold at least one strip")
         for field in ("strips", "pins", "contacts"):
-            require_distinct("SolidProblem", field, [item.name for item in getattr(self, field)])
+            require_distinct(self, field, [item.name for item in getattr(self, field)])
         names = [strip.name for strip in self.strips]
         for contact in self.contacts:
-            owner = f"Contact({contact.name!r})"
             nodes = [pin.name for pin in self.pins]
             nodes += [f"{name}.{end}" for name in names if name != contact.strip for end in ("start", "end")]
-            require(contact.strip in names, owner, "strip", contact.strip, f"must name a strip: {names}")
+            require(contact, "strip", contact.strip in names, f"must name a strip: {names}")
             rule = f"must name a pin or another strip's end: {nodes}"
-            require(contact.node in nodes, owner, "node", contact.node, rule)
+            require(contact, "node", contact.node in nodes, rule)
         for load in self.loads:
-            owner = f"{type(load).__name__}({load.strip!r})"
-            require(load.strip in names, owner, "strip", load.strip, "must name a strip")
+            require(load, "strip", load.strip in names, "must name a strip")
             clamps = {f"{load.strip}.{end}" for end in self.strip(load.strip).clamped}
             free = not isinstance(load, PointLoad) or load.node not in clamps
-            require(free, owner, "at", getattr(load, "at", None), "must not be a clamped end")
+            require(load, "at", free, "must not be a clamped end")
         holding: Holding = (*self.supports, *self.springs)
-        require_known_ends(self.strips, holding, self.joints)
-        require_held(self.strips, holding, self.joints, self._touching())
+        require_known_ends(self, self.strips, holding, self.joints)
+        require_held(self, self.strips, holding, self.joints, self._touching())
 
     def strip(self, name: str) -> Strip:
         """Return the strip called ``name``."""
@@ -239,10 +233,11 @@ class SolidProblem:
         """Strip, position and normal of every pin that touches at the start. No node may start beyond the touched surface."""
         found: list[tuple[str, Point, Point]] = []
         for contact in self.contacts:
-            strip, pin, height = self.strip(contact.strip), self.pin(contact.node), 0.0
-            owner, field, radius = f"Contact({contact.name!r})", "node", 0.0
+            strip, pin = self.strip(contact.strip), self.pin(contact.node)
+            owner: Pin | Contact = pin or contact
+            field, height, radius = ("path[0]", 0.0, pin.radius) if pin else ("node", 0.0, 0.0)
             if pin is not None:
-                owner, field, start, radius = f"Pin({pin.name!r})", "path[0]", pin.path[0], pin.radius
+                start = pin.path[0]
             else:
                 name, end = contact.node.split(".")
                 start = getattr(self.strip(name), end)
@@ -251,7 +246,7 @@ class SolidProblem:
                 height = strip.height_at(min(max(axial, 0.0), strip.length)) / 2
             gap, slack = contact.sign * transverse - height - radius, 1e-9 * strip.length
             rule = f"must not start beyond the {contact.side} {contact.surface} of the strip (gap {gap:.3g})"
-            require(gap >= -slack or not 0 < axial < strip.length, owner, field, start, rule)
+            require(owner, field, gap >= -slack or not 0 < axial < strip.length, rule, start)
             if pin is not None and gap <= slack and 0 <= axial <= strip.length:
                 x, y = map(float, strip.frame @ strip.directions(np.array(axial))[1])
                 found.append((strip.name, pin.path[0], (x, y)))

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from fem_reference.checks import require, require_choice
+
 BRANCHES = ("stop", "stable", "primary")
 
 
@@ -58,28 +60,12 @@ class Settings:
     branch: str = "stop"
 
     def __post_init__(self) -> None:
-        for field in (
-            "tolerance",
-            "max_penetration",
-            "min_step",
-            "first_step",
-            "largest_departure",
-        ):
+        for field in ("tolerance", "max_penetration", "min_step", "first_step", "largest_departure"):
+            require(self, field, 0 < getattr(self, field) < 1, "must lie strictly between 0 and 1")
+        require(self, "largest_growth", self.largest_growth >= 1, "must be at least 1")
+        least = {"max_iterations": 1, "max_contact_changes": 0, "max_augmentations": 0, "max_attempts": 1}
+        for field, low in least.items():
             value = getattr(self, field)
-            if not 0 < value < 1:
-                raise ValueError(f"Settings.{field} = {value!r}: must lie strictly between 0 and 1")
-        if not self.largest_growth >= 1:
-            raise ValueError(f"Settings.largest_growth = {self.largest_growth!r}: must be at least 1")
-        for field, low in (
-            ("max_iterations", 1),
-            ("max_contact_changes", 0),
-            ("max_augmentations", 0),
-            ("max_attempts", 1),
-        ):
-            value = getattr(self, field)
-            if not isinstance(value, int) or value < low:
-                raise ValueError(f"Settings.{field} = {value!r}: must be a whole number, >= {low}")
-        if self.branch not in BRANCHES:
-            raise ValueError(
-                f"Settings.branch = {self.branch!r}: must be one of {', '.join(map(repr, BRANCHES))}"
-            )
+            rule = f"must be a whole number, >= {low}"
+            require(self, field, isinstance(value, int) and value >= low, rule)
+        require_choice(self, "branch", BRANCHES)

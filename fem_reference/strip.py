@@ -96,38 +96,32 @@ class Strip:
     plane: str = "stress"
 
     def __post_init__(self) -> None:
-        owner, given = f"Strip({self.name!r})", self.mesh_file is None
-        require_finite(owner, "start", self.start, 2)
-        require_finite(owner, "end", self.end, 2)
-        require(abs(self.turn) < 2 * pi, owner, "turn", self.turn, "must lie between -2 pi and 2 pi")
-        require(self.length > 0, owner, "end", self.end, "must differ from start")
+        given, mesh = self.mesh_file is None, self.mesh
+        require_finite(self, "start", self.start, 2)
+        require_finite(self, "end", self.end, 2)
+        require(self, "turn", abs(self.turn) < 2 * pi, "must lie between -2 pi and 2 pi")
+        require(self, "end", self.length > 0, "must differ from start")
         room = abs(self.curvature) * self.largest_height < 2
-        require(room, owner, "turn", self.turn, "must leave the radius of the axis above half the height")
-        require(given or not self.turn, owner, "turn", self.turn, "must be zero with a mesh file")
+        require(self, "turn", room, "must leave the radius of the axis above half the height")
+        require(self, "turn", given or not self.turn, "must be zero with a mesh file")
         rule = "must be None with a mesh file, which has the strip's shape"
-        require(given or self.end_height is None, owner, "end_height", self.end_height, rule)
-        for field in ("height", "width", "youngs_modulus", "end_height", "end_width"):
-            if getattr(self, field) is not None:
-                require_positive(owner, field, getattr(self, field))
-        nu, mesh = self.poissons_ratio, self.mesh
-        require(-1 < nu < 0.5, owner, "poissons_ratio", nu, "must lie between -1 and 0.5")
-        for field, options in (
-            ("clamped", ((), ("start",), ("end",), ("start", "end"))),
-            ("element", ELEMENTS),
-            ("clamp", ("rod", "full")),
-            ("material", tuple(MATERIALS)),
-            ("plane", PLANES),
-        ):
-            require_choice(owner, field, getattr(self, field), options)
+        require(self, "end_height", given or self.end_height is None, rule)
+        require_positive(self, "height", "width", "youngs_modulus", "end_height", "end_width")
+        require(self, "poissons_ratio", -1 < self.poissons_ratio < 0.5, "must lie between -1 and 0.5")
+        require_choice(self, "clamped", ((), ("start",), ("end",), ("start", "end")))
+        require_choice(self, "element", ELEMENTS)
+        require_choice(self, "clamp", ("rod", "full"))
+        require_choice(self, "material", tuple(MATERIALS))
+        require_choice(self, "plane", PLANES)
         whole = len(mesh) == 2 and all(isinstance(n, int) and n < 10**15 for n in mesh)
         rule = "must be two whole numbers, >= 2 and >= 1"
-        require(whole and mesh[0] >= 2 and mesh[1] >= 1, owner, "mesh", mesh, rule)
+        require(self, "mesh", whole and mesh[0] >= 2 and mesh[1] >= 1, rule)
         if given:
             memory, work = solution_cost(mesh, self.element)
             rule = f"must need at most {LARGEST_MEMORY / 2**30:g} GiB, needs about {memory / 2**30:.3g}"
-            require(memory <= LARGEST_MEMORY, owner, "mesh", mesh, rule)
+            require(self, "mesh", memory <= LARGEST_MEMORY, rule)
             rule = f"must need at most {LARGEST_WORK:g} operations a factorisation, needs about {work:.2g}"
-            require(work <= LARGEST_WORK, owner, "mesh", mesh, rule)
+            require(self, "mesh", work <= LARGEST_WORK, rule)
 
     @property
     def chord(self) -> complex:
