@@ -10,7 +10,7 @@ from fem_reference.stages import amount
 from fem_reference.state import State, stored_energy
 from fem_reference.status import Status
 from fem_reference.system import linearise
-from fem_reference.track import Accepted, accept, root, state_at
+from fem_reference.track import LARGEST_DEPARTURE, Accepted, accept, root, state_at
 
 LIMIT, BIFURCATION = "limit point", "bifurcation"
 _MAX_ITERATIONS = 60
@@ -70,13 +70,13 @@ def bifurcation(a: Accepted, b: Accepted) -> Accepted | None:
 
 def _between(a: Accepted, b: Accepted, t: float) -> Accepted | None:
     """Equilibrium between two states that departs little from their chord; None without one."""
-    middle, model = state_at(a, t), a.state.model
+    middle = state_at(a, t)
     if middle is None or middle.state.contact_set != a.state.contact_set:
         return None
     d = b.state.u - a.state.u
     # near a critical point the tangents are unsuitable: their component along the null vector is round-off
     off = middle.state.u - a.state.u - (t - a.t) / (b.t - a.t) * d
-    allowed = model.settings.largest_departure * np.linalg.norm(d) + displacement_tolerance(a.state)
+    allowed = LARGEST_DEPARTURE * np.linalg.norm(d) + displacement_tolerance(a.state)
     return middle if np.linalg.norm(off) <= allowed else None
 
 

@@ -27,13 +27,24 @@ from fem_reference.model import Model
 from fem_reference.newton import Attempt, displacement_tolerance, equilibrium
 from fem_reference.state import State, at_rest
 from fem_reference.status import Status
-from fem_reference.track import ORDER, TRACK_LENGTH, Accepted, accept, departure, located, predict
+from fem_reference.track import (
+    LARGEST_DEPARTURE,
+    ORDER,
+    TRACK_LENGTH,
+    Accepted,
+    accept,
+    departure,
+    located,
+    predict,
+)
 
 _RESOLVED = 0.05
 """Largest round-off of a nodal force, over the forces that bend or load the strips. Measured on strips of one bending stiffness: at .018
 the tip is right to 2e-6 of the length, at .14 Newton's method takes no steps of use."""
 _LOAD_ROUND_OFF = 1e-9
 """Largest distance at which the turn of a pin's path and the end of a step coincide."""
+_FIRST_STEP = 0.1
+"""First step of the load parameter, unless the first requested load parameter is smaller."""
 _RATE_GROWTH = 1.5
 """Growth of the rate over a step beyond which a limit point is searched."""
 _SEARCH_INTERVAL = 5
@@ -78,7 +89,7 @@ class _March:
         )
         self.model, self.settings = model, model.settings
         self.track: tuple[Accepted, ...] = (start,)
-        self.trial, self.order, self.failures = self.settings.first_step, ORDER, 0
+        self.trial, self.order, self.failures = _FIRST_STEP, ORDER, 0
 
     @property
     def last(self) -> Accepted:
@@ -98,7 +109,7 @@ class _March:
             if status is not None:
                 return
             if target.is_integer():  # a stage may follow
-                self.track, self.trial = self.track[-1:], self.settings.first_step
+                self.track, self.trial = self.track[-1:], _FIRST_STEP
 
     def advance(self, target: float) -> Status | None:
         """Advance to ``target``; return the reason why the path ended before, None if it did not."""
@@ -140,7 +151,7 @@ class _March:
 
     def judge(self, candidate: Accepted, h: float) -> Status | None:
         """Accept the state of an attempt after a step ``h``, or shorten the step; return a status if the path ends."""
-        last, allowed = self.last, self.settings.largest_departure
+        last, allowed = self.last, LARGEST_DEPARTURE
         distance = departure(last, candidate, displacement_tolerance(last.state))
         if not distance <= allowed:
             return self.shorten(
@@ -268,7 +279,7 @@ class _March:
         self.accept(released, restart=True)
         off = contact_event(SLIP_OFF, last.state.touches[lost], lost, goal, 0)
         step.events[before:] = [off, *(event for event in step.events[before:] if event.pair != lost)]
-        self.trial, self.order = self.settings.first_step, ORDER
+        self.trial, self.order = _FIRST_STEP, ORDER
         return None
 
 

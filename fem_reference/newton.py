@@ -12,8 +12,12 @@ from fem_reference.state import State, imbalance
 from fem_reference.status import Status
 from fem_reference.system import Correction, Tangent, linearise
 
-_SMALLEST_DAMPING = 1 / 64
-"""Least part of a correction that is taken."""
+_LARGEST_GROWTH, _SMALLEST_DAMPING = 5.0, 1 / 64
+"""Ratio of two corrections beyond which the first one is halved, and least part of a correction that is taken."""
+_MAX_CONTACT_CHANGES, _MAX_AUGMENTATIONS = 6, 12
+"""Largest numbers of changes of the set of closed contacts, and of augmented Lagrangian steps, in one attempt."""
+_MAX_PENETRATION = 1e-3
+"""Largest accepted penetration, relative to the strip's length."""
 _BALANCE = 1e-6
 """Largest accepted imbalance of reactions, contact forces and end loads, relative to the same force as `Settings.tolerance`."""
 
@@ -54,17 +58,17 @@ class Control:
 def iterate(state: State, control: Control | None = None) -> Attempt:
     """Iterate with a fixed set of closed contacts; never raises.
 
-    If a correction is larger than the previous one by `Settings.largest_growth`, the previous step is repeated with half
+    If a correction is larger than the previous one by `_LARGEST_GROWTH`, the previous step is repeated with half
     its length (natural monotonicity test, Deuflhard, Newton Methods for Nonlinear Problems, 2004, section 3.3).
     """
-    settings = state.model.settings
+    most = state.model.settings.max_iterations
     base, last, damping = state, Correction(u=np.full((1, 2), np.inf), forces=np.zeros(0)), 1.0
-    for iteration in range(settings.max_iterations + 1):
+    for iteration in range(most + 1):
         attempt = converged(state)
         done = control is None or abs(control.missing(state)) <= displacement_tolerance(state)
         if attempt.status is Status.CONVERGED and not done:
             attempt = replace(attempt, status=Status.ITERATION_LIMIT)
-        if attempt.status is not Status.ITERATION_LIMIT or iteration == settings.max_iterations:
+        if attempt.status is not Status.ITERATION_LIMIT or iteration == most:
             break
         tangent = linearise(state)
         correction = None if tangent is None else tangent.correction()
@@ -73,7 +77,7 @@ def iterate(state: State, control: Control | None = None) -> Attempt:
         if correction is None:
             attempt = replace(attempt, status=Status.SINGULAR)
             break
-        if correction.size > settings.largest_growth * last.size and damping > _SMALLEST_DAMPING:
+        if correction.size > _LARGEST_GROWTH * last.size and damping > _SMALLEST_DAMPING:
             damping /= 2
         else:
             base, last, damping = state, correction, 1.0
@@ -95,7 +99,7 @@ def displacement_tolerance(state: State) -> float:
 def converged(state: State) -> Attempt:
     """Attempt with the status of an iterate: ``ITERATION_LIMIT`` if another iteration is needed."""
     model = state.model
-    error = float(np.abs(model.restriction @ state.residual.ravel()).max())
+    error = float(np.abs(state.reduced).max())
     errors = np.abs(state.residuals)
     if not np.isfinite(error + errors.sum()):
         return Attempt(status=Status.NOT_FINITE, state=state)
@@ -131,7 +135,6 @@ def equilibrium(guess: State, *, keep_set: bool = False) -> Attempt:
     iterates cause no change. A set that was tried before ends the iteration with `Status.CYCLING`. Augmented Lagrangian
     steps follow when the set no longer changes. With ``keep_set`` the set of the guess is kept.
     """
-    settings = guess.model.settings
     state = (
         guess
         if keep_set
@@ -150,7 +153,7 @@ def equilibrium(guess: State, *, keep_set: bool = False) -> Attempt:
             changed = next(i for i, now in enumerate(following.contact_set) if now != state.contact_set[i])
             if following.contact_set in tried:
                 return replace(attempt, status=Status.CYCLING, pair=changed)
-            if len(tried) > settings.max_contact_changes:
+            if len(tried) > _MAX_CONTACT_CHANGES:
                 return replace(attempt, status=Status.UNDECIDED_CONTACT, pair=changed)
             state = following
             tried.append(state.contact_set)
@@ -160,7 +163,7 @@ def equilibrium(guess: State, *, keep_set: bool = False) -> Attempt:
         )
         if deep is None:
             return _verified(attempt)
-        if augmentations == settings.max_augmentations:
+        if augmentations == _MAX_AUGMENTATIONS:
             return replace(attempt, status=Status.AUGMENTATION_LIMIT, pair=deep)
         augmentations += 1
         state = state.touching(tuple(map(augmented, state.touches)))
@@ -205,7 +208,7 @@ def _verified(attempt: Attempt) -> Attempt:
         behind, inside = touch.gap < -model.length_round_off, touch.at.inside
         if not inside and (touch.closed or (touch.armed and behind and touch.pair.contact.keep)):
             return replace(attempt, status=Status.LOST_CONTACT, pair=number)
-        if touch.closed and -touch.gap > model.settings.max_penetration * touch.pair.length:
+        if touch.closed and -touch.gap > _MAX_PENETRATION * touch.pair.length:
             return replace(attempt, status=Status.TOO_DEEP, pair=number)
         # a node beyond an end on the far side has slipped round it, and is armed again when it is back on its side
         armed = touch.armed if touch.closed else not behind or (inside and touch.armed)

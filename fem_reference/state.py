@@ -70,6 +70,11 @@ class State:
             R -= (touch.slopes[:, :2] @ (touch.force, touch.tangential)).reshape(-1, 2)
         return R - self.nodal_forces(self.actions) if self.model.sections else R
 
+    @cached_property
+    def reduced(self) -> Floats:
+        """The `residual` on the unknowns ``(m,)`` [N]."""
+        return np.asarray(self.model.restriction @ self.residual.ravel())
+
     @property
     def actions(self) -> Floats:
         """Forces x, y and moment of ties and dead moments on every end section, ``(e, 3)`` [N, N m]."""

@@ -128,8 +128,9 @@ class Tangent:
     def correction(self) -> Correction | None:
         """Newton correction for the residuals of the state; None if the constraint equations are singular."""
         state = self.state
-        R = state.model.restriction @ state.residual.ravel()
-        return self._correction(self._respond(R, np.zeros(len(self.W)), state.residuals, self.border.C))
+        return self._correction(
+            self._respond(state.reduced, np.zeros(len(self.W)), state.residuals, self.border.C)
+        )
 
     def rate(self, before: float, after: float) -> Correction | None:
         """Change per load parameter with the mean velocity of the pins between two load parameters."""

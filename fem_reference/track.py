@@ -18,6 +18,8 @@ from fem_reference.system import Correction, Tangent, linearise, pin_motion
 Item = TypeVar("Item")
 TRACK_LENGTH = 3
 """Largest number of accepted states in a prediction."""
+LARGEST_DEPARTURE = 1 / 3
+"""Largest accepted distance of a step from the tangents at its ends, relative to the step's length."""
 ORDER = 3
 """Degree of the polynomial in the load parameter that extrapolates accepted states and their rates."""
 _INTERVAL = 1e-6

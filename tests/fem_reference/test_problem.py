@@ -71,7 +71,6 @@ REFUSED = {
         "tolerance": [0.0],
         "min_step": [1.0],
         "max_iterations": [0],
-        "largest_growth": [0.5],
         "branch": ["other"],
     },
 }
