@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from fem_reference.conditions import EndLoad, Joint, Spring, Support
+from fem_reference.conditions import Joint, Spring, Support
 from fem_reference.critical import CriticalPoint
 from fem_reference.loads import LineLoad, PointLoad
 from fem_reference.material import MATERIALS, PLANES
@@ -22,7 +22,6 @@ __all__ = [
     "Contact",
     "ContactHistory",
     "CriticalPoint",
-    "EndLoad",
     "Joint",
     "LineLoad",
     "Pin",

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csc_matrix, csr_matrix
+from scipy.sparse import csr_matrix, tril
 
 from fem_reference.arrays import Array, Floats, Ints
 from fem_reference.mesh import Discretisation, Points
@@ -32,27 +32,15 @@ class Pattern:
         flat[self.positions] = self.scatter @ elements
         return flat.reshape(self.size, self.width + 1).T
 
-    def matrix(self, elements: Array) -> csc_matrix:
-        """Assemble element entries into the stiffness ``(m, m)``."""
-        values, (column, below) = self.scatter @ elements, np.divmod(self.positions, self.width + 1)
-        lower = csc_matrix((values, (column + below, column)), shape=(self.size, self.size))
-        return csc_matrix(
-            lower + lower.T - csc_matrix((values * (below == 0), (column, column)), lower.shape)
-        )
-
     def band_of(self, matrix: csr_matrix) -> Floats:
         """Band ``(width + 1, m)`` of a symmetric matrix ``(m, m)`` whose pattern lies in this one."""
-        band, entries = np.zeros((self.width + 1, self.size)), matrix.tocoo()
-        low = entries.row >= entries.col
-        band[(entries.row - entries.col)[low], entries.col[low]] = entries.data[low]
+        band, lower = np.zeros((self.width + 1, self.size)), tril(matrix).tocoo()
+        band[lower.row - lower.col, lower.col] = lower.data
         return band
 
 
 def pattern(mesh: Discretisation, expansion: csr_matrix, added: csr_matrix | None = None) -> Pattern:
-    """Build the pattern of the stiffness over the unknowns of ``expansion`` ``(2 n, m)``, and of a matrix ``added`` ``(m, m)``.
-
-    A row of the expansion has at most one entry: a displacement is a multiple of one unknown, or zero.
-    """
+    """Pattern of the stiffness over the unknowns of an ``expansion`` with at most one entry a row, and of ``added``."""
     size = expansion.shape[1]
     given = expansion.tocoo()
     unknown, factor = np.full(expansion.shape[0], -1), np.zeros(expansion.shape[0])
@@ -63,17 +51,13 @@ def pattern(mesh: Discretisation, expansion: csr_matrix, added: csr_matrix | Non
         for entries in zip(*_entries(mesh.cells.shape[1]), strict=True)
     )
     kept = np.flatnonzero((unknown[rows] >= 0) & (unknown[columns] >= 0))
-    rows, columns = rows[kept], columns[kept]
-    factors = factor[rows] * factor[columns]
-    factors[(rows != columns) & (unknown[rows] == unknown[columns])] *= 2  # the entry and the transposed one
-    first, last = (order(unknown[rows], unknown[columns]) for order in (np.minimum, np.maximum))
-    if added is not None:
-        more = added.tocoo()
-        low = more.row >= more.col
-        first, last = np.append(first, more.col[low]), np.append(last, more.row[low])
+    i, j, factors = unknown[rows[kept]], unknown[columns[kept]], factor[rows[kept]] * factor[columns[kept]]
+    factors[(rows[kept] != columns[kept]) & (i == j)] *= 2  # the entry and the transposed one
+    more = tril(added if added is not None else csr_matrix((size, size))).tocoo()
+    first, last = np.append(np.minimum(i, j), more.col), np.append(np.maximum(i, j), more.row)
     width = int((last - first).max(initial=0))
     positions, slots = np.unique(first.astype(np.int64) * (width + 1) + last - first, return_inverse=True)
-    scatter = csr_matrix((factors, (slots[: kept.size], kept)), shape=(positions.size, _count(mesh)))
+    scatter = csr_matrix((factors, (slots[: kept.size], kept)), shape=(positions.size, rows.size))
     return Pattern(scatter=scatter, positions=positions, size=size, width=width)
 
 
@@ -84,17 +68,8 @@ def _entries(shapes: int) -> list[tuple[Ints, Ints]]:
     return [(2 * a, 2 * b), (2 * a + 1, 2 * b + 1), (2 * row, 2 * column + 1)]
 
 
-def _count(mesh: Discretisation) -> int:
-    """Number of all element entries."""
-    elements, shapes = mesh.cells.shape
-    return int(elements * shapes * (2 * shapes + 1))
-
-
 def deformation_gradient(mesh: Discretisation, u: Array, points: Points | None = None) -> Array:
-    """``F = I + du/dX`` at the quadrature points, ``(2, 2, e, q)``, from nodal displacements ``u`` ``(n, 2)``.
-
-    With ``points`` such as ``mesh.at_nodes``, F is evaluated there instead.
-    """
+    """``F = I + du/dX`` ``(2, 2, e, q)`` at the quadrature or other ``points`` from displacements ``u`` ``(n, 2)``."""
     at = mesh.gauss if points is None else points
     elements, shapes = mesh.cells.shape
     nodal = u.T.take(mesh.cells, axis=1)
@@ -130,7 +105,7 @@ def element_entries(mesh: Discretisation, moduli: Callable[[Array], Array], u: A
     """
     elements, shapes = mesh.cells.shape
     half = shapes * (shapes + 1) // 2
-    entries = np.empty(_count(mesh), dtype=u.dtype)
+    entries = np.empty(elements * shapes * (2 * shapes + 1), dtype=u.dtype)
     same = entries[: 2 * elements * half].reshape(2, elements, half)
     mixed = entries[2 * elements * half :].reshape(elements, -1)
     start = 0

@@ -1,11 +1,12 @@
 """A strip as a discrete solid in the strip's frame: elements, material law and clamps."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix
 
-from fem_reference.arrays import Array, Floats
+from fem_reference.arrays import Floats
 from fem_reference.assembly import (
     Pattern,
     deformation_gradient,
@@ -14,7 +15,7 @@ from fem_reference.assembly import (
     pattern,
 )
 from fem_reference.end_section import anchor
-from fem_reference.factor import Factor, factorise
+from fem_reference.factor import Factor, factorise, full
 from fem_reference.material import Law, elastic_law
 from fem_reference.mesh import Discretisation, structured_mesh
 from fem_reference.strip import Strip
@@ -30,53 +31,44 @@ class Body:
     strip: Strip  # input data of the strip
     mesh: Discretisation  # discretisation of the strip
     law: Law  # material law
+    part: slice  # range of the strip's nodes in the model's nodal arrays
+    unknowns: slice  # range of its unknowns in the model's
     expansion: csr_matrix  # matrix ``(2 n, m)`` from the unknowns to the displacements, see `clamp`
     stiffness: Pattern  # sparsity pattern of the stiffness over the unknowns
-    # band of springs on the start's section, ``(width + 1, m)``, which make a strip without a clamp
-    # regular. They are part of the factorised matrix only: `fem_reference.tangent` subtracts them again.
-    # None for a clamped strip
+    # band of springs on the start's section, ``(width + 1, m)``, which make the factorised matrix of a strip without a
+    # clamp regular; `fem_reference.system` takes their stiffness away in the section's columns
     anchor: Floats | None
+    offset: Floats  # start ``(2,)`` from that of the first strip, so that a distant scene loses no digits [m]
     round_off: float  # round-off of a nodal force [N], see `force_round_off`
-
-    @property
-    def force_scale(self) -> float:
-        """Scale ``E I / L^2`` of a bending force, independent of the load [N]."""
-        return self.strip.bending_stiffness / self.strip.length**2
 
     def middle(self, end: str) -> Floats:
         """Middle of the edge of an end, ``(2,)`` [m]."""
-        ends = self.mesh.nodes[self.mesh.edges[end][[0, -1]]]
-        return np.asarray(ends.mean(axis=0))
+        return np.asarray(self.mesh.nodes[self.mesh.edges[end][[0, -1]]].mean(axis=0))
 
-    def internal_force(self, u: Array) -> Array:
+    def internal_force(self, u: Floats) -> Floats:
         """Internal nodal forces ``(n, 2)`` [N] from nodal displacements ``u`` ``(n, 2)``."""
         return internal_force(self.mesh, self.law.stress(deformation_gradient(self.mesh, u)))
 
-    def tangent(self, u: Array) -> csc_matrix:
+    def tangent(self, u: Floats) -> csc_matrix:
         """Tangent stiffness over the unknowns."""
-        return self.stiffness.matrix(element_entries(self.mesh, self.law.tangent, u))
+        return full(self.stiffness.band(element_entries(self.mesh, self.law.tangent, u)))
 
     def factorised(self, u: Floats) -> Factor | None:
         """Factorised tangent stiffness with the anchor; None if it is singular or not finite."""
         entries = element_entries(self.mesh, self.law.tangent, u)
-
-        def band() -> Floats:
-            K = self.stiffness.band(entries)
-            if self.anchor is not None:
-                K += self.anchor
-            return K
-
-        return factorise(band) if np.all(np.isfinite(entries)) else None
+        if not np.all(np.isfinite(entries)):
+            return None
+        band = self.stiffness.band(entries)
+        return factorise(band if self.anchor is None else band + self.anchor)
 
     def least_volume(self, u: Floats) -> float:
         """Least determinant of the deformation gradient."""
         F = deformation_gradient(self.mesh, u)
         return float((F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0]).min())
 
-    def strain_energy(self, u: Array) -> float:
+    def strain_energy(self, u: Floats) -> float:
         """Strain energy [J]."""
-        W = self.law.energy(deformation_gradient(self.mesh, u))
-        return float((W * self.mesh.weights).sum())
+        return float((self.law.energy(deformation_gradient(self.mesh, u)) * self.mesh.weights).sum())
 
 
 def discretise(strip: Strip) -> Discretisation:
@@ -88,20 +80,25 @@ def discretise(strip: Strip) -> Discretisation:
     return read_mesh(strip)
 
 
-def build_body(strip: Strip) -> Body:
-    """Discretise a strip and its clamps."""
+def build_body(strip: Strip, before: Sequence[Body] = ()) -> Body:
+    """Discretise a strip and its clamps; its nodes and unknowns follow those of the bodies ``before``."""
     mesh = discretise(strip)
     expansion = clamp(strip, mesh)
     springs = None if strip.clamped else anchor(strip, mesh, expansion, ANCHORED)
     stiffness = pattern(mesh, expansion, springs)
     law = elastic_law(strip.material, strip.youngs_modulus, strip.poissons_ratio, strip.plane)
+    first = before[0].strip if before else strip
+    n, m = (before[-1].part.stop, before[-1].unknowns.stop) if before else (0, 0)
     return Body(
         strip=strip,
         mesh=mesh,
         law=law,
+        part=slice(n, n + len(mesh.nodes)),
+        unknowns=slice(m, m + expansion.shape[1]),
         expansion=expansion,
         stiffness=stiffness,
         anchor=None if springs is None else stiffness.band_of(springs),
+        offset=np.array(strip.start) - np.array(first.start),
         round_off=force_round_off(strip, mesh, law),
     )
 
@@ -116,14 +113,8 @@ def force_round_off(strip: Strip, mesh: Discretisation, law: Law) -> float:
     sides = np.ptp(mesh.places[mesh.cells[:, :4]], axis=1)
     aspect = float((sides.max(axis=1) / sides.min(axis=1)).max())
     modulus = float(law.tangent(np.eye(2)[:, :, None])[0, 0, 0, 0, 0])
-    return (
-        4
-        * float(np.finfo(float).eps)
-        * modulus
-        * max(strip.width, strip.end_width or 0.0)
-        * strip.length
-        * aspect
-    )
+    width = max(strip.width, strip.end_width or 0.0)
+    return 4 * float(np.finfo(float).eps) * modulus * width * strip.length * aspect
 
 
 def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:

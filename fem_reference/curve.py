@@ -8,20 +8,20 @@ of the axis rotate the normal by up to ``F / (G A_e)``, depending on the positio
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
-from scipy.sparse import csr_matrix
+from scipy.optimize import brentq
+from scipy.sparse import csr_matrix, identity
 
-from fem_reference.arrays import Array, Floats, Ints
+from fem_reference.arrays import Floats, Ints
 from fem_reference.mesh import Discretisation
 from fem_reference.problem import Contact
 from fem_reference.strip import Strip
 
 _PROJECTION_STEPS = 40
-_HALF_BAND, _WINDOW = 45, 256
-"""Half bandwidth and window size of `band_slopes`, in stations."""
+_REACH, _WINDOW = 90, 256
+"""Stations beyond which a cardinal spline vanishes, and stations whose slopes are computed at once."""
 
 
 _HERMITE = np.array(
@@ -40,56 +40,45 @@ class ContactCurve:
     """A twice continuously differentiable curve through points that move with the nodes."""
 
     stations: Floats  # undeformed axial coordinates of the points, increasing, ``(m,)`` [m]
-    # slopes of the cardinal splines at the stations in band storage ``(m, 2 b + 1)``, see `band_slopes`
-    # [1/m]
-    slopes: Floats
+    slopes: csr_matrix  # from the points to the slopes of their spline at the stations, ``(m, m)`` [1/m]
     rows: csr_matrix  # weights ``(m, n)`` of the nodes in the points
-    # offsets, kernel: offsets ``(q,)`` [m] and weights ``(q,)`` of the points in the moving average
-    offsets: Floats
-    kernel: Floats
+    offsets: Floats  # offsets ``(q,)`` of the points in the moving average [m]
+    kernel: Floats  # weights ``(q,)`` of these points
 
-    def basis(self, zeta: Any) -> Array:  # a float, or complex for a complex step
+    def basis(self, zeta: float) -> Floats:
         """Averaged cardinal splines and their first two derivatives at ``zeta``, ``(3, m)``."""
-        s = self.stations
-        k, weighted = self.pieces(zeta + self.offsets)
-        first, count = int(k.min()), int(np.ptp(k)) + 2
-        ones = np.eye(count)
-        left, right = ones[k - first], ones[k - first + 1]
-        values, slopes = (weighted[:, n] @ left + weighted[:, n + 1] @ right for n in (0, 2))
-        bandwidth = self.slopes.shape[1]
-        half = bandwidth // 2
-        shifted = np.zeros((count, count + bandwidth))
-        shifted[:, :bandwidth] = self.slopes[first : first + count]
-        # In this view of the padded array each row begins one column further to the right.
-        rows = shifted.ravel()[:-count].reshape(count, count + bandwidth - 1)
-        padded = np.zeros((3, s.size + 2 * half), dtype=weighted.dtype)
-        padded[:, first : first + count + bandwidth - 1] = slopes @ rows
-        padded[:, half + first : half + first + count] += values
-        return padded[:, half : half + s.size]
+        k, factors = self.pieces(zeta)
+        first, both = int(k.min()), np.zeros((2, 3, self.stations.size))
+        hot = np.eye(int(np.ptp(k)) + 2)[[k - first, k - first + 1]]
+        part = slice(first, first + hot.shape[2])
+        both[..., part] = np.tensordot(factors.reshape(3, 2, 2, -1), hot, ((2, 3), (0, 1))).swapaxes(0, 1)
+        return np.asarray(both[0] + (self.spread @ both[1].T).T)
 
     @cached_property
-    def spline(self) -> csr_matrix:
-        """Matrix ``(m, m)`` from the points to the slopes of their spline at the stations [1/m]."""
-        m, half = self.stations.size, self.slopes.shape[1] // 2
-        row = np.repeat(np.arange(m), self.slopes.shape[1]).reshape(self.slopes.shape)
-        column = row + np.arange(self.slopes.shape[1]) - half
-        inside = (column >= 0) & (column < m)
-        return csr_matrix((self.slopes[inside], (row[inside], column[inside])), shape=(m, m))
+    def spread(self) -> csr_matrix:
+        """Transposed `slopes`."""
+        return csr_matrix(self.slopes.T)
 
-    def pieces(self, zeta: Array) -> tuple[Ints, Array]:
-        """Spline intervals that contain the points ``zeta`` ``(q,)``, and Hermite's polynomials there, times the kernel, ``(3, 4, q)``.
+    def at(self, zeta: float, X: Floats, D: Floats) -> Floats:
+        """Position and first two derivatives ``(3, 2)`` of the curve with points X and slopes D at the stations."""
+        k, factors = self.pieces(zeta)
+        return np.asarray(factors.reshape(3, -1) @ np.concatenate([X[k], X[k + 1], D[k], D[k + 1]]))
+
+    def pieces(self, zeta: float) -> tuple[Ints, Floats]:
+        """Spline intervals k ``(q,)`` around ``zeta``, and Hermite's polynomials there, times the kernel, ``(3, 4, q)``.
 
         Rows: value, first and second derivative. Columns: factors of ``X_k``, ``X_k+1`` and the slopes at k and k + 1. Beyond
         the ends the spline is continued along its tangents.
         """
-        s, inner = self.stations, zeta
-        leaves = bool(zeta[0].real < s[0] or zeta[-1].real > s[-1])  # the offsets increase
+        s, places = self.stations, zeta + self.offsets
+        inner = places
+        leaves = bool(places[0] < s[0] or places[-1] > s[-1])  # the offsets increase
         if leaves:
-            inner = np.where(zeta.real < s[0], s[0], np.where(zeta.real > s[-1], s[-1], zeta))
-        k = np.minimum(np.maximum(np.searchsorted(s, inner.real) - 1, 0), s.size - 2)
+            inner = np.clip(places, s[0], s[-1])
+        k = np.minimum(np.maximum(np.searchsorted(s, inner) - 1, 0), s.size - 2)
         h = s[k + 1] - s[k]
         z = (inner - s[k]) / h
-        powers = np.empty((4, z.size), dtype=z.dtype)
+        powers = np.empty((4, z.size))
         powers[0], powers[1] = self.kernel, self.kernel * z
         powers[2] = powers[1] * z
         powers[3] = powers[2] * z
@@ -98,33 +87,23 @@ class ContactCurve:
         hermite[1:] /= h
         hermite[2] /= h
         if leaves:
-            beyond = zeta - inner
+            beyond = places - inner
             hermite[0] += beyond * hermite[1]
             hermite[2] *= beyond == 0
         return k, hermite
 
 
-def band_slopes(stations: Floats) -> Floats:
-    """Slopes of the cardinal not-a-knot splines at the stations, in band storage ``(m, 2 b + 1)`` with b <= 45.
-
-    A cardinal spline is one at one station and zero at all others. Row k holds the slopes at station k of the splines of
-    the stations ``k - b`` to ``k + b``. From station to station the slopes decrease by the factor 0.27, at worst 0.5, so that
-    those outside the band vanish. They are computed in windows of stations; work and memory are proportional to m.
-    """
-    m = stations.size
-    half = min(_HALF_BAND, m - 1)
-    band = np.zeros((m, 2 * half + 1))
+def cardinal_slopes(stations: Floats) -> csr_matrix:
+    """Slopes ``(m, m)`` at the stations of the not-a-knot splines that are one at one station and zero at the others."""
+    m, entries = stations.size, list[tuple[Ints, Ints, Floats]]()
     for first in range(0, m, _WINDOW):
-        last = min(first + _WINDOW, m)
-        low, high = max(0, first - 2 * _HALF_BAND), min(m, last + 2 * _HALF_BAND)
-        near = stations[low:high]
-        full = np.zeros((last - first, high - low + 2 * half))
-        full[:, half : half + near.size] = CubicSpline(near, np.eye(near.size), bc_type="not-a-knot")(
-            stations[first:last], 1
-        )
-        rows = np.arange(last - first)
-        band[first:last] = full[rows[:, None], (first - low + rows)[:, None] + np.arange(2 * half + 1)]
-    return band
+        low, last = max(0, first - _REACH), min(m, first + _WINDOW)
+        near = stations[low : last + _REACH]
+        slopes = CubicSpline(near, np.eye(near.size), bc_type="not-a-knot")(stations[first:last], 1)
+        row, column = np.nonzero(np.abs(slopes) > 1e-17 * np.abs(slopes).max())
+        entries.append((row + first, column + low, slopes[row, column]))
+    rows, columns, values = map(np.concatenate, zip(*entries, strict=True))
+    return csr_matrix((values, (rows, columns)), shape=(m, m))
 
 
 def contact_curve(strip: Strip, mesh: Discretisation, contact: Contact) -> ContactCurve:
@@ -132,19 +111,12 @@ def contact_curve(strip: Strip, mesh: Discretisation, contact: Contact) -> Conta
     stations, rows = mesh.stations, mesh.sections
     if contact.surface == "face":
         face = mesh.edges[contact.side]
-        stations = mesh.places[face, 0]
-        rows = csr_matrix(
-            (np.ones(face.size), (np.arange(face.size), face)), shape=(face.size, len(mesh.nodes))
-        )
+        stations, rows = mesh.places[face, 0], identity(len(mesh.nodes), format="csr")[face]
+    spread = min(1.5 * strip.largest_height, strip.length / 10) if contact.spread is None else contact.spread
+    offsets, kernel = averaging(spread, float(np.diff(stations).min()))
     # SciPy's equations for a spline of few stations are ill-conditioned if lengths are far from 1.
-    slopes = band_slopes(stations / strip.length) / strip.length
-    offsets, kernel = averaging(contact_spread(strip, contact), float(np.diff(stations).min()))
+    slopes = cardinal_slopes(stations / strip.length) / strip.length
     return ContactCurve(stations=stations, slopes=slopes, rows=rows, offsets=offsets, kernel=kernel)
-
-
-def contact_spread(strip: Strip, contact: Contact) -> float:
-    """Half the length of contact averaging [m]: ``contact.spread``, or 1.5 heights and at most a tenth of the length."""
-    return min(1.5 * strip.largest_height, strip.length / 10) if contact.spread is None else contact.spread
 
 
 def averaging(spread: float, spacing: float) -> tuple[Floats, Floats]:
@@ -164,117 +136,74 @@ def averaging(spread: float, spacing: float) -> tuple[Floats, Floats]:
 class Projection:
     """Projection of a point on the curve."""
 
-    zeta: Any  # undeformed axial coordinate of the closest point [m]
+    zeta: float  # undeformed axial coordinate of the closest point [m]
     inside: bool  # whether the closest point lies on the strip and not on the continuation beyond an end
     stationary: bool  # whether the iteration reached ``(r - x_c) . r' = 0`` at ``zeta``
-    distance: Any  # signed distance ``n . (x_c - r)``, positive on the left [m]
-    end_distance: Any  # distance of the point from the end of the curve nearer to ``zeta`` [m]
-    basis: Array  # spline values and derivatives at ``zeta``, ``(3, m)``
-    tangent: Array  # tangent, normal: unit tangent and left normal of the curve, ``(2,)``
-    normal: Array
-    stretch: Any  # stretch, bend, stretch_slope: ``rho = |r'|`` [-], ``n . r''`` and ``t . r''`` [1/m]
-    bend: Any
-    stretch_slope: Any
+    distance: float  # signed distance ``n . (x_c - r)``, positive on the left [m]
+    end_distance: float  # distance of the point from the end of the curve nearer to ``zeta`` [m]
+    tangent: Floats  # unit tangent of the curve, ``(2,)``
+    normal: Floats  # its left normal
+    stretch: float  # ``rho = |r'|``
+    bend: float  # ``n . r''`` [1/m]
+    stretch_slope: float  # ``t . r''`` [1/m]
 
 
-def project(curve: ContactCurve, X: Array, point: Array) -> Projection:
+def project(curve: ContactCurve, X: Floats, point: Floats) -> Projection:
     """Project a point on the curve whose points have the positions ``X`` ``(m, 2)``."""
-    s, from_point = curve.stations, CurveFrom(curve=curve, points=X - point)
-    zeta, stationary = closest(from_point)
-    r, r1, r2 = from_point.at(zeta)
-    stretch = np.sqrt(r1 @ r1)
+    s, Y = curve.stations, X - point  # relative to the point, which loses no digits near it
+    D = curve.slopes @ Y
+    zeta, stationary = closest(curve, Y, D)
+    r, r1, r2 = curve.at(zeta, Y, D)
+    stretch = float(np.sqrt(r1 @ r1))
     tangent = r1 / stretch
     normal = np.array([-tangent[1], tangent[0]])
-    end = from_point.points[0 if 2 * np.real(zeta) < s[0] + s[-1] else -1]
     slack = 1e-12 * (s[-1] - s[0])  # round-off must not place a point at an end beyond it
     return Projection(
         zeta=zeta,
-        inside=bool(s[0] - slack <= np.real(zeta) <= s[-1] + slack),
+        inside=bool(s[0] - slack <= zeta <= s[-1] + slack),
         stationary=stationary,
-        distance=-normal @ r,
-        end_distance=np.sqrt(end @ end),
-        basis=curve.basis(zeta),
+        distance=float(-normal @ r),
+        end_distance=float(np.sqrt((Y[0 if 2 * zeta < s[0] + s[-1] else -1] ** 2).sum())),
         tangent=tangent,
         normal=normal,
         stretch=stretch,
-        bend=normal @ r2,
-        stretch_slope=tangent @ r2,
+        bend=float(normal @ r2),
+        stretch_slope=float(tangent @ r2),
     )
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class CurveFrom:
-    """The curve relative to a point, which loses no digits near the point."""
-
-    curve: ContactCurve  # the contact curve
-    points: Array  # its points less the point ``(m, 2)`` [m]
-
-    @cached_property
-    def _slopes(self) -> Array:
-        """Slopes ``(m, 2)`` of the spline through the points at the stations."""
-        slopes: Array = self.curve.spline @ self.points
-        return slopes
-
-    def at(self, zeta: Any) -> Array:
-        """Position and first two derivatives ``(3, 2)`` at ``zeta``."""
-        k, factors = self.curve.pieces(zeta + self.curve.offsets)
-        X, D = self.points, self._slopes
-        return np.asarray(factors.reshape(3, -1) @ np.concatenate([X[k], X[k + 1], D[k], D[k + 1]]))
-
-    def orthogonality(self, zeta: Any) -> tuple[Any, Any, Any]:
-        """Return ``r . r'``, its slope ``r' . r' + r . r''`` and ``r' . r'``."""
-        r, r1, r2 = self.at(zeta)
-        size = r1 @ r1
-        return r @ r1, size + r @ r2, size
-
-
-def closest(curve: CurveFrom) -> tuple[Any, bool]:
-    """Coordinate of the closest point by Newton's method from the closest station, and whether it is stationary.
+def closest(curve: ContactCurve, Y: Floats, D: Floats) -> tuple[float, bool]:
+    """Coordinate of the point closest to the origin by Newton's method from the closest station, and whether it is stationary.
 
     The curve is continued by one spacing beyond its ends, so that a point beyond an end still has a projection. Near a
     centre of curvature the root is searched between the neighbouring stations.
     """
-    s, X = curve.curve.stations, curve.points
+    s = curve.stations
     low, high = 2 * s[0] - s[1], 2 * s[-1] - s[-2]
-    k = int(np.argmin((X.real**2).sum(axis=1)))
-    zeta, bracket_tried = s[k] + 0 * X[0, 0], False
+    k = int(np.argmin((Y**2).sum(axis=1)))
+    zeta, around, size = (
+        float(s[k]),
+        (s[k - 1] if k else low, s[k + 1] if k + 1 < s.size else high),
+        s[-1] - s[0],
+    )
+
+    def slope(zeta: float) -> float:
+        r, r1, _ = curve.at(zeta, Y, D)
+        return float(r @ r1)
+
     for _ in range(_PROJECTION_STEPS):
-        value, slope, size = curve.orthogonality(zeta)
+        r, r1, r2 = curve.at(zeta, Y, D)
+        squared = r1 @ r1
+        curvature = squared + r @ r2
         # Near and beyond the centre of curvature: a bracketed root, otherwise a Gauss-Newton step.
-        if slope.real <= 0.1 * size.real:
-            if not bracket_tried:
-                bracket_tried, root = True, _bracketed_root(curve, k)
-                if root is not None:
-                    return root, True
-            slope = size
-        step = -value / slope
-        last, zeta = zeta, zeta + step if np.iscomplexobj(X) else min(max(zeta + step, low), high)
-        if abs(step) <= 1e-14 * (s[-1] - s[0]):
+        if curvature <= 0.1 * squared:
+            if slope(around[0]) < 0 < slope(around[1]):
+                return float(brentq(slope, *around, xtol=1e-15 * size)), True
+            curvature = squared
+        step = float(-(r @ r1) / curvature)
+        last, zeta = zeta, min(max(zeta + step, low), high)
+        if abs(step) <= 1e-14 * size:
             return zeta, True
         if zeta == last:
             break
     return zeta, False
-
-
-def _bracketed_root(curve: CurveFrom, k: int) -> Any | None:
-    """Closest point between the neighbours of station k by bracketed Newton iteration; None without a sign change."""
-    stations = curve.curve.stations
-    s = np.concatenate([[2 * stations[0] - stations[1]], stations])
-    s = np.append(s, 2 * s[-1] - s[-2])
-    low, high = float(s[k]), float(s[k + 2])
-    if curve.orthogonality(low)[0].real > 0 or curve.orthogonality(high)[0].real < 0:
-        return None
-    zeta = float(s[k + 1])
-    for _ in range(_PROJECTION_STEPS):
-        value, slope, size = (term.real for term in curve.orthogonality(zeta))
-        low, high = (low, zeta) if value > 0 else (zeta, high)
-        following = zeta - value / slope if slope > 0 else np.inf
-        if not low < following < high:
-            following = (low + high) / 2
-        done = abs(value) <= 1e-14 * size * (s[-1] - s[0]) or following == zeta
-        zeta = following
-        if done:
-            break
-    # One complex Newton step carries the derivative of a complex-step check.
-    value, slope, _ = curve.orthogonality(zeta + 0 * curve.points[0, 0])
-    return zeta - value / slope if np.iscomplexobj(curve.points) else zeta

@@ -15,14 +15,14 @@ or moment of the tie on the end.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from scipy.sparse import csr_matrix
+from scipy.sparse import csr_matrix, kron
 
-from fem_reference.arrays import Array, Floats
-from fem_reference.mesh import Discretisation, edge_moments, edge_weights
-from fem_reference.sampling import SECTION_LAYERS, sample, section_points
+from fem_reference.arrays import Floats
+from fem_reference.contact import Carrier
+from fem_reference.mesh import Discretisation, edge_weights
+from fem_reference.sampling import section_points
 from fem_reference.stages import amount
 from fem_reference.strip import Strip
 
@@ -37,97 +37,71 @@ class EndSection:
     """An end section of the discrete model, or a section inside a strip that bears a moment."""
 
     node: str  # name of the end, ``"strip.end"``, or of the section inside, ``"strip at 0.5"``
-    # undeformed mean position ``(2,)`` in the global frame, relative to the model's origin [m]
-    position: Floats
-    # weights ``(2, n)`` of all nodes of the model in the mean displacement and in the first moment
-    rows: csr_matrix
-    first_moment: Floats  # first moment m at rest ``(2,)``, in the global frame [m]
-    frame: Floats  # rotation ``(2, 2)`` from the strip's frame to the global frame
+    strip: str  # name of the strip
+    arc: float  # axial coordinate of a section with a moment [m]; nan for others
+    carrier: Carrier  # mean position, relative to the model's origin, and first moment m
     height: float  # height of the section [m]
-    # stiffness of the anchor's springs at this end, see `fem_reference.body.Body`; zero without an anchor
-    # [N/m]
-    anchor_stiffness: float
+    anchor_stiffness: float  # stiffness of the anchor's springs at this end; zero without an anchor [N/m]
 
     @property
     def columns(self) -> Floats:
         """Derivatives ``(2 n, 4)`` of mean displacement and first moment with respect to the nodal displacements."""
-        rows = self.rows.toarray()
-        return np.stack(
-            [np.outer(row, axis).ravel() for row in rows for axis in self.frame], axis=-1
-        )  # a row of the frame is a global axis in the strip's frame
+        return np.asarray(self.carrier.transposed.toarray())
 
-    def pose(self, u: Array) -> "Pose":
+    def pose(self, u: Floats) -> "Pose":
         """Motion of the section at the nodal displacements ``u`` ``(n, 2)``."""
-        displacement, change = (self.rows @ u) @ self.frame.T
-        return Pose(
-            displacement=displacement, first_moment=self.first_moment + change, rest=self.first_moment
-        )
+        rest, (position, m) = self.carrier.reference, self.carrier.points(u)
+        x, y = rest[1]
+        rotation = np.arctan2(x * m[1] - y * m[0], x * m[0] + y * m[1])
+        return Pose(position=position, motion=np.append(position - rest[0], rotation), first_moment=m)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Pose:
     """Motion of an end section."""
 
-    displacement: Array  # mean displacement ``(2,)`` in the global frame [m]
-    first_moment: Array  # first_moment, rest: first moment m ``(2,)``, deformed and at rest [m]
-    rest: Floats
+    position: Floats  # mean position ``(2,)``, relative to the model's origin [m]
+    motion: Floats  # mean displacements x and y [m], rotation from the undeformed section in (-pi, pi] [rad]
+    first_moment: Floats  # first moment m ``(2,)`` [m]
 
     @property
-    def rotation(self) -> float:
-        """Rotation from the undeformed section, in (-pi, pi] [rad]."""
-        (x, y), (a, b) = self.rest, self.first_moment
-        return float(np.arctan2(x * b - y * a, x * a + y * b))
-
-    @property
-    def motion(self) -> tuple[Any, Any, float]:
-        """Displacements x and y [m] and rotation [rad]."""
-        return self.displacement[0], self.displacement[1], self.rotation
-
-    @property
-    def gradient(self) -> Array:
+    def gradient(self) -> Floats:
         """Derivatives ``(4, 3)`` of the motion with respect to mean displacement and first moment."""
         x, y = self.first_moment
-        gradient = np.zeros((COLUMNS, 3), dtype=self.first_moment.dtype)
-        gradient[0, 0] = gradient[1, 1] = 1.0
+        gradient = np.eye(COLUMNS, 3)
         gradient[2:, ROTATION] = np.array([-y, x]) / (x * x + y * y)
         return gradient
 
     @property
-    def curvature(self) -> Array:
+    def curvature(self) -> Floats:
         """Second derivatives ``(4, 4)`` of the rotation with respect to mean displacement and first moment."""
         x, y = self.first_moment
-        curvature = np.zeros((COLUMNS, COLUMNS), dtype=self.first_moment.dtype)
+        curvature = np.zeros((COLUMNS, COLUMNS))
         curvature[2:, 2:] = np.array([[2 * x * y, y * y - x * x], [y * y - x * x, -2 * x * y]])
-        curvature /= (x * x + y * y) ** 2
-        return curvature
+        return np.asarray(curvature / (x * x + y * y) ** 2)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Tie:
     """A component of an end's motion: prescribed, or tied to that of another end, rigidly or by a spring."""
 
-    section: int  # section, component: number of the end section, and of the component: x, y or rotation
-    component: int
+    section: int  # number of the end section
+    component: int  # x, y or rotation
     other: int | None = None  # number of the other end section; None if the component is prescribed
     rates: tuple[float, ...] = (0.0,)  # change of the prescribed motion in every stage [m or rad]
-    # difference of the motions over the force against it, the inverse of a spring's stiffness; zero for a
-    # rigid tie
-    flexibility: float = 0.0
+    flexibility: float = 0.0  # the inverse of a spring's stiffness; zero for a rigid tie
 
     @property
     def grounded(self) -> bool:
         """Whether the tie is a spring to the ground."""
         return self.other is None and self.flexibility > 0
 
-    def residual(self, poses: tuple[Pose, ...], t: float, force: Any) -> float:
+    def residual(self, poses: tuple[Pose, ...], t: float, force: float) -> float:
         """Motion less the prescribed one or the other end's, plus the flexibility times the ``force``; an angle is in [-pi, pi] [m or rad]."""
         target = amount(self.rates, t) if self.other is None else poses[self.other].motion[self.component]
         difference = float(poses[self.section].motion[self.component] - target + self.flexibility * force)
-        return (
-            float(np.remainder(difference + np.pi, 2 * np.pi) - np.pi)
-            if self.component == ROTATION
-            else difference
-        )
+        turns = self.component == ROTATION
+        return float(np.remainder(difference + np.pi, 2 * np.pi) - np.pi) if turns else difference
 
 
 def end_rows(strip: Strip, mesh: Discretisation, end: str) -> tuple[csr_matrix, float]:
@@ -135,33 +109,25 @@ def end_rows(strip: Strip, mesh: Discretisation, end: str) -> tuple[csr_matrix, 
     edge = mesh.edges[end]
     y = mesh.places[edge, 1]
     weights = edge_weights(strip.element, y)
-    moments = edge_moments(strip.element, y - weights @ y)
+    moments = edge_weights(strip.element, y, y - weights @ y)
     moments = moments * (strip.length / (moments @ y))
-    rows = csr_matrix(
-        (np.concatenate([weights, moments]), (np.repeat([0, 1], edge.size), np.tile(edge, 2))),
-        shape=(2, len(mesh.nodes)),
-    )
+    columns, values = np.tile(edge, 2), np.concatenate([weights, moments])
+    rows = csr_matrix((values, (np.repeat([0, 1], edge.size), columns)), shape=(2, len(mesh.nodes)))
     return rows, float(y[-1] - y[0])
 
 
 def inner_rows(strip: Strip, mesh: Discretisation, at: float) -> tuple[csr_matrix, float]:
     """Weights like `end_rows` of the section at the part ``at`` of a strip's length, and its height."""
-    layers = strip.mesh[1] if strip.mesh_file is None else SECTION_LAYERS
-    station = np.array([at * strip.length])
-    points, shares, heights = section_points(mesh.places, mesh.edges, station, layers)
+    points, shares, heights = section_points(strip, mesh.places, mesh.edges, np.array([at * strip.length]))
     y = points[:, 1]
     moments = shares * (y - shares @ y)
     moments = moments * (strip.length / (moments @ y))
-    rows = csr_matrix(np.stack([shares, moments])) @ sample(mesh, points).rows(len(mesh.nodes))
-    return rows, float(heights[0])
+    return csr_matrix(np.stack([shares, moments]) @ mesh.basis.probes(points.T)), float(heights[0])
 
 
 def anchor(strip: Strip, mesh: Discretisation, expansion: csr_matrix, end: str) -> csr_matrix:
     """Stiffness ``(m, m)`` of springs `anchor_stiffness` on mean displacement and first moment of an end."""
-    rows, _ = end_rows(strip, mesh, end)
-    both = csr_matrix(np.kron(rows[:, mesh.edges[end]].toarray(), np.eye(2)))
-    dofs = (2 * mesh.edges[end][:, None] + np.arange(2)).ravel()
-    columns = expansion[dofs].T @ both.T
+    columns = expansion.T @ kron(end_rows(strip, mesh, end)[0], np.eye(2)).T
     return csr_matrix(anchor_stiffness(strip) * columns @ columns.T)
 
 

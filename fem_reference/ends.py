@@ -5,35 +5,31 @@ radius of its pin; a point goes through it.
 """
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.interpolate import CubicHermiteSpline
 
 from fem_reference.arrays import Floats
 from fem_reference.contact import Pair
-from fem_reference.model import Model
-from fem_reference.settings import Settings
-from fem_reference.slip_events import same_set
 from fem_reference.state import State
-from fem_reference.track import Accepted
+from fem_reference.track import Accepted, located
 
 _SAMPLES, _PARTS = 4000, 20
 """Largest number of places within a step at which a node is sought over an end, and places on the way of one radius."""
+_MET = 1e-9
+"""Part of the length of the longest strip at which a node has met an end."""
 _BESIDE = 1e-6
 """Part of the half height by which a node in contact with a face may be below it."""
 
 
 def room(pair: Pair, u: Floats, node: Floats, *, inside: bool) -> float:
-    """Least distance of the node's surface from the free ends; negative where they overlap, infinite beside the strip.
-
-    ``pair, u, node``: the pair, the nodal displacements ``(n, 2)``, and the position of the node ``(2,)``
-    [m]. ``inside``: whether a point of the contact curve is closest to the node.
-    """
+    """Least distance of the node's surface from the free ends; negative where they overlap, infinite beside the strip."""
     beyond, behind = list[float](), list[float]()
     for end, corners in pair.ends.items():
         first, last = corners.points(u)
-        across = (last - first) / np.hypot(*(last - first))
+        height = np.hypot(*(last - first))
+        across = (last - first) / height
         away = node - (first + last) / 2
         along = (1.0 if end == "end" else -1.0) * np.array([across[1], -across[0]])
-        half = np.hypot(*(last - first)) / 2 if pair.contact.surface == "face" else 0.0
+        half = height / 2 if pair.contact.surface == "face" else 0.0
         ahead, aside = float(away @ along), abs(float(away @ across)) - half
         if ahead > 0 or (aside >= 0 and not inside):
             beyond.append(float(np.hypot(ahead, max(aside, 0.0))) - pair.radius)
@@ -45,81 +41,52 @@ def room(pair: Pair, u: Floats, node: Floats, *, inside: bool) -> float:
 def nearest_end(pair: Pair, state: State) -> str:
     """Name of the end of a pair's strip that is nearest to the node."""
     node = pair.position(state.u, state.t)
-    return min(
-        pair.ends, key=lambda end: float(np.hypot(*(pair.ends[end].points(state.u).mean(axis=0) - node)))
-    )
+    return min(pair.ends, key=lambda end: np.hypot(*(pair.ends[end].points(state.u).mean(axis=0) - node)))
 
 
-def end_contact(
-    model: Model, last: Accepted, candidate: Accepted, settings: Settings
-) -> tuple[float, int, Accepted] | None:
-    """First load parameter in a step at which a node meets an end, the pair, and the state before; None without one."""
-    found = [
-        event
-        for number, pair in enumerate(model.pairs)
-        if pair.ends and (event := _met(model, number, last, candidate, settings)) is not None
-    ]
-    return min(found, key=lambda event: event[0], default=None)
+def end_contact(last: Accepted, candidate: Accepted) -> tuple[Accepted, int] | None:
+    """State in a step at which a node first meets an end, before it touches between the ends, and the pair; None without one."""
+    found = list[tuple[Accepted, int]]()
+    for number, pair in enumerate(last.state.model.pairs):
+        over = _overlap(pair, number, last, candidate) if pair.ends else None
+        if over is None:
+            continue
 
+        def distance(at: Accepted, pair: Pair = pair, number: int = number) -> float:
+            state = at.state
+            node = pair.position(state.u, at.t)
+            return min(room(pair, state.u, node, inside=state.touches[number].at.inside), state.model.length)
 
-def _met(
-    model: Model, number: int, last: Accepted, candidate: Accepted, settings: Settings
-) -> tuple[float, int, Accepted] | None:
-    """Locate where the open contact of one pair meets an end, before it touches between the ends."""
-    pair, near = model.pairs[number], last
-
-    def value(t: float) -> float:
-        nonlocal near
-        at = last if t == last.state.t else same_set(model, last, t, settings)
-        if at is None:
-            raise _NoStateError
-        u, projection = at.state.u, at.state.touches[number].projection
-        distance = min(room(pair, u, pair.position(u, t), inside=projection.inside), model.length)
-        near = at if distance >= 0 and t >= near.state.t else near
-        return distance
-
-    over = _overlap(pair, number, last, candidate)
-    try:
-        if over is None or value(last.state.t) < 0 or value(over) >= 0:
-            return None
-        return float(brentq(value, last.state.t, over, xtol=1e-15, rtol=1e-12)), number, near
-    except _NoStateError:
-        return None
-
-
-class _NoStateError(Exception):
-    """No equilibrium was found within a step."""
+        met = located(last, over, distance) if distance(last) >= 0 else None
+        if met is not None and distance(met) <= _MET * last.state.model.length:
+            found.append((met, number))
+    return min(found, key=lambda one: one[0].t, default=None)
 
 
 def _overlap(pair: Pair, number: int, last: Accepted, candidate: Accepted) -> float | None:
-    """First load parameter in a step at which an open contact's node is over an end.
-
-    The displacements between the states are Hermite's polynomial; where contacts change, they go on at their rate from the first state.
-    """
+    """First load parameter in a step at which an open contact's node is over an end."""
     before, after = last.state, candidate.state
     if before.touches[number].closed:
         return None
     span = after.t - before.t
-    first = span * last.rate(before.t, after.t).u
-    bend = np.zeros((2, *first.shape))
+    first = last.rate(before.t, after.t).u
+    end, final = before.u + span * first, first
     if before.contact_set == after.contact_set:
-        final, d = span * candidate.rate(before.t, after.t).u, after.u - before.u
-        bend = np.array([3 * d - 2 * first - final, first + final - 2 * d])
-    begin, end = (
-        pair.position(before.u, before.t),
-        pair.position(before.u + first + bend.sum(axis=0), after.t),
+        end, final = after.u, candidate.rate(before.t, after.t).u
+    path = CubicHermiteSpline([before.t, after.t], [before.u, end], [first, final])
+    moved = (
+        np.hypot(*(pair.position(end, after.t) - pair.position(before.u, before.t)))
+        + span * np.abs(first).max()
     )
-    moved = float(np.hypot(*(end - begin))) + float(np.abs(first).max(initial=0.0))
     size = pair.radius or pair.curve.stations[-1] / _PARTS
     count = int(np.clip(np.ceil(_PARTS * moved / size), 2, _SAMPLES))
     ahead = True
-    for part in np.linspace(0.0, 1.0, count + 1).tolist():
-        t = before.t + part * span
-        u = before.u + part * (first + part * (bend[0] + part * bend[1]))
+    for t in np.linspace(before.t, after.t, count + 1).tolist():
+        u = path(t)
         node = pair.position(u, t)
         was_ahead, ahead = ahead, 0 < room(pair, u, node, inside=True) < np.inf
         # the projection is dear, and decides only beside an end
-        if part == 0 or room(pair, u, node, inside=False) >= 0:
+        if t == before.t or room(pair, u, node, inside=False) >= 0:
             continue
         at = pair.project(u, t)
         if at.inside and not was_ahead and pair.gap(at) < 0:

@@ -1,16 +1,28 @@
-"""Events: the changes of contacts on the way."""
+"""Events on the way: the changes of contacts, and where within a step they are.
 
-from dataclasses import dataclass
+In a scene with friction a node touches or leaves, a slip comes to rest, or a contact that sticks begins to slip. Slip counts from
+accepted states, and a contact sticks where its slip came to rest. An accepted state therefore lies at every such event, so that the
+answer does not depend on the load steps. In every scene, the contact with a round pin changes from a point to a line where the
+strip becomes as curved as the pin.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
-from fem_reference.model import Model
-from fem_reference.slip_events import about_to_change
+from fem_reference.contact import Touch
+from fem_reference.newton import revised
 from fem_reference.state import State
-from fem_reference.touch import Touch
+from fem_reference.track import Accepted, accept, located
 
 TOUCH, RELEASE, SLIP, STICK, SLIP_OFF = "touch", "release", "slip", "stick", "slip-off"
 """Kinds of events."""
+_COINCIDENT = 1e-4
+"""Interval of the load parameter in which different events may be simultaneous."""
+_TOUCHING = 1e-9
+"""Gap of a contact that touches, over the strip's length, and force of one that leaves, over the scale of forces."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,40 +30,120 @@ class ContactEvent:
     """A change of a contact."""
 
     kind: str  # ``"touch"``, ``"release"``, ``"slip"``, ``"stick"`` or ``"slip-off"``
-    # pair, load_parameter: index of the contact, and the load parameter: with friction in the scene that of
-    # the event, else of the first accepted state behind it
-    pair: int
-    load_parameter: float
-    arc_position: float  # arc_position, force: coordinate [m] and magnitude of the force [N] before the event
-    force: float
+    pair: int  # index of the contact
+    load_parameter: float  # with friction in the scene that of the event, else of the next accepted state
+    arc_position: float  # coordinate before the event [m]
+    force: float  # magnitude of the force before the event [N]
     direction: int  # direction of the slip behind it, 1 or -1; 0 without slip
 
 
 def contact_event(kind: str, touch: Touch, pair: int, t: float, direction: int) -> ContactEvent:
     """Return an event of a contact that was in a state before."""
-    force = float(np.hypot(touch.force, touch.tangential_force))
+    force, arc = float(np.hypot(touch.force, touch.tangential)), touch.at.zeta
     return ContactEvent(
-        kind=kind,
-        pair=pair,
-        load_parameter=t,
-        arc_position=float(touch.projection.zeta),
-        force=force,
-        direction=direction,
+        kind=kind, pair=pair, load_parameter=t, arc_position=arc, force=force, direction=direction
     )
 
 
-def changes(model: Model, before: State, after: State) -> list[ContactEvent]:
+def changes(before: State, after: State) -> Iterator[ContactEvent]:
     """Events by which the contacts of an accepted state became those of the next one."""
-    found = []
-    for pair, ((closed, old), (closes, new)) in enumerate(
-        zip(before.contact_set, after.contact_set, strict=True)
-    ):
-        touch = before.touches[pair]
-        if closed != closes:
-            located = about_to_change(model, touch)
-            at = touch if located or closed else after.touches[pair]
-            t = before.t if located else after.t
-            found.append(contact_event(TOUCH if closes else RELEASE, at, pair, t, new))
-        elif old != new:
-            found.append(contact_event(SLIP if new else STICK, after.touches[pair], pair, after.t, new))
-    return found
+    for pair, (old, new) in enumerate(zip(before.touches, after.touches, strict=True)):
+        if old.closed != new.closed:
+            met = _about_to_change(before, old)
+            kind, at = (TOUCH if new.closed else RELEASE), (old if met or old.closed else new)
+            yield contact_event(kind, at, pair, before.t if met else after.t, new.direction)
+        elif old.direction != new.direction:
+            yield contact_event(SLIP if new.direction else STICK, new, pair, after.t, new.direction)
+
+
+def _about_to_change(state: State, touch: Touch) -> bool:
+    """Whether an open contact touches without force, or a closed one bears none."""
+    if touch.closed:
+        return touch.force <= _TOUCHING * state.model.force_scale
+    return touch.gap <= _TOUCHING * touch.pair.length
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Event:
+    """A change of a contact within a step, as a value that is positive before and vanishes there."""
+
+    pair: int  # index of the contact
+    margin: Callable[[Accepted], float]  # the value
+    direction: int | None = None  # direction of the slip from there on; None for a touch and a release
+
+
+def first_event(last: Accepted, candidate: Accepted) -> tuple[Accepted, int | None] | None:
+    """State at the first event between an accepted state and the next one, in a scene with friction; None without one.
+
+    If other contacts change before, the second is the contact of the event, which is not the first one. Within a step shorter than
+    `_COINCIDENT` such changes count as simultaneous, and the event is not located.
+    """
+    found = list[tuple[Accepted, int]]()
+    for event in _expected(last, candidate):
+        at = located(last, candidate.t, event.margin)
+        if at is not None and event.direction is not None:
+            touches = list(at.state.touches)
+            touches[event.pair] = replace(touches[event.pair], direction=event.direction)
+            at = accept(at.state.touching(touches))
+        if at is not None:
+            found.append((at, event.pair))
+    if not found:
+        return None
+    at, pair = min(found, key=lambda one: one[0].t)
+    now = revised(at.state).contact_set
+    if all(a == b for k, (a, b) in enumerate(zip(at.state.contact_set, now, strict=True)) if k != pair):
+        return at, None
+    return None if candidate.t - last.t < _COINCIDENT else (at, pair)
+
+
+def _expected(last: Accepted, candidate: Accepted) -> Iterator[Event]:
+    """Events in a scene with friction, one for every contact that changes within a step."""
+    touches = last.state.touches
+    if all(touch.begin is None for touch in touches):
+        return
+    for pair, (before, after) in enumerate(zip(touches, candidate.state.touches, strict=True)):
+        if before.closed != after.closed:
+            if not _about_to_change(last.state, before):
+                yield Event(pair=pair, margin=partial(_apart, pair))
+        elif before.rubs and before.direction:
+            if event := _rest(last, candidate, pair):
+                yield event
+        elif before.rubs and after.direction:
+            yield Event(pair=pair, margin=partial(_grip, pair, after.direction), direction=after.direction)
+
+
+def _apart(pair: int, at: Accepted) -> float:
+    """Force of a closed contact [N], or gap of an open one [m]."""
+    touch = at.state.touches[pair]
+    return touch.force if touch.closed else touch.gap
+
+
+def _grip(pair: int, direction: int, at: Accepted) -> float:
+    """Tangential force that a contact bears until it slips in a direction [N]."""
+    touch = at.state.touches[pair]
+    return touch.largest_tangential - direction * touch.tangential
+
+
+def _rest(last: Accepted, candidate: Accepted, pair: int) -> Event | None:
+    """Rest of a slip, at the last state at a corner of a pin's path; None if the slip goes on."""
+    sign = last.state.touches[pair].direction
+
+    def rate(at: Accepted) -> float:
+        return sign * float(at.slip_rates(pair, forward=at is last)[0])
+
+    goes_on = candidate.state.touches[pair].direction == sign
+    return (
+        None
+        if goes_on and not rate(candidate) < 0 < rate(last)
+        else Event(pair=pair, margin=rate, direction=0)
+    )
+
+
+def clearance(state: State) -> tuple[float, int]:
+    """Least clearance ``1 - R kappa`` of a closed contact with a round pin, positive before they touch along a line, and its index."""
+    found = [
+        (1.0 - touch.pair.radius * touch.pair.contact.sign * touch.at.bend / touch.at.stretch**2, number)
+        for number, touch in enumerate(state.touches)
+        if touch.closed and touch.pair.radius > 0
+    ]
+    return min(found, default=(np.inf, -1))

@@ -23,57 +23,39 @@ _GROWTH = 1e3
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Factor:
-    """A factorised symmetric matrix K. A solution is found in two halves."""
+    """A factorised symmetric matrix K. A solution is found in two halves, of which columns need the first one only."""
 
-    # first half ``h(b)`` of the solution for ``b`` ``(m,)`` or ``(m, c)``: ``L^-1 b`` by Cholesky, else b itself
-    half: Callable[[Floats], Floats]
+    half: Callable[[Floats], Floats]  # first half h(b) for ``b`` ``(m, ...)``: ``L^-1 b``, or b itself
     rest: Callable[[Floats], Floats]  # second half: ``K^-1 b`` from ``h(b)``
     product: Callable[[Floats, Floats], Floats]  # ``a^T K^-1 b`` from ``h(a)`` and ``h(b)``
-    negatives: Callable[[], int]  # function that returns the number of negative eigenvalues
-
-    def solve(self, right: Floats) -> Floats:
-        """Solution of ``K x = b`` for ``b`` ``(m,)`` or ``(m, c)``."""
-        return self.rest(self.half(right))
+    negatives: Callable[[], int]  # the number of negative eigenvalues
 
 
-def factorise(matrix: Callable[[], Floats]) -> Factor | None:
-    """Factorise a symmetric matrix; None if it is singular.
-
-    ``matrix`` returns the matrix in lower band storage ``(width + 1, m)``, in Fortran order, as a new array in every call.
-    """
-    return _definite(matrix()) or _indefinite(matrix())
-
-
-def _definite(band: Floats) -> Factor | None:
-    """Factorise and overwrite a positive definite matrix; None if it is not."""
-    lower, failed = dpbtrf(band, lower=1, overwrite_ab=1)
+def factorise(band: Floats) -> Factor | None:
+    """Factorise a symmetric matrix in lower band storage ``(width + 1, m)``; None if it is singular."""
+    lower, failed = dpbtrf(band, lower=1)
     if failed:
-        return None
+        return _indefinite(band)
+
+    def triangular(right: Floats, trans: str) -> Floats:
+        return np.asarray(dtbtrs(lower, right, uplo="L", trans=trans)[0]).reshape(right.shape)
+
     return Factor(
-        half=lambda right: _triangular(lower, right),
-        rest=lambda half: _triangular(lower, half, transposed=True),
+        half=lambda right: triangular(right, "N"),
+        rest=lambda half: triangular(half, "T"),
         product=lambda a, b: np.asarray(a.T @ b),
         negatives=lambda: 0,
     )
 
 
-def _triangular(lower: Floats, right: Floats, *, transposed: bool = False) -> Floats:
-    """Solve ``L x = b`` or ``L^T x = b``."""
-    solution, _ = dtbtrs(lower, right, uplo="L", trans="T" if transposed else "N")
-    return np.asarray(solution).reshape(right.shape)
-
-
 def _indefinite(band: Floats) -> Factor | None:
-    """Factorise a symmetric matrix; None if it is singular."""
-    lower = [entries[: band.shape[1] - k] for k, entries in enumerate(band)]
-    width = len(lower) - 1
-    matrix = csc_matrix(diags([*lower[:0:-1], *lower], [*range(width, 0, -1), *range(0, -width - 1, -1)]))
+    """Factorise a symmetric matrix that is not positive definite; None if it is singular."""
+    matrix = full(band)
     symmetric = _superlu(matrix, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    accurate = (
-        symmetric is not None
-        and (symmetric.perm_r == symmetric.perm_c).all()
-        and not _grown(symmetric, matrix)
-    )
+    accurate = symmetric is not None and bool((symmetric.perm_r == symmetric.perm_c).all())
+    if symmetric is not None and accurate:
+        rows = np.abs(symmetric.L) @ (np.abs(symmetric.U) @ np.ones(band.shape[1]))
+        accurate = bool(rows.max() <= _GROWTH * np.abs(matrix).sum(axis=1).max())
     lu = symmetric if accurate else _superlu(matrix)
     if lu is None:
         return None
@@ -81,7 +63,15 @@ def _indefinite(band: Floats) -> Factor | None:
         half=lambda right: right,
         rest=lambda half: np.asarray(lu.solve(np.ascontiguousarray(half))),
         product=lambda a, b: np.asarray(a.T @ lu.solve(np.ascontiguousarray(b))),
-        negatives=lambda: int((lu.U.diagonal() < 0).sum()) if accurate else count_negatives(band),
+        negatives=lambda: int((lu.U.diagonal() < 0).sum()) if accurate else _count_negatives(band),
+    )
+
+
+def full(band: Floats) -> csc_matrix:
+    """Symmetric matrix ``(m, m)`` from its lower band storage."""
+    lower = [entries[: band.shape[1] - k] for k, entries in enumerate(band)]
+    return csc_matrix(
+        diags([*lower[:0:-1], *lower], [*range(len(lower) - 1, 0, -1), *range(0, -len(lower), -1)])
     )
 
 
@@ -93,13 +83,7 @@ def _superlu(matrix: csc_matrix, **options: object) -> SuperLU | None:
         return None
 
 
-def _grown(lu: SuperLU, matrix: csc_matrix) -> bool:
-    """Whether the factors are so much larger than the matrix that they are inaccurate."""
-    rows = np.abs(lu.L) @ (np.abs(lu.U) @ np.ones(matrix.shape[0]))
-    return not rows.max() <= _GROWTH * np.abs(matrix).sum(axis=1).max()
-
-
-def count_negatives(band: Floats) -> int:
+def _count_negatives(band: Floats) -> int:
     """Count the negative eigenvalues of a matrix in lower band storage ``(width + 1, m)`` by computing them."""
     bound = 2 * band.shape[0] * float(np.abs(band).max())
     return int(eigvals_banded(band, lower=True, select="v", select_range=(-bound, 0.0)).size)

@@ -26,132 +26,87 @@ With the columns ``y = (dg/du, W^T t, W'^T n, W'^T t)^T du`` and the notation of
 The last line makes the tangent unsymmetric, as does ``sigma mu`` in slip.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from fem_reference.arrays import Array, Floats
-from fem_reference.checks import Point
-from fem_reference.contact import Pair
+from fem_reference.arrays import Floats
+from fem_reference.contact import Touch
 from fem_reference.curve import Projection
 
-COLUMNS = 4
-"""Number of columns of a closed contact with friction."""
+
+def slip(touch: Touch) -> float:
+    """Slip ``xi - xi_n`` since the last accepted state, also where the contact is open; zero without friction [m]."""
+    at, begin = touch.at, touch.begin
+    if begin is None:
+        return 0.0
+    (c, s), (a, b) = begin.tangent, at.tangent
+    rolled = touch.pair.contact.sign * touch.pair.radius * np.arctan2(c * b - s * a, c * a + s * b)
+    return float((begin.stretch + at.stretch) / 2 * (at.zeta - begin.zeta) - rolled)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Friction:
-    """Friction at a contact: the present equation and force, and what the last accepted state left."""
-
-    # 0 where the contact sticks; 1 or -1 where the node slips along the strip's tangent or against it
-    direction: int = 0
-    force: float = 0.0  # tangential force T on the strip along t; zero if open [N]
-    # zeta, tangent, stretch: coordinate [m], unit tangent and stretch rho of the contact curve at the last
-    # accepted state
-    zeta: float
-    tangent: Point
-    stretch: float
-    last_force: float = 0.0  # tangential force there [N]
-    slip: float = 0.0  # slip, dissipated: sum of the slips [m], and the dissipated energy [J] up to there
-    dissipated: float = 0.0
-
-    def opened(self) -> "Friction":
-        """Return the friction of the contact after opening."""
-        return replace(self, direction=0, force=0.0)
-
-
-def friction_at(at: Projection) -> Friction:
-    """Friction of a contact whose first accepted state has the projection ``at``."""
-    return Friction(zeta=float(at.zeta), tangent=_point(at.tangent), stretch=float(at.stretch))
-
-
-def settled(pair: Pair, at: Projection, friction: Friction, *, closed: bool) -> Friction:
-    """Friction after a state was accepted: its slip and its dissipated energy are added, and slip counts from there.
-
-    The energy is ``(T_n + T) (xi - xi_n) / 2`` in slip, see `force_before_slip` for T_n.
-    """
-    slip = float(slip_increment(pair, at, friction)) if closed and friction.direction else 0.0
-    begin = force_before_slip(friction, friction.last_force)
-    return replace(
-        friction,
-        zeta=float(at.zeta),
-        tangent=_point(at.tangent),
-        stretch=float(at.stretch),
-        last_force=friction.force,
-        slip=friction.slip + slip,
-        dissipated=friction.dissipated + (begin + friction.force) * slip / 2,
-    )
-
-
-def force_before_slip(friction: Friction, last: float) -> float:
-    """Tangential force at which a present slip began since a state with the force ``last`` [N].
-
-    It is that force, or the present one where the contact has turned in between: it slips only after that.
-    """
-    return friction.force if friction.direction * last < 0 else last
-
-
-def _point(vector: Floats) -> Point:
-    return float(vector[0]), float(vector[1])
-
-
-def slip_increment(pair: Pair, at: Projection, friction: Friction) -> Array:
-    """Slip ``xi - xi_n`` of a projection since the last accepted state [m]; the strip turns less than half a turn."""
-    x, y = friction.tangent
-    sine, cosine = x * at.tangent[1] - y * at.tangent[0], x * at.tangent[0] + y * at.tangent[1]
-    turn = 2 * np.arctan(sine / (1 + cosine))
-    length = (friction.stretch + at.stretch) / 2 * (at.zeta - friction.zeta)
-    return np.asarray(length - pair.contact.sign * pair.radius * turn)
-
-
-def slip_residual(pair: Pair, at: Projection, friction: Friction, normal_force: float) -> float:
+def slip_residual(touch: Touch) -> float:
     """Residual of the friction's equation: the slip [m] in stick, ``T - sigma mu lam`` [N] in slip."""
-    if friction.direction:
-        return friction.force - friction.direction * pair.contact.friction * normal_force
-    return float(slip_increment(pair, at, friction))
+    if touch.direction:
+        return touch.tangential - touch.direction * touch.largest_tangential
+    return slip(touch)
 
 
-def stretch_column(pair: Pair, at: Projection) -> Array:
-    """Column ``W'^T t`` ``(2 n, 1)`` beside those of `Pair.gap_derivatives`."""
-    column: Array = pair.carrier.nodal_forces(at.basis[1:2], at.tangent[None]).reshape(-1, 1)
-    return column
-
-
-def motion_gradients(at: Projection) -> tuple[Array, Array, Array]:
+def _motion_gradients(at: Projection) -> tuple[Floats, Floats, Floats]:
     """Derivatives of zeta [m], theta and rho with respect to the columns' motions y, each ``(4,)``."""
-    d = -at.distance
-    along, across, stretching = np.eye(COLUMNS)[1:]
-    zeta = -(at.stretch * along + d * across) / (at.stretch**2 + d * at.bend)
+    along, across, stretching = np.eye(4)[1:]
+    zeta = (at.distance * across - at.stretch * along) / (at.stretch**2 - at.distance * at.bend)
     return zeta, (across + at.bend * zeta) / at.stretch, stretching + at.stretch_slope * zeta
 
 
-def slip_gradient(pair: Pair, at: Projection, friction: Friction) -> Array:
-    """Derivative ``(4,)`` of `slip_increment` with respect to the columns' motions y."""
-    zeta, theta, stretch = motion_gradients(at)
-    rolled = pair.contact.sign * pair.radius * theta
-    gradient: Array = (friction.stretch + at.stretch) / 2 * zeta + (at.zeta - friction.zeta) / 2 * stretch
-    return gradient - rolled
+def slip_gradient(touch: Touch) -> Floats:
+    """Derivative ``(4,)`` of `slip` with respect to the columns' motions y."""
+    at, begin = touch.at, touch.begin
+    assert begin is not None, "a contact that rubs has friction"
+    zeta, theta, stretch = _motion_gradients(at)
+    rolled = touch.pair.contact.sign * touch.pair.radius * theta
+    return np.asarray((begin.stretch + at.stretch) / 2 * zeta + (at.zeta - begin.zeta) / 2 * stretch - rolled)
 
 
-def force_curvature(pair: Pair, at: Projection) -> Array:
-    """Matrix G ``(4, 4)`` of the derivative ``U G U^T du`` of the force's direction ``W^T t`` [1/m]."""
-    zeta, theta, _ = motion_gradients(at)
-    G = np.zeros((COLUMNS, COLUMNS), dtype=zeta.dtype)
-    G[0] = -pair.contact.sign * theta  # W^T n = -s dg/du
-    G[3] = zeta
-    return G
+def stiffness(touch: Touch) -> Floats:
+    """Derivative of the contact force in the columns: ``lam H``, and ``T G`` of friction, ``(3, 3)`` or ``(4, 4)``.
 
-
-def mapped(friction: Friction, slip: float, largest_force: float, allowed: tuple[float, float]) -> Friction:
-    """Return mapping of a converged friction; the same one where its equation holds.
-
-    ``friction``: friction with the converged force. ``slip``: slip since the last accepted state [m].
-    ``largest_force``: radius ``mu lam`` of the cone [N]. ``allowed``: slip [m] against the force, and force
-    [N] beyond the cone, that are round-off.
+    G is the derivative ``U G U^T du`` of the direction ``W^T t`` of the friction's force; ``W^T n = -s dg/du``.
     """
-    if friction.direction:
-        return replace(friction, direction=0) if friction.direction * slip < -allowed[0] else friction
-    if abs(friction.force) <= largest_force + allowed[1]:
-        return friction
-    direction = 1 if friction.force > 0 else -1
-    return replace(friction, direction=direction, force=direction * largest_force)
+    block = touch.force * touch.curvature
+    if touch.rubs:
+        zeta, theta, _ = _motion_gradients(touch.at)
+        block[0] -= touch.tangential * touch.pair.contact.sign * theta
+        block[3] += touch.tangential * zeta
+    return block
+
+
+def mapped(touch: Touch, allowed: tuple[float, float]) -> Touch:
+    """Return mapping of a converged contact; ``allowed`` are the slip [m] and the force [N] that are round-off."""
+    if touch.direction:
+        return replace(touch, direction=0) if touch.direction * slip(touch) < -allowed[0] else touch
+    if abs(touch.tangential) <= touch.largest_tangential + allowed[1]:
+        return touch
+    direction = 1 if touch.tangential > 0 else -1
+    return replace(touch, direction=direction, tangential=direction * touch.largest_tangential)
+
+
+def slipping(touch: Touch) -> Touch:
+    """Return the contact with slip as it has slid since the last accepted state."""
+    return replace(touch, direction=int(np.sign(slip(touch))))
+
+
+def settled(touch: Touch) -> Touch:
+    """Return the contact after its state was accepted: slip counts from there."""
+    if touch.begin is None:
+        return touch
+    return replace(
+        touch,
+        begin=touch.at,
+        slipped=touch.slipped + (slip(touch) if touch.closed and touch.direction else 0.0),
+    )
+
+
+def force_before_slip(direction: int, force: float, last: float) -> float:
+    """Force at which a slip began since a state with the force ``last``; behind a turn in between, the present one [N]."""
+    return force if direction * last < 0 else last

@@ -1,4 +1,4 @@
-"""Dead loads inside a strip: forces at points of the axis, and forces per length such as a weight.
+"""Dead loads on a strip: forces and moments on its sections, and forces per length such as a weight.
 
 They act on the sections of the strip:
 
@@ -8,25 +8,25 @@ They act on the sections of the strip:
 """
 
 from dataclasses import dataclass
-from math import isfinite
 
 import numpy as np
+from scipy.interpolate import lagrange
 
 from fem_reference.arrays import Floats
-from fem_reference.checks import Point, require, require_point
+from fem_reference.checks import Point, require, require_finite
 from fem_reference.strip import Strip
 
 
 @dataclass(frozen=True, kw_only=True)
 class PointLoad:
-    """A dead force and a dead moment on the section inside a strip: the force evenly over its height, the moment linearly.
+    """A dead force and a dead moment on a section of a strip: the force evenly over its height, the moment linearly.
 
     Parameters
     ----------
     strip
         Name of the strip.
     at
-        Position of the section over the length, between 0 and 1.
+        Position of the section over the length: 0 at the start, 1 at the end.
     force
         Force at the load parameter 1, in the global frame [N]. It is proportional to the load parameter.
     moment
@@ -41,33 +41,34 @@ class PointLoad:
     """
 
     strip: str
-    at: float
+    at: float = 1.0
     force: Point = (0.0, 0.0)
     moment: float = 0.0
     stage: int = 0
 
     def __post_init__(self) -> None:
-        owner = f"PointLoad({self.strip!r})"
-        require(self.stage >= 0, owner, "stage", self.stage, "must not be negative")
-        require(0 < self.at < 1, owner, "at", self.at, "must lie between 0 and 1")
-        require_point(owner, "force", self.force)
-        require(isfinite(self.moment), owner, "moment", self.moment, "must be finite")
-        rule = "must not be zero without a moment"
-        require(any((*self.force, self.moment)), owner, "force", self.force, rule)
+        require(self, "stage", self.stage >= 0, "must not be negative")
+        require(self, "at", 0 <= self.at <= 1, "must lie between 0 and 1")
+        require_finite(self, "force", self.force, 2)
+        require_finite(self, "moment", (self.moment,))
+        require(self, "force", any((*self.force, self.moment)), "must not be zero without a moment")
 
     @property
     def node(self) -> str:
-        """Name of the section, ``"strip at 0.5"``."""
-        return f"{self.strip} at {self.at!r}"
+        """Name of the section, ``"strip.start"``, ``"strip.end"`` or ``"strip at 0.5"``."""
+        end = {0.0: "start", 1.0: "end"}.get(self.at)
+        return f"{self.strip} at {self.at!r}" if end is None else f"{self.strip}.{end}"
 
     def on_sections(self, strip: Strip, stations: Floats) -> Floats:
         """Forces ``(m, 2)`` on the mean displacements of the sections at ``stations`` ``(m,)``, in the global frame [N]."""
-        at, forces = self.at * strip.length, np.zeros((stations.size, 2))
-        for piece in _pieces(strip, stations):
-            s = stations[piece]
-            if s[0] <= at <= s[-1]:
-                forces[piece] = np.outer(_shapes(s, np.array([at]))[:, 0], self.force)
-                break
+        at = np.array([self.at * strip.length])
+        forces = np.zeros((stations.size, 2))
+        piece = next(
+            part
+            for part in _pieces(strip, stations)
+            if at <= stations[part.stop - 1] or part.stop == stations.size
+        )
+        forces[piece] = np.outer(_shapes(stations[piece], at), self.force)
         return forces
 
 
@@ -97,21 +98,15 @@ class LineLoad:
     force: tuple[Point, ...]
     part: tuple[float, float] = (0.0, 1.0)
     stage: int = 0
+    moment = 0.0  # of a load that has none; no field
 
     def __post_init__(self) -> None:
-        owner = f"LineLoad({self.strip!r})"
-        require(self.stage >= 0, owner, "stage", self.stage, "must not be negative")
-        for coefficient in self.force:
-            require_point(owner, "force", coefficient)
-        require(any(map(any, self.force)), owner, "force", self.force, "must not be zero")
         low, high = self.part
-        ordered = isfinite(low) and isfinite(high) and 0 <= low < high <= 1
-        require(ordered, owner, "part", self.part, "must be two increasing numbers between 0 and 1")
-
-    def per_length(self, fraction: Floats) -> Floats:
-        """Force per length ``(p, 2)`` at positions over the length ``(p,)`` [N/m]."""
-        powers = fraction[:, None] ** np.arange(len(self.force))
-        return np.asarray(powers @ np.array(self.force))
+        require(self, "stage", self.stage >= 0, "must not be negative")
+        for coefficient in self.force:
+            require_finite(self, "force", coefficient, 2)
+        require(self, "force", any(map(any, self.force)), "must not be zero")
+        require(self, "part", 0 <= low < high <= 1, "must be two increasing numbers between 0 and 1")
 
     def on_sections(self, strip: Strip, stations: Floats) -> Floats:
         """Forces ``(m, 2)`` on the mean displacements of the sections at ``stations`` ``(m,)``, in the global frame [N]."""
@@ -123,9 +118,12 @@ class LineLoad:
             a, b = max(low, s[0]), min(high, s[-1])
             if a < b:
                 points = (a + b) / 2 + (b - a) / 2 * x
-                values = self.per_length(points / strip.length) * (w * (b - a) / 2)[:, None]
-                forces[piece] += _shapes(s, points) @ values
+                per_length = np.polynomial.polynomial.polyval(points / strip.length, np.array(self.force)).T
+                forces[piece] += _shapes(s, points) @ (per_length * (w * (b - a) / 2)[:, None])
         return forces
+
+
+Load = PointLoad | LineLoad
 
 
 def _pieces(strip: Strip, stations: Floats) -> list[slice]:
@@ -136,8 +134,5 @@ def _pieces(strip: Strip, stations: Floats) -> list[slice]:
 
 def _shapes(stations: Floats, points: Floats) -> Floats:
     """Lagrange's polynomials ``(k, p)`` of the stations ``(k,)`` at the points ``(p,)``."""
-    rows = []
-    for number, own in enumerate(stations):
-        others = np.delete(stations, number)
-        rows.append(np.prod((points[:, None] - others) / (own - others), axis=1))
-    return np.array(rows)
+    s, h = (stations - stations[0]) / np.ptp(stations), (points - stations[0]) / np.ptp(stations)
+    return np.array([lagrange(s, unit)(h) for unit in np.eye(s.size)])

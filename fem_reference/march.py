@@ -9,126 +9,278 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from fem_reference.active_set import equilibrium, slipping
 from fem_reference.arrays import Floats
+from fem_reference.contact import Touch
 from fem_reference.critical import (
+    BIFURCATION,
     CriticalPoint,
-    Located,
     bifurcation,
-    displacement_tolerance,
+    critical_point,
     limit_point,
     opening_limit,
     stable_branch,
 )
 from fem_reference.ends import end_contact
-from fem_reference.events import SLIP_OFF, ContactEvent, changes, contact_event
-from fem_reference.line_contact import least_clearance, line_contact
+from fem_reference.events import SLIP_OFF, ContactEvent, changes, clearance, contact_event, first_event
+from fem_reference.friction import slipping
 from fem_reference.model import Model
-from fem_reference.newton import Attempt
-from fem_reference.settings import Settings
-from fem_reference.slip_events import SlipEvent, first_slip_event
-from fem_reference.state import State, at_rest, build_state, with_conditions
+from fem_reference.newton import Attempt, displacement_tolerance, equilibrium
+from fem_reference.state import State, at_rest
 from fem_reference.status import Status
-from fem_reference.touch import Condition, Touch
-from fem_reference.track import ORDER, TRACK_LENGTH, Accepted, accept, departure, predict
+from fem_reference.track import (
+    LARGEST_DEPARTURE,
+    ORDER,
+    TRACK_LENGTH,
+    Accepted,
+    accept,
+    departure,
+    located,
+    predict,
+)
 
+_RESOLVED = 0.05
+"""Largest round-off of a nodal force, over the forces that bend or load the strips. Measured on strips of one bending stiffness: at .018
+the tip is right to 2e-6 of the length, at .14 Newton's method takes no steps of use."""
 _LOAD_ROUND_OFF = 1e-9
 """Largest distance at which the turn of a pin's path and the end of a step coincide."""
+_FIRST_STEP = 0.1
+"""First step of the load parameter, unless the first requested load parameter is smaller."""
 _RATE_GROWTH = 1.5
 """Growth of the rate over a step beyond which a limit point is searched."""
 _SEARCH_INTERVAL = 5
 """Number of consecutive rejected attempts after which a limit point is searched."""
+_CLEARANCE_LIMIT = 0.05
+"""Clearance below which contact along a line is searched ahead of a rejected attempt."""
+_TOUCHES_ALONG_A_LINE = 1e-2
+"""Clearance of a state that is at contact along a line: nearer to it Newton's method may not converge."""
 _AT_END = 1e-2
 """Largest distance from an end, over the strip's length, of a contact that slips off there within the smallest step."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Step:
-    """Progress to one requested load parameter.
-
-    Parameters
-    ----------
-    status
-        ``Status.CONVERGED`` if the requested load parameter was reached; otherwise the reason why the march ended.
-    cause, pair
-        Status of the last attempt, and the index of the contact to which it refers.
-    load_parameter, state, index
-        Last accepted state with its load parameter and index. If an event ends the path, its load parameter instead.
-    iterations, cutbacks, substeps
-        Numbers of linear solutions, rejected attempts and accepted states since the previous requested load parameter.
-    events
-        Changes of contacts since the previous requested load parameter.
-    critical
-        Critical points since the previous requested load parameter.
-    """
-
-    status: Status
-    cause: Status
-    pair: int | None
-    load_parameter: float
-    state: State
-    index: int
-    iterations: int
-    cutbacks: int
-    substeps: int
-    events: tuple[ContactEvent, ...]
-    critical: tuple[CriticalPoint, ...]
-
-
 @dataclass(kw_only=True, eq=False)
-class _Progress:
-    """Variables of the march to one requested load parameter."""
+class Step:
+    """Progress to one requested load parameter; what it counts since the previous one."""
 
-    model: Model
-    track: tuple[Accepted, ...]
-    trial: float
-    order: int
-    iterations: int = 0
-    cutbacks: int = 0
-    substeps: int = 0
-    failures: int = 0
-    cause: Status = Status.CONVERGED
-    pair: int | None = None
-    events: list[ContactEvent] = field(default_factory=list)
-    critical: list[CriticalPoint] = field(default_factory=list)
-    ended_at: float | None = None
+    status: Status = Status.CONVERGED  # the reason why the march ended, else ``CONVERGED``
+    cause: Status = Status.CONVERGED  # status of the last attempt
+    pair: int | None = None  # index of the contact that the cause refers to
+    load_parameter: float  # last accepted load parameter, or that of the event which ends the path
+    state: State  # last accepted state
+    index: int  # its index
+    iterations: int = 0  # number of linear solutions
+    cutbacks: int = 0  # number of rejected attempts
+    substeps: int = 0  # number of accepted states
+    events: list[ContactEvent] = field(default_factory=list)  # changes of contacts
+    critical: list[CriticalPoint] = field(default_factory=list)  # critical points
+
+
+def march(model: Model, load_parameters: Floats) -> Iterator[Step]:
+    """Yield a step to every load parameter; a step with another status than ``CONVERGED`` is the last."""
+    return _March(model).steps(load_parameters)
+
+
+class _March:
+    """Variables of the march."""
+
+    def __init__(self, model: Model) -> None:
+        start = accept(_start(model))
+        assert start is not None, (
+            "the undeformed stiffness is regular, since no strip can move without strain"
+        )
+        self.model, self.settings = model, model.settings
+        self.track: tuple[Accepted, ...] = (start,)
+        self.trial, self.order, self.failures = _FIRST_STEP, ORDER, 0
 
     @property
     def last(self) -> Accepted:
         return self.track[-1]
 
+    def steps(self, load_parameters: Floats) -> Iterator[Step]:
+        """Yield a step to every load parameter."""
+        model, largest = self.model, max(self.model.force_scale, *self.model.largest_loads)
+        resolved = model.round_off <= _RESOLVED * largest and self.last.index <= 0
+        for target in map(float, load_parameters):
+            self.step = Step(load_parameter=self.last.t, state=self.last.state, index=self.last.index)
+            self.order, self.failures = ORDER, 0
+            status = self.advance(target) if resolved else self.end(Status.ILL_CONDITIONED)
+            step, last = self.step, self.last
+            step.status, step.state, step.index = status or Status.CONVERGED, last.state, last.index
+            yield step
+            if status is not None:
+                return
+            if target.is_integer():  # a stage may follow
+                self.track, self.trial = self.track[-1:], _FIRST_STEP
+
+    def advance(self, target: float) -> Status | None:
+        """Advance to ``target``; return the reason why the path ended before, None if it did not."""
+        step, ended = self.step, None
+        while self.last.t < target and ended is None:
+            if step.cutbacks + step.substeps >= self.settings.max_attempts:
+                return Status.STEP_LIMIT
+            goal = self.goal(target)
+            attempt = equilibrium(predict(self.track, goal, self.order))
+            step.iterations += attempt.iterations
+            step.cause, step.pair = attempt.status, attempt.pair
+            candidate = accept(attempt.state, self.last) if attempt.status is Status.CONVERGED else None
+            met = None if candidate is None else end_contact(self.last, candidate)
+            if met is not None:
+                return self.end(Status.END_CONTACT, *met)
+            h = goal - self.last.t
+            ended = self.shorten(h) if candidate is None else self.judge(candidate, h)
+            if ended is None and self.failures:
+                ended = self.obstacle(attempt, goal, target)
+        return ended
+
+    def goal(self, target: float) -> float:
+        """Load parameter of the next attempt. The step ends at a turn of a pin's path and leaves no tiny remainder."""
+        t, slack = self.last.t, _LOAD_ROUND_OFF
+        end = next((turn for turn in self.model.problem.turns if t + slack < turn < target - slack), target)
+        return end if self.trial >= (end - t) * (1 - 1e-6) else t + self.trial
+
+    def end(self, status: Status, at: Accepted | None = None, pair: int | None = None) -> Status:
+        """End the path at a state, for a contact."""
+        self.track = (*self.track, at or self.last)
+        self.step.cause, self.step.pair, self.step.load_parameter = status, pair, self.last.t
+        return status
+
+    def end_critical(self, status: Status, point: CriticalPoint) -> Status:
+        """End the path at a critical point."""
+        self.step.critical.append(point)
+        self.step.cause, self.step.pair, self.step.load_parameter = status, None, point.load_parameter
+        return status
+
+    def judge(self, candidate: Accepted, h: float) -> Status | None:
+        """Accept the state of an attempt after a step ``h``, or shorten the step; return a status if the path ends."""
+        last, allowed = self.last, LARGEST_DEPARTURE
+        distance = departure(last, candidate, displacement_tolerance(last.state))
+        if not distance <= allowed:
+            return self.shorten(
+                h, Status.ANOTHER_BRANCH, reduction=max(0.1, min(0.5, 0.7 * allowed / distance))
+            )
+        event = first_event(last, candidate)
+        if event is not None:
+            candidate, other = event
+            if other is not None:
+                return self.shorten(h, Status.UNDECIDED_CONTACT, other)
+        least, pair = clearance(candidate.state)
+        if least <= 0:
+            return self.line_contact(candidate.t) or self.shorten(h, Status.LINE_CONTACT, pair)
+        if candidate.state.contact_set == last.state.contact_set:
+            if -1 not in (candidate.index, last.index) and candidate.index != last.index:
+                return self.bifurcate(candidate, h)
+        elif self.settings.branch != "primary" and candidate.index > max(last.index, 0):
+            return self.shorten(h, Status.LIMIT_POINT)
+        if event is None:
+            longer = h * max(0.5, min(2.0, 0.8 * allowed / max(distance, 1e-9)))
+            self.trial = longer if h >= self.trial * (1 - 1e-6) else max(longer, self.trial)
+            self.order = ORDER
+        self.accept(candidate, restart=event is not None)
+        return None
+
+    def bifurcate(self, candidate: Accepted, h: float) -> Status | None:
+        """Continue on the branch of `Settings.branch` from a bifurcation before a state; return a status if the path ends there."""
+        near = bifurcation(self.last, candidate)
+        if near is None:
+            return self.shorten(h, Status.ANOTHER_BRANCH)
+        point, branch = critical_point(near, BIFURCATION), self.settings.branch
+        following = (
+            candidate
+            if branch == "primary"
+            else stable_branch(near, candidate.t)
+            if branch == "stable"
+            else None
+        )
+        if following is None:
+            return self.end_critical(Status.BIFURCATION, point)
+        self.step.critical.append(point)
+        self.accept(following, restart=following is not candidate)
+        if following is not candidate:
+            self.trial = following.t - near.t
+        return None
+
     def accept(self, state: Accepted, *, restart: bool = False) -> None:
         """Append an accepted state to the track, or start a new track with it."""
-        self.events += changes(self.model, self.last.state, state.state)
+        self.step.events += changes(self.last.state, state.state)
         self.track = (state,) if restart else (*self.track, state)[-TRACK_LENGTH:]
-        self.substeps += 1
+        self.step.substeps += 1
+        self.step.load_parameter = state.t
         self.failures = 0
 
-    def accept_event(self, event: SlipEvent) -> None:
-        """Start a new track with the state of an event; a contact that touches or leaves there does so in the next step."""
-        self.accept(event.at, restart=True)
+    def shorten(
+        self, h: float, cause: Status | None = None, pair: int | None = None, reduction: float = 0.5
+    ) -> Status | None:
+        """Reject an attempt over a step ``h``; the path goes on. A high-order extrapolation may be the reason of the failure."""
+        step = self.step
+        step.cause, step.pair, step.cutbacks = (
+            cause or step.cause,
+            step.pair if pair is None else pair,
+            step.cutbacks + 1,
+        )
+        self.failures += 1
+        self.trial, self.order = reduction * h, max(self.order - 2, 1)
+        return None
 
+    def line_contact(self, end: float) -> Status | None:
+        """End the path where the least clearance vanishes up to a load parameter; None if it does not."""
+        last, h = self.last.state, self.settings.min_step
+        at = located(self.last, end, lambda at: clearance(at.state)[0]) if clearance(last)[0] > 0 else None
+        least, pair = clearance(last if at is None else at.state)
+        if at is None or least > _TOUCHES_ALONG_A_LINE:
+            return None
+        # only short steps converge near this place, so that it is extrapolated along the tangent
+        ahead = at.state.moved(at.state.u + h * at.rate(at.t, at.t + h).u, at.t + h)
+        fall = (least - clearance(ahead)[0]) / h
+        self.end(Status.LINE_CONTACT, at, pair)
+        self.step.load_parameter += least / fall if fall > 0 else 0.0
+        return Status.LINE_CONTACT
 
-def march(model: Model, load_parameters: Floats, settings: Settings) -> Iterator[Step]:
-    """Yield a step to every load parameter; a step with another status than ``CONVERGED`` is the last."""
-    start = accept(model, _start(model), settings)
-    assert start is not None, "the undeformed stiffness is regular, since no strip can move without strain"
-    track: tuple[Accepted, ...] = (start,)
-    trial = settings.first_step
-    if model.ill_conditioned or start.index > 0:
-        progress = _Progress(model=model, track=track, trial=trial, order=ORDER)
-        progress.cause = Status.ILL_CONDITIONED
-        yield _step(progress, Status.ILL_CONDITIONED)
-        return
-    for target in map(float, load_parameters):
-        progress = _Progress(model=model, track=track, trial=trial, order=ORDER)
-        status = _advance(model, target, progress, settings)
-        yield _step(progress, status)
-        if status is not Status.CONVERGED:
-            return
-        track, trial = progress.track, progress.trial
-        if target.is_integer():  # a stage may follow
-            track, trial = track[-1:], settings.first_step
+    def obstacle(self, attempt: Attempt, goal: float, target: float) -> Status | None:
+        """Search for line contact or a limit point ahead of a rejected attempt; return a status if the path ends there."""
+        last, min_step = self.last, self.settings.min_step
+        at_floor = self.trial < min_step
+        if clearance(last.state)[0] <= _CLEARANCE_LIMIT and attempt.status is not Status.CONVERGED:
+            line = self.line_contact(goal)
+            if line is not None:
+                return line
+        if not at_floor and self.failures % _SEARCH_INTERVAL and not self.approaches_fold():
+            return None
+        found = limit_point(last, max(self.trial, min_step))
+        if found is not None and last.t <= found.load_parameter <= target:
+            return self.end_critical(Status.LIMIT_POINT, found)
+        return self.at_smallest_step(attempt, goal) if at_floor else None
+
+    def approaches_fold(self) -> bool:
+        """Whether the rate grows over the last step as before a limit point."""
+        *_, a, b = (self.last, *self.track)
+        if a.state.contact_set != b.state.contact_set or a is b:
+            return False
+        first, second = (float(np.linalg.norm(accepted.rate(a.t, b.t).u)) for accepted in (a, b))
+        return second > _RATE_GROWTH * first
+
+    def at_smallest_step(self, attempt: Attempt, goal: float) -> Status | None:
+        """Release a contact that opens or slips off; return a status if the path ends here."""
+        last, step = self.last, self.step
+        limit = opening_limit(last)
+        if limit is not None:
+            return self.end_critical(Status.LIMIT_POINT, limit)
+        lost = slipped_off(last.state, attempt)
+        if lost is None:
+            return Status.CUTBACK_FLOOR
+        if self.model.pairs[lost].radius > 0 and self.model.pairs[lost].ends:
+            return self.end(Status.END_CONTACT, last, lost)  # the pin pushes on, now at the corner
+        after = after_slip(last.state, goal, lost)
+        released = None
+        if after is not None and after.status is Status.CONVERGED:
+            released = accept(after.state)
+        if after is None or released is None:
+            return Status.LOST_CONTACT
+        step.iterations += after.iterations
+        before = len(step.events)
+        self.accept(released, restart=True)
+        off = contact_event(SLIP_OFF, last.state.touches[lost], lost, goal, 0)
+        step.events[before:] = [off, *(event for event in step.events[before:] if event.pair != lost)]
+        self.trial, self.order = _FIRST_STEP, ORDER
+        return None
 
 
 def _start(model: Model) -> State:
@@ -136,267 +288,59 @@ def _start(model: Model) -> State:
     state = at_rest(model)
     if all(strip.clamped for strip in model.problem.strips):
         return state
-    return with_conditions(
-        state,
-        tuple(
-            replace(touch.condition, closed=touch.projection.inside and abs(touch.gap) <= 1e-9 * model.length)
-            for touch in state.touches
-        ),
-    )
+    slack = 1e-9 * model.length
+    touches = [replace(one, closed=one.at.inside and abs(one.gap) <= slack) for one in state.touches]
+    return state.touching(touches)
 
 
-def _step(progress: _Progress, status: Status) -> Step:
-    """Return the completed step."""
-    last = progress.last
-    return Step(
-        status=status,
-        cause=progress.cause,
-        pair=progress.pair,
-        load_parameter=last.state.t if progress.ended_at is None else progress.ended_at,
-        state=last.state,
-        index=last.index,
-        iterations=progress.iterations,
-        cutbacks=progress.cutbacks,
-        substeps=progress.substeps,
-        events=tuple(progress.events),
-        critical=tuple(progress.critical),
-    )
-
-
-def _advance(model: Model, target: float, progress: _Progress, settings: Settings) -> Status:
-    """Advance to ``target``; return ``Status.CONVERGED``, or the reason why the path ended before."""
-    while progress.last.state.t < target:
-        if progress.cutbacks + progress.substeps >= settings.max_attempts:
-            return Status.STEP_LIMIT
-        goal = _goal(model, progress, target)
-        attempt = equilibrium(model, predict(model, progress.track, goal, progress.order), settings)
-        progress.iterations += attempt.iterations
-        progress.cause, progress.pair = attempt.status, attempt.pair
-        candidate = (
-            accept(model, attempt.state, settings, progress.last)
-            if attempt.status is Status.CONVERGED
-            else None
-        )
-        met = None if candidate is None else end_contact(model, progress.last, candidate, settings)
-        if met is not None:
-            return _end_at(progress, Status.END_CONTACT, met)
-        ended = _accept_or_shorten(model, progress, candidate, goal, settings)
-        if ended is None and progress.failures:
-            ended = _find_obstacle(model, progress, attempt, goal, target, settings)
-        if ended is not None:
-            return ended
-    return Status.CONVERGED
-
-
-def _goal(model: Model, progress: _Progress, target: float) -> float:
-    """Load parameter of the next attempt. The step ends at a turn of a pin's path and leaves no tiny remainder."""
-    t = progress.last.state.t
-    end = next(
-        (turn for turn in model.problem.turns if t + _LOAD_ROUND_OFF < turn < target - _LOAD_ROUND_OFF),
-        target,
-    )
-    return end if progress.trial >= (end - t) * (1 - 1e-6) else t + progress.trial
-
-
-def _accept_or_shorten(
-    model: Model, progress: _Progress, candidate: Accepted | None, goal: float, settings: Settings
-) -> Status | None:
-    """Accept the state of an attempt or shorten the step; return a status if the path ends at a bifurcation."""
-    last, reduction = progress.last, 0.5
-    h = goal - last.state.t
-    if candidate is not None:
-        distance = departure(last, candidate, displacement_tolerance(model, settings))
-        near = distance <= settings.largest_departure
-        event = first_slip_event(model, last, candidate, settings) if near else None
-        if event is not None:
-            candidate = event.at
-        tightest = least_clearance(candidate.state)
-        same_set = candidate.state.contact_set == last.state.contact_set
-        comparable = same_set and -1 not in (candidate.index, last.index)
-        if not near:
-            progress.cause = Status.ANOTHER_BRANCH
-            reduction = max(0.1, min(0.5, 0.7 * settings.largest_departure / distance))
-        elif event is not None and not event.first:
-            progress.cause, progress.pair = Status.UNDECIDED_CONTACT, event.pair
-        elif tightest is not None and tightest[1] <= 0:
-            progress.cause, progress.pair = Status.LINE_CONTACT, tightest[0]
-        elif not comparable and settings.branch != "primary" and candidate.index > max(last.index, 0):
-            progress.cause = Status.LIMIT_POINT
-        elif not comparable or candidate.index == last.index:
-            if event is None:
-                _accept_and_lengthen(progress, candidate, h, distance, settings)
-            else:
-                progress.accept_event(event)
-            return None
-        else:
-            located = bifurcation(model, last, candidate, settings)
-            if located is not None:
-                return _continue_from_bifurcation(model, progress, candidate, located, settings)
-            progress.cause = Status.ANOTHER_BRANCH
-    progress.cutbacks += 1
-    progress.failures += 1
-    progress.trial = reduction * h
-    # A high-order extrapolation may be the reason of the failure.
-    progress.order = max(progress.order - 2, 1)
-    return None
-
-
-def _accept_and_lengthen(
-    progress: _Progress, candidate: Accepted, h: float, distance: float, settings: Settings
-) -> None:
-    """Accept a state after a step h, and choose the next step from the step's departure."""
-    step = h * max(0.5, min(2.0, 0.8 * settings.largest_departure / max(distance, 1e-9)))
-    progress.trial = step if h >= progress.trial * (1 - 1e-6) else max(step, progress.trial)
-    progress.order = ORDER
-    progress.accept(candidate)
-
-
-def _continue_from_bifurcation(
-    model: Model, progress: _Progress, candidate: Accepted, located: Located, settings: Settings
-) -> Status | None:
-    """Continue on the branch of `Settings.branch`; return a status if the path ends at the bifurcation."""
-    progress.critical.append(located.point)
-    if settings.branch == "primary":
-        progress.accept(candidate)
-        return None
-    t = located.point.load_parameter
-    if settings.branch == "stable":
-        stable = stable_branch(model, located, candidate.state.t, settings)
-        if stable is not None:
-            progress.accept(stable, restart=True)
-            progress.trial = stable.state.t - t
-            return None
-    progress.cause, progress.ended_at = Status.BIFURCATION, t
-    return Status.BIFURCATION
-
-
-def _find_obstacle(
-    model: Model, progress: _Progress, attempt: Attempt, goal: float, target: float, settings: Settings
-) -> Status | None:
-    """Search for line contact or a limit point ahead of a rejected attempt; return a status if the path ends there."""
-    at_floor = progress.trial < settings.min_step
-    line = line_contact(model, progress.track, settings)
-    if line is not None and line[0] <= target:
-        return _end_at(progress, Status.LINE_CONTACT, line)
-    if not at_floor and progress.failures % _SEARCH_INTERVAL and not _approaches_fold(progress.track):
-        return None
-    located = limit_point(model, progress.last, max(progress.trial, settings.min_step), settings)
-    if located is not None and progress.last.state.t <= located.point.load_parameter <= target:
-        progress.critical.append(located.point)
-        progress.ended_at, progress.pair = located.point.load_parameter, None
-        progress.cause = Status.LIMIT_POINT
-        return Status.LIMIT_POINT
-    return _at_smallest_step(model, progress, attempt, goal, settings) if at_floor else None
-
-
-def _end_at(progress: _Progress, status: Status, found: tuple[float, int, Accepted]) -> Status:
-    """End the path at a load parameter, for a pair, with the state before."""
-    progress.ended_at, progress.pair, last = found
-    progress.track = (*progress.track, last)
-    progress.cause = status
-    return status
-
-
-def _at_smallest_step(
-    model: Model, progress: _Progress, attempt: Attempt, goal: float, settings: Settings
-) -> Status | None:
-    """Release a contact that opens or slips off; return a status if the path ends here."""
-    limit = opening_limit(model, progress.last, settings)
-    if limit is not None:
-        progress.critical.append(limit)
-        progress.cause, progress.pair = Status.LIMIT_POINT, None
-        return Status.LIMIT_POINT
-    lost = _slipped_off(progress.last.state, attempt)
-    if lost is not None and model.pairs[lost].radius > 0 and model.pairs[lost].ends:
-        # the pin pushes on, now at the corner
-        return _end_at(progress, Status.END_CONTACT, (progress.last.state.t, lost, progress.last))
-    after = _after_slip(model, progress.last.state, goal, lost, settings) if lost is not None else None
-    released = None
-    if after is not None and after.status is Status.CONVERGED:
-        released = accept(model, after.state, settings)
-    if lost is None or after is None or released is None:
-        return Status.CUTBACK_FLOOR if lost is None else Status.LOST_CONTACT
-    progress.iterations += after.iterations
-    touch, before = progress.last.state.touches[lost], len(progress.events)
-    progress.accept(released, restart=True)
-    progress.events[before:] = [
-        contact_event(SLIP_OFF, touch, lost, goal, 0),
-        *(event for event in progress.events[before:] if event.pair != lost),
-    ]
-    progress.trial, progress.order = settings.first_step, ORDER
-    return None
-
-
-def _approaches_fold(track: tuple[Accepted, ...]) -> bool:
-    """Whether the rate grows over the last step as before a limit point."""
-    if len(track) < 2 or track[-1].state.contact_set != track[-2].state.contact_set:
-        return False
-    before, after = (accepted.state.t for accepted in track[-2:])
-    first, second = (float(np.linalg.norm(accepted.rate(before, after).u)) for accepted in track[-2:])
-    return second > _RATE_GROWTH * first
-
-
-def _slipped_off(before: State, attempt: Attempt) -> int | None:
-    """Contact that an attempt lost over an end which its node had reached in the state before; None without one.
-
-    An attempt that diverges may lose a contact anywhere.
-    """
+def slipped_off(before: State, attempt: Attempt) -> int | None:
+    """Contact that an attempt lost over an end which its node had reached before; one that diverges may lose any."""
     if attempt.status is not Status.LOST_CONTACT or attempt.pair is None:
         return None
     touch = before.touches[attempt.pair]
     first, last = touch.pair.curve.stations[[0, -1]]
-    from_end = min(touch.projection.zeta - first, last - touch.projection.zeta)
+    from_end = min(touch.at.zeta - first, last - touch.at.zeta)
     return attempt.pair if from_end <= _AT_END * (last - first) else None
 
 
-def _after_slip(model: Model, before: State, goal: float, number: int, settings: Settings) -> Attempt | None:
+def after_slip(before: State, goal: float, number: int) -> Attempt | None:
     """Equilibrium after a slip-off without the contact ``number``; None if the contact must be kept.
 
     A clamped strip without another closed contact, support or joint springs back to rest, and all its contacts open. Every
     other contact whose gap is smaller than the strip's height is closed in the initial guess.
     """
-    lost = model.pairs[number]
-    if lost.contact.keep or not before.touches[number].closed:
+    model, lost = before.model, before.touches[number]
+    if lost.pair.contact.keep or not lost.closed:
         return None
-    strip = lost.strips[0]
-    name = model.problem.strips[strip].name
-    tied = any(model.sections[tie.section].node.split(".")[0] == name for tie in model.ties)
-    held = any(touch.pair.strips[0] == strip and touch.pair is not lost for touch in before.closed)
-    free = not (held or tied)
-    u = before.u.copy()
+    strip = lost.pair.strips[0]
+    body = model.bodies[strip]
+    tied = any(model.sections[tie.section].strip == body.strip.name for tie in model.ties)
+    held = any(touch.pair.strips[0] == strip and touch is not lost for touch in before.closed)
+    free, u = not (held or tied), before.u.copy()
     if free:
-        u[model.parts[strip]] = 0
-    conditions = [
-        _condition_after(model, touch, strip if free else None, own == number)
-        for own, touch in enumerate(before.touches)
-    ]
-    guess = build_state(model, u, goal, tuple(conditions), before.tie_forces)
-    return equilibrium(model, _slid_without_friction(model, guess, settings), settings)
+        u[body.part] = 0
+    touches = list[Touch]()
+    for touch in before.touches:
+        high = model.problem.strips[touch.pair.strips[0]].largest_height
+        near = touch.armed and touch.at.inside and abs(touch.gap) < high
+        if touch is lost:
+            touches.append(touch.opened(armed=False))
+        elif free and strip in touch.pair.strips:
+            touches.append(touch.opened(armed=touch.armed))
+        else:
+            touches.append(replace(touch, closed=touch.closed or near))
+    guess = before.touching(touches).moved(u, goal)
+    return equilibrium(_slid_without_friction(guess))
 
 
-def _slid_without_friction(model: Model, guess: State, settings: Settings) -> State:
+def _slid_without_friction(guess: State) -> State:
     """Return the equilibrium without friction, with slip in the directions that lead there; the guess without friction."""
     if not guess.rubbing:
         return guess
-    smooth = tuple(replace(condition, friction=None) for condition in guess.conditions)
-    slid = equilibrium(model, build_state(model, guess.u, guess.t, smooth, guess.tie_forces), settings)
-    if slid.status is not Status.CONVERGED:
+    smooth = equilibrium(
+        guess.touching([replace(one, begin=None, direction=0, tangential=0.0) for one in guess.touches])
+    )
+    if smooth.status is not Status.CONVERGED:
         return guess
-    conditions = tuple(
-        replace(now, friction=before.friction)
-        for now, before in zip(slid.state.conditions, guess.conditions, strict=True)
-    )
-    state = build_state(model, slid.state.u, guess.t, conditions, slid.state.tie_forces)
-    return with_conditions(state, tuple(slipping(touch) for touch in state.touches))
-
-
-def _condition_after(model: Model, touch: Touch, at_rest_strip: int | None, lost: bool) -> Condition:
-    """Condition of a contact in the initial guess after a slip-off."""
-    if lost:
-        return touch.condition.opened(armed=False)
-    if at_rest_strip in touch.pair.strips:
-        return touch.condition.opened(armed=touch.condition.armed)
-    near = (
-        abs(touch.gap) < model.problem.strips[touch.pair.strips[0]].largest_height and touch.projection.inside
-    )
-    return replace(touch.condition, closed=touch.closed or (touch.condition.armed and near))
+    pairs = zip(smooth.state.touches, guess.touches, strict=True)
+    return smooth.state.touching([slipping(replace(now, begin=before.begin)) for now, before in pairs])

@@ -29,8 +29,7 @@ _BATCH = 1024
 class Points:
     """The same q points of the reference square in every element."""
 
-    # derivatives of the k shape functions along the two coordinates xi of the square, ``(2, q, k)``
-    slopes: Floats
+    slopes: Floats  # derivatives of the k shape functions along the two coordinates xi of the square, ``(2, q, k)``
     inverse: Floats  # inverse Jacobians ``d xi_K / d X_j`` ``(2, 2, e, q)`` [1/m]
     aligned: bool  # whether all Jacobians are diagonal: the elements are rectangles along the axes
 
@@ -45,10 +44,6 @@ class Points:
         if self.aligned:
             return np.asarray(self.inverse[k, k] * field[k])
         return np.asarray(self.inverse[k, 0] * field[0] + self.inverse[k, 1] * field[1])
-
-    def of_elements(self, part: slice) -> "Points":
-        """The points of a part of the elements."""
-        return replace(self, inverse=self.inverse[:, :, part])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -90,32 +85,30 @@ class Discretisation:
     def batches(self) -> tuple["Discretisation", ...]:
         """The elements in batches whose arrays fit into the processor's cache."""
         count = -(-len(self.cells) // _BATCH)
+        parts = [slice(k * _BATCH, (k + 1) * _BATCH) for k in range(count)]
+        gauss = [replace(self.gauss, inverse=self.gauss.inverse[:, :, part]) for part in parts]
         return tuple(
-            replace(
-                self, cells=self.cells[part], gauss=self.gauss.of_elements(part), weights=self.weights[part]
-            )
-            for part in (slice(k * _BATCH, (k + 1) * _BATCH) for k in range(count))
+            replace(self, cells=self.cells[part], gauss=points, weights=self.weights[part])
+            for part, points in zip(parts, gauss, strict=True)
         )
 
 
 def structured_mesh(strip: Strip) -> Discretisation:
-    """Mesh a strip with equal rows over the height and element lengths in a geometric series along the axis."""
+    """Mesh a strip with equal rows over the height and equal element lengths along the axis."""
     from skfem import MeshQuad
 
     nx, ny = strip.mesh
-    x = strip.length * _fractions(nx, strip.grading)
-    y = strip.height / 2 * np.linspace(-1.0, 1.0, ny + 1)
+    x, y = strip.length * np.linspace(0.0, 1.0, nx + 1), strip.height * np.linspace(-0.5, 0.5, ny + 1)
     tensor = MeshQuad.init_tensor(x, y)
     points = tensor.p
-    if strip.end_height is not None:
-        points[1] *= strip.height_at(points[0]) / strip.height
+    points[1] *= strip.height_at(points[0]) / strip.height
     basis = scalar_basis(MeshQuad(points, tensor.t[[0, 3, 2, 1]]), strip.element)
     nodes = basis.doflocs.T
     order = np.lexsort((np.round(nodes[:, 1] / strip.height, 9), np.round(nodes[:, 0] / x[1], 9)))
     columns = order.reshape(-1, (1 if strip.element == "Q1" else 2) * ny + 1)
     m, r = columns.shape
     weights = np.tile(edge_weights(strip.element, nodes[columns[0], 1]), m)
-    sections = csr_matrix((weights, (np.repeat(np.arange(m), r), columns.ravel())), shape=(m, len(nodes)))
+    sections = csr_matrix((weights, columns.ravel(), np.arange(m + 1) * r), shape=(m, len(nodes)))
     edges = {"start": columns[0], "end": columns[-1], "right": columns[:, 0], "left": columns[:, -1]}
     return from_basis(strip, basis, edges, nodes[columns[:, 0], 0], sections)
 
@@ -134,25 +127,16 @@ def from_basis(
     strip: Strip, basis: Any, edges: dict[str, Ints], stations: Floats, sections: csr_matrix
 ) -> Discretisation:
     """Build the discretisation from a scikit-fem basis."""
-    from skfem import Basis
-
-    element, cells = basis.elem, basis.element_dofs.T.astype(np.int64)
-    shapes = len(element.doflocs)
-    at_nodes = Basis(basis.mesh, element, quadrature=(element.doflocs.T, np.ones(shapes)))
-    places = basis.doflocs.T.copy()
-    nodes, gauss, own = strip.placed(places), _points(basis), _points(at_nodes)
-    weights = strip.width_at(np.asarray(basis.global_coordinates())[0]) * basis.dx
-    if strip.turn:
-        straight, gauss = gauss, _bent(gauss, nodes[cells])
-        weights = weights * _determinant(straight.inverse) / _determinant(gauss.inverse)
-        own = _bent(own, nodes[cells])
+    cells, places = basis.element_dofs.T.astype(np.int64), basis.doflocs.T.copy()
+    nodes = strip.placed(places)
+    gauss, volumes = _points(basis.elem, basis.X, nodes[cells])
     return Discretisation(
         nodes=nodes,
         places=places,
         cells=cells,
         gauss=gauss,
-        at_nodes=own,
-        weights=weights,
+        at_nodes=_points(basis.elem, basis.elem.doflocs.T, nodes[cells])[0],
+        weights=strip.width_at(np.asarray(basis.global_coordinates())[0]) * volumes * basis.W,
         gather=csr_matrix((np.ones(cells.size), (cells.ravel(), np.arange(cells.size)))),
         edges=edges,
         stations=stations,
@@ -161,50 +145,37 @@ def from_basis(
     )
 
 
-def _fractions(n: int, grading: float) -> Floats:
-    """Return ``n + 1`` points of [0, 1] with distances in a geometric series; last over first is ``grading``."""
-    lengths = grading ** (np.arange(n) / (n - 1))
-    points = np.concatenate([[0.0], np.cumsum(lengths)]) / lengths.sum()
-    points[-1] = 1.0
-    return points if grading != 1.0 else np.linspace(0.0, 1.0, n + 1)
+def _points(element: Any, X: Floats, positions: Floats) -> tuple[Points, Floats]:
+    """The points X ``(2, q)`` in elements whose nodes are at ``positions`` ``(e, k, 2)``, and the determinants ``(e, q)`` there."""
+    slopes = shape_slopes(element, X)
+    inverse, volumes = inverted(np.einsum("eaj,Kqa->jKeq", positions, slopes))
+    inverse = np.where(np.abs(inverse) > 1e-13 * np.abs(inverse).max(), inverse, 0.0)
+    aligned = not (inverse[0, 1].any() or inverse[1, 0].any())
+    return Points(slopes=slopes, inverse=inverse, aligned=aligned), volumes
 
 
-def edge_weights(element: str, along: Floats) -> Floats:
-    """Nodal shares ``integral N ds / length`` ``(r,)`` of a uniform traction on an edge; ``along`` are the nodes' coordinates."""
-    pattern, step = ((1 / 2, 1 / 2), 1) if element == "Q1" else ((1 / 6, 4 / 6, 1 / 6), 2)
-    weights = np.zeros(along.size)
+def shape_slopes(element: Any, X: Floats) -> Floats:
+    """Derivatives ``(2, q, k)`` of the shape functions of a scikit-fem element at the points X ``(2, q)`` of the reference square."""
+    return np.stack([element.lbasis(X, number)[1] for number in range(len(element.doflocs))], axis=-1)
+
+
+def inverted(J: Floats) -> tuple[Floats, Floats]:
+    """Inverse matrices and determinants of ``(2, 2, ...)``."""
+    (a, b), (c, d) = J
+    determinant = a * d - b * c
+    return np.array([[d, -b], [-c, a]]) / determinant, determinant
+
+
+def edge_weights(element: str, along: Floats, traction: Floats | None = None) -> Floats:
+    """Nodal shares ``integral N p ds / length`` ``(r,)`` of a linear ``traction`` p, or of p = 1, on an edge with nodes ``along``."""
+    p = np.ones_like(along) if traction is None else traction
+    mass = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6 if element == "Q1" else _MASS
+    step, weights = len(mass) - 1, np.zeros(along.size)
     for j in range(0, along.size - step, step):
-        weights[j : j + step + 1] += np.array(pattern) * (along[j + step] - along[j])
+        part = slice(j, j + step + 1)
+        weights[part] += (along[j + step] - along[j]) * mass @ p[part]
     return np.asarray(weights / (along[-1] - along[0]))
 
 
-def edge_moments(element: str, along: Floats) -> Floats:
-    """Nodal shares ``integral N s ds / length`` ``(r,)`` of a traction proportional to the edge's coordinate s, ``along``."""
-    pattern, step = ((1 / 2, 1 / 2), 1) if element == "Q1" else ((1 / 6, 4 / 6, 1 / 6), 2)
-    moments = np.zeros(along.size)
-    for j in range(0, along.size - step, step):
-        side, middle = along[j + step] - along[j], (along[j + step] + along[j]) / 2
-        moments[j : j + step + 1] += np.array(pattern) * side * middle
-        moments[[j, j + step]] += np.array([-1, 1]) * side**2 / 12
-    return np.asarray(moments / (along[-1] - along[0]))
-
-
-def _points(basis: Any) -> Points:
-    """The points of a scikit-fem basis."""
-    element = basis.elem
-    slopes = np.stack([element.lbasis(basis.X, number)[1] for number in range(len(element.doflocs))], axis=-1)
-    inverse = basis.mapping.invDF(basis.X)
-    inverse = np.where(np.abs(inverse) > 1e-13 * np.abs(inverse).max(), inverse, 0.0)
-    return Points(slopes=slopes, inverse=inverse, aligned=not (inverse[0, 1].any() or inverse[1, 0].any()))
-
-
-def _bent(points: Points, positions: Floats) -> Points:
-    """The points in elements whose nodes are at ``positions`` ``(e, k, 2)``, with the shape functions of the displacements."""
-    (a, b), (c, d) = np.einsum("eaj,Kqa->jKeq", positions, points.slopes)
-    inverse = np.stack([np.stack([d, -b]), np.stack([-c, a])]) / (a * d - b * c)
-    return replace(points, inverse=inverse, aligned=False)
-
-
-def _determinant(A: Floats) -> Floats:
-    determinant: Floats = A[0, 0] * A[1, 1] - A[0, 1] * A[1, 0]
-    return determinant
+_MASS = np.array([[4.0, 2.0, -1.0], [2.0, 16.0, 2.0], [-1.0, 2.0, 4.0]]) / 30
+"""Integrals of the products of two quadratic shape functions of a unit edge."""

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import isfinite
 
 import numpy as np
 
@@ -12,11 +11,11 @@ from fem_reference.checks import (
     require,
     require_choice,
     require_distinct,
-    require_point,
+    require_finite,
     require_positive,
 )
-from fem_reference.conditions import EndLoad, Joint, Spring, Support, require_held, require_known_ends
-from fem_reference.loads import LineLoad, PointLoad
+from fem_reference.conditions import Holding, Joint, Spring, Support, require_held, require_known_ends
+from fem_reference.loads import Load, PointLoad
 from fem_reference.stages import stage_of
 from fem_reference.strip import Strip
 
@@ -51,18 +50,14 @@ class Pin:
     onward: tuple[tuple[Point, ...], ...] = ()
 
     def __post_init__(self) -> None:
-        owner = f"Pin({self.name!r})"
-        for point in self.path:
-            require_point(owner, "path", point)
-        for point in (point for points in self.onward for point in points):
-            require_point(owner, "onward", point)
-        whole = (*self.path, *(point for points in self.onward for point in points))
-        require(len(self.path) > 0, owner, "path", self.path, "must have at least one point")
-        require(
-            len(whole) == 1 or len(set(whole)) > 1, owner, "path", self.path, "must have a positive length"
-        )
-        finite = isfinite(self.radius) and self.radius >= 0
-        require(finite, owner, "radius", self.radius, "must be finite and not negative")
+        onward = [point for points in self.onward for point in points]
+        for field, points in (("path", self.path), ("onward", onward)):
+            for point in points:
+                require_finite(self, field, point, 2)
+        whole = (*self.path, *onward)
+        require(self, "path", len(self.path) > 0, "must have at least one point")
+        require(self, "path", len(whole) == 1 or len(set(whole)) > 1, "must have a positive length")
+        require_finite(self, "radius", (self.radius,), least=0.0)
 
     def position(self, t: float) -> Floats:
         """Return the position ``(2,)`` of the pin's centre at the load parameter ``t``."""
@@ -147,19 +142,13 @@ class Contact:
     friction: float = 0.0
 
     def __post_init__(self) -> None:
-        owner = f"Contact({self.name!r})"
-        require_choice(owner, "side", self.side, ("right", "left"))
-        require_choice(owner, "surface", self.surface, ("axis", "face"))
-        if self.penalty is not None:
-            require_positive(owner, "penalty", self.penalty)
-        if self.spread is not None:
-            fits = isfinite(self.spread) and self.spread >= 0
-            require(fits, owner, "spread", self.spread, "must be finite and not negative")
-        if self.penetration is not None:
-            fits = 1e-13 <= self.penetration <= 1
-            require(fits, owner, "penetration", self.penetration, "must lie between 1e-13 and 1")
-        fits = isfinite(self.friction) and self.friction >= 0
-        require(fits, owner, "friction", self.friction, "must be finite and not negative")
+        require_choice(self, "side", ("right", "left"))
+        require_choice(self, "surface", ("axis", "face"))
+        require_positive(self, "penalty")
+        fits = self.penetration is None or 1e-13 <= self.penetration <= 1
+        require(self, "penetration", fits, "must lie between 1e-13 and 1")
+        require_finite(self, "spread", (self.spread or 0.0,), least=0.0)
+        require_finite(self, "friction", (self.friction,), least=0.0)
 
     @property
     def name(self) -> str:
@@ -174,7 +163,7 @@ class Contact:
 
 @dataclass(frozen=True, kw_only=True)
 class SolidProblem:
-    """Strips, pins and their contacts, supports, springs, joints and loads of ends, and loads inside the strips.
+    """Strips, pins and their contacts, supports, springs and joints of ends, and loads.
 
     Raises
     ------
@@ -188,34 +177,28 @@ class SolidProblem:
     contacts: tuple[Contact, ...] = ()
     supports: tuple[Support, ...] = ()
     joints: tuple[Joint, ...] = ()
-    loads: tuple[EndLoad, ...] = ()
-    inner_loads: tuple[PointLoad | LineLoad, ...] = ()
+    loads: tuple[Load, ...] = ()
     springs: tuple[Spring, ...] = ()
 
     def __post_init__(self) -> None:
-        require(len(self.strips) > 0, "SolidProblem", "strips", self.strips, "must hold at least one strip")
-        require_distinct("SolidProblem", "strips", [strip.name for strip in self.strips])
-        require_distinct("SolidProblem", "pins", [pin.name for pin in self.pins])
-        require_distinct("SolidProblem", "contacts", [contact.name for contact in self.contacts])
+        require(self, "strips", len(self.strips) > 0, "must hold at least one strip")
+        for field in ("strips", "pins", "contacts"):
+            require_distinct(self, field, [item.name for item in getattr(self, field)])
         names = [strip.name for strip in self.strips]
         for contact in self.contacts:
-            owner = f"Contact({contact.name!r})"
             nodes = [pin.name for pin in self.pins]
             nodes += [f"{name}.{end}" for name in names if name != contact.strip for end in ("start", "end")]
-            require(contact.strip in names, owner, "strip", contact.strip, f"must name a strip: {names}")
+            require(contact, "strip", contact.strip in names, f"must name a strip: {names}")
             rule = f"must name a pin or another strip's end: {nodes}"
-            require(contact.node in nodes, owner, "node", contact.node, rule)
-            self._require_side(contact)
-        for load in self.inner_loads:
-            require(
-                load.strip in names,
-                f"{type(load).__name__}({load.strip!r})",
-                "strip",
-                load.strip,
-                "must name a strip",
-            )
-        require_known_ends(self.strips, (*self.supports, *self.springs), self.joints, self.loads)
-        require_held(self.strips, (*self.supports, *self.springs), self.joints, self._touching())
+            require(contact, "node", contact.node in nodes, rule)
+        for load in self.loads:
+            require(load, "strip", load.strip in names, "must name a strip")
+            clamps = {f"{load.strip}.{end}" for end in self.strip(load.strip).clamped}
+            free = not isinstance(load, PointLoad) or load.node not in clamps
+            require(load, "at", free, "must not be a clamped end")
+        holding: Holding = (*self.supports, *self.springs)
+        require_known_ends(self, self.strips, holding, self.joints)
+        require_held(self, self.strips, holding, self.joints, self._touching())
 
     def strip(self, name: str) -> Strip:
         """Return the strip called ``name``."""
@@ -225,6 +208,11 @@ class SolidProblem:
         """Return the pin called ``name``; None for a strip's end."""
         return next((pin for pin in self.pins if pin.name == name), None)
 
+    @property
+    def length(self) -> float:
+        """Length of the longest strip [m]."""
+        return max(strip.length for strip in self.strips)
+
     @cached_property
     def turns(self) -> tuple[float, ...]:
         """Load parameters at which a load step must end because a stage ends or the path of a pin turns, see `Pin.turns`."""
@@ -232,66 +220,37 @@ class SolidProblem:
         return tuple(sorted({*ends, *(turn for pin in self.pins for turn in pin.turns)}))
 
     @cached_property
-    def inner_moments(self) -> tuple[PointLoad, ...]:
-        """The loads inside the strips that have a moment."""
-        return tuple(load for load in self.inner_loads if isinstance(load, PointLoad) and load.moment)
-
-    @cached_property
     def stages(self) -> int:
         """Number of stages. The load parameter of the last state is at most this number."""
-        loads = (1 + load.stage for load in (*self.loads, *self.inner_loads))
-        paths = [len(pin.onward) for pin in self.pins] + [len(support.onward) for support in self.supports]
-        return max([1, *loads, *(1 + count for count in paths)])
+        moved = [len(pin.onward) for pin in self.pins] + [len(item.onward) for item in self.supports]
+        return 1 + max([0, *(load.stage for load in self.loads), *moved])
 
     def penalty(self, contact: Contact) -> float:
         """Contact stiffness eps of a contact [N/m]."""
         return contact.penalty or default_penalty(self.strip(contact.strip))
 
-    def start_of(self, contact: Contact) -> tuple[Point, float]:
-        """Initial position of a contact's node and its radius [m]."""
-        pin = self.pin(contact.node)
-        if pin is not None:
-            return pin.path[0], pin.radius
-        name, end = contact.node.split(".")
-        strip = self.strip(name)
-        return (strip.start if end == "start" else strip.end), 0.0
-
-    def _gap(self, contact: Contact) -> tuple[float, float]:
-        """Initial gap of a contact's node, and its axial coordinate on the strip [m]."""
-        strip, (start, radius) = self.strip(contact.strip), self.start_of(contact)
-        axial, transverse = strip.place(strip.to_local(np.array(start, dtype=float)))
-        height = (
-            strip.height_at(min(max(float(axial), 0.0), strip.length)) / 2
-            if contact.surface == "face"
-            else 0.0
-        )
-        return float(contact.sign * transverse - height - radius), float(axial)
-
     def _touching(self) -> list[tuple[str, Point, Point]]:
-        """Strip, position and normal of every pin that touches at the start."""
+        """Strip, position and normal of every pin that touches at the start. No node may start beyond the touched surface."""
         found: list[tuple[str, Point, Point]] = []
         for contact in self.contacts:
-            strip, pin, (gap, axial) = self.strip(contact.strip), self.pin(contact.node), self._gap(contact)
-            if pin is not None and gap <= 1e-9 * strip.length and 0 <= axial <= strip.length:
-                normal = strip.frame @ strip.directions(np.array(axial))[1]
-                found.append((strip.name, pin.path[0], (float(normal[0]), float(normal[1]))))
+            strip, pin = self.strip(contact.strip), self.pin(contact.node)
+            owner: Pin | Contact = pin or contact
+            field, height, radius = ("path[0]", 0.0, pin.radius) if pin else ("node", 0.0, 0.0)
+            if pin is not None:
+                start = pin.path[0]
+            else:
+                name, end = contact.node.split(".")
+                start = getattr(self.strip(name), end)
+            axial, transverse = strip.place(strip.to_local(np.array(start, dtype=float)))
+            if contact.surface == "face":
+                height = strip.height_at(min(max(axial, 0.0), strip.length)) / 2
+            gap, slack = contact.sign * transverse - height - radius, 1e-9 * strip.length
+            rule = f"must not start beyond the {contact.side} {contact.surface} of the strip (gap {gap:.3g})"
+            require(owner, field, gap >= -slack or not 0 < axial < strip.length, rule, start)
+            if pin is not None and gap <= slack and 0 <= axial <= strip.length:
+                x, y = map(float, strip.frame @ strip.directions(np.array(axial))[1])
+                found.append((strip.name, pin.path[0], (x, y)))
         return found
-
-    def _require_side(self, contact: Contact) -> None:
-        """Require that the node does not start beyond the touched surface."""
-        strip, (start, _), (gap, axial) = (
-            self.strip(contact.strip),
-            self.start_of(contact),
-            self._gap(contact),
-        )
-        pin = self.pin(contact.node) is not None
-        require(
-            gap >= -1e-9 * strip.length or not 0 < axial < strip.length,
-            f"Pin({contact.node!r})" if pin else f"Contact({contact.name!r})",
-            "path[0]" if pin else "node",
-            start,
-            f"must not start beyond the {contact.side} {contact.surface} of the strip (gap {gap:.3g})",
-        )
 
 
 def default_penalty(strip: Strip) -> float:

@@ -1,15 +1,20 @@
 """Results: histories over the accepted load parameters."""
 
 from dataclasses import dataclass
+from html import escape
 from typing import Any
 
-from fem_reference import present
+import numpy as np
+
 from fem_reference.arrays import Floats, Ints
 from fem_reference.critical import CriticalPoint
 from fem_reference.events import ContactEvent
 from fem_reference.model import Model
 from fem_reference.state import State
 from fem_reference.status import Status
+
+OUTLINES = {"quad": [0, 1, 2, 3], "quad9": [0, 4, 1, 5, 2, 6, 3, 7]}
+"""Nodes around an element in their order, by meshio cell type."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -140,18 +145,82 @@ class Result:
     states: tuple[State, ...]
 
     def __repr__(self) -> str:
-        return present.line(self)
+        reached = len(self.load_parameter)
+        last = f", the last {self.load_parameter[-1]:g}" if reached else ""
+        unknowns = f"{self.unknowns} unknowns, {self.newton_iterations.sum()} iterations"
+        return f"<Result {self.status.name}: {reached} load parameters{last}; {unknowns}>"
 
     def _repr_html_(self) -> str:
-        return present.html(self)
+        """Return the status and the last value of every column as HTML."""
+        rows = [
+            f"<tr><td>{escape(name)}</td><td>{values[-1]:.6g}</td></tr>"
+            for name, values in self.table().items()
+            if len(values)
+        ]
+        heading = escape(f"{self.status.name}: {self.message}")
+        return f"<h4>{heading}</h4><table><tbody>{''.join(rows)}</tbody></table>"
 
     def table(self) -> dict[str, Any]:
-        """Return the histories as columns of equal length, what data frames take: see `fem_reference.present.table`."""
-        return present.table(self)
+        """Return the histories by name, each of shape ``(s,)``: what ``pandas.DataFrame`` takes.
 
-    def plot(self, axes: Any = None, shown: int = present.SHOWN) -> Any:
-        """Draw the deformed meshes and the pins: see `fem_reference.present.plot`."""
-        return present.plot(self, axes, shown)
+        ``load_parameter``, ``newton_iterations``, ``index``; ``{pin->strip}.force``, ``.force_x``, ``.force_y``, ``.normal_force``,
+        ``.tangential_force``, ``.arc_position``, ``.gap``, ``.slip``, ``.dissipated``; ``{strip}.start.force_x``, ``.force_y`` and
+        ``.moment`` of each supported end; ``{strip}.tip_x``, ``.tip_y``.
+        """
+        columns: dict[str, Any] = {"load_parameter": self.load_parameter}
+
+        def vectors(name: str, values: Floats) -> None:
+            columns[f"{name}_x"], columns[f"{name}_y"] = values.T
+
+        for pair, contact in self.contacts.items():
+            columns[f"{pair}.force"] = contact.force
+            vectors(f"{pair}.force", contact.vector)
+            for name in ("normal_force", "tangential_force", "arc_position", "gap", "slip", "dissipated"):
+                columns[f"{pair}.{name}"] = getattr(contact, name)
+        for node, support in self.supports.items():
+            vectors(f"{node}.force", support.force)
+            columns[f"{node}.moment"] = support.moment
+        for strip, tip in self.tips.items():
+            vectors(f"{strip}.tip", tip)
+        return {**columns, "index": self.index, "newton_iterations": self.newton_iterations}
+
+    def plot(self, axes: Any = None, shown: int = 3) -> Any:
+        """Draw the deformed meshes at `shown` of the accepted load parameters, evenly spread, with the pins; needs matplotlib.
+
+        ``axes``: matplotlib's axes; the current ones of pyplot if not given.
+        ``shown``: number of load parameters.
+        """
+        from matplotlib.collections import PolyCollection
+        from matplotlib.patches import Circle
+
+        if axes is None:
+            import matplotlib.pyplot as plt
+
+            axes = plt.gca()
+        reached = len(self.load_parameter)
+        steps = np.unique(np.linspace(0, reached - 1, shown if reached else 0).round().astype(int))
+        for k, colour in [(-1, "0.8"), *((int(k), "C0") for k in steps)]:
+            points = self.mesh_points + (self.displacement[k] if k >= 0 else 0.0)
+            faint = 0.35 + 0.65 * (k + 1) / reached if k >= 0 else 1.0
+            for kind, cells in self.mesh_cells.items():
+                outlines = list(points[cells[:, OUTLINES[kind]]])
+                faces = PolyCollection(
+                    outlines, facecolors="none", edgecolors=colour, linewidths=0.4, alpha=faint
+                )
+                axes.add_collection(faces)
+            axes.update_datalim(points)
+        for pin in self.model.problem.pins:
+            axes.plot(*np.array(pin.path).T, color="0.5", linewidth=0.8, linestyle=":")
+            places = [pin.position(float(self.load_parameter[k])) for k in steps]
+            for place in places:
+                axes.add_patch(Circle((place[0], place[1]), pin.radius, color="black", fill=False))
+            axes.plot(*np.array(places).reshape(-1, 2).T, ".", color="black", label=pin.name)
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.autoscale_view()
+        axes.set(xlabel="x", ylabel="y", title=self.status.name)
+        if self.model.problem.pins:
+            axes.legend(loc="best", fontsize="small")
+        return axes
 
 
 class SolveError(RuntimeError):

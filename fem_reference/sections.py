@@ -7,7 +7,7 @@ import numpy as np
 from fem_reference.arrays import Floats
 from fem_reference.body import Body
 from fem_reference.result import Result
-from fem_reference.sampling import SECTION_LAYERS, sample, section_points
+from fem_reference.sampling import gradient_at, section_points
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -57,19 +57,17 @@ def section_forces(result: Result, strip: str, k: int, stations: Floats | None =
         Undeformed axial coordinates [m]; None for the two Gauss points of each element along the strip, at which the
         stress of biquadratic elements is most accurate.
     """
-    body, part = result.model.body(strip)
+    body = result.model.body(strip)
     X = gauss_stations(body) if stations is None else np.asarray(stations, dtype=float)
-    layers = body.strip.mesh[1] if body.strip.mesh_file is None else SECTION_LAYERS
-    points, shares, heights = section_points(body.mesh.places, body.mesh.edges, X, layers)
+    points, shares, heights = section_points(body.strip, body.mesh.places, body.mesh.edges, X)
     weights = (body.strip.width_at(X) * heights)[:, None] * shares
-    u = result.states[k].u[part]
-    sampled = sample(body.mesh, points)
-    F = sampled.deformation_gradient(u)
+    u = result.states[k].u[body.part]
+    F = gradient_at(body.mesh, u, points)
     P = body.law.stress(F)
     N, _ = body.strip.directions(points[:, 0])
     traction = P[:, 0] * N[0] + P[:, 1] * N[1]
     eshelby = (traction * (F[:, 0] * N[0] + F[:, 1] * N[1])).sum(axis=0) - body.law.energy(F)
-    x = body.strip.placed(points) + sampled.rows(len(u)) @ u
+    x = body.strip.placed(points) + body.mesh.basis.probes(points.T) @ u
     shape = (X.size, -1)
     p = traction.T.reshape(*shape, 2)
     mean = (weights[:, :, None] * x.reshape(*shape, 2)).sum(axis=1) / weights.sum(axis=1)[:, None]
@@ -111,7 +109,7 @@ def face_strains(result: Result, strip: str, k: int) -> tuple[Floats, dict[str, 
     strains : dict
         ``|F T| - 1`` ``(m,)`` by face, ``"right"`` and ``"left"``, with the unit tangent T of the undeformed face.
     """
-    body, part = result.model.body(strip)
+    body = result.model.body(strip)
     X = gauss_stations(body)
     strains = {}
     for name in ("right", "left"):
@@ -122,6 +120,6 @@ def face_strains(result: Result, strip: str, k: int) -> tuple[Floats, dict[str, 
         tangent, normal = body.strip.directions(X)
         T = ((1 - body.strip.curvature * y) * along * tangent + across * normal).T
         T = T / np.hypot(*T.T)[:, None]
-        F = sample(body.mesh, np.stack([X, y], axis=1)).deformation_gradient(result.states[k].u[part])
+        F = gradient_at(body.mesh, result.states[k].u[body.part], np.stack([X, y], axis=1))
         strains[name] = np.hypot(*np.einsum("ijp,pj->ip", F, T)) - 1
     return X, strains

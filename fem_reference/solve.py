@@ -7,14 +7,14 @@ import numpy as np
 
 from fem_reference.arrays import Floats, Ints
 from fem_reference.ends import nearest_end
-from fem_reference.events import SLIP_OFF, ContactEvent
+from fem_reference.events import SLIP_OFF
 from fem_reference.march import Step, march
 from fem_reference.model import Model, build
 from fem_reference.observe import section_means
 from fem_reference.problem import SolidProblem
 from fem_reference.result import ContactHistory, Result, SolveError, SupportHistory
 from fem_reference.settings import Settings
-from fem_reference.state import Reaction, State, contact_force, reactions, spring_forces
+from fem_reference.state import Reaction, State, reactions, spring_forces
 from fem_reference.status import Status
 
 EVENTS = (Status.LIMIT_POINT, Status.BIFURCATION, Status.LINE_CONTACT, Status.END_CONTACT)
@@ -57,12 +57,14 @@ def solve(
     SolveError
         If the solution stops early and ``throw`` is set; ``SolveError.result`` is the incomplete solution.
     """
-    loads = _checked(load_parameters, problem.stages)
-    settings = settings or Settings()
-    model = build(problem)
-    begin = perf_counter()
-    steps = []
-    for step in march(model, loads, settings):
+    loads = np.asarray(load_parameters, dtype=float)
+    ordered = loads.ndim == 1 and loads.size > 0 and bool(np.all(np.diff(loads, prepend=0.0) > 0))
+    if not (ordered and loads[-1] <= problem.stages):
+        rule = f"must be a one-dimensional increasing array in (0, {problem.stages}]"
+        raise ValueError(f"load_parameters = {load_parameters!r}: {rule}")
+    model = build(problem, settings)
+    begin, steps = perf_counter(), list[Step]()
+    for step in march(model, loads):
         steps.append(step)
         if watch is not None:
             watch(step)
@@ -72,38 +74,23 @@ def solve(
     return result
 
 
-def _checked(load_parameters: Floats, stages: int) -> Floats:
-    loads = np.asarray(load_parameters, dtype=float)
-    ordered = loads.ndim == 1 and loads.size > 0 and bool(np.all(np.diff(loads, prepend=0.0) > 0))
-    if not (ordered and loads[-1] <= stages):
-        raise ValueError(
-            f"load_parameters = {load_parameters!r}: must be a one-dimensional increasing array in (0, {stages}]"
-        )
-    return loads
-
-
 def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
     done = [step for step in steps if step.status is Status.CONVERGED]
     states = tuple(step.state for step in done)
     status, message = _outcome(model, steps[-1])
-    events = tuple(event for step in steps for event in step.events)
-    displacement = np.zeros((len(states), model.nodes, 2))
-    for body, part in model.bodies_and_nodes():
+    displacement, cells = np.zeros((len(states), model.nodes, 2)), dict[str, list[Ints]]()
+    for body in model.bodies:
+        cells.setdefault(CELL_TYPES[body.strip.element], []).append(body.mesh.cells + body.part.start)
         for row, state in zip(displacement, states, strict=True):
-            row[part] = state.u[part] @ body.strip.frame.T
+            row[body.part] = state.u[body.part] @ body.strip.frame.T
     return Result(
         status=status,
         message=message,
         load_parameter=np.array([step.load_parameter for step in done]),
         reached=steps[-1].load_parameter,
-        contacts={
-            pair.name: _contact_history(
-                states, number, tuple(event for event in events if event.pair == number)
-            )
-            for number, pair in enumerate(model.pairs)
-        },
-        supports=_supports(model, states),
-        springs=_springs(model, states),
+        contacts={pair.name: _contact(states, steps, number) for number, pair in enumerate(model.pairs)},
+        supports=_histories([reactions(state) for state in states], reactions(steps[-1].state)),
+        springs=_histories([spring_forces(state) for state in states], spring_forces(steps[-1].state)),
         tips={body.strip.name: _tips(model, body.strip.name, states) for body in model.bodies},
         newton_iterations=np.array([step.iterations for step in done], dtype=np.int64),
         cutbacks=sum(step.cutbacks for step in steps),
@@ -114,7 +101,7 @@ def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
         round_off=model.balance_round_off,
         wall_seconds=seconds,
         mesh_points=np.concatenate([body.strip.to_global(body.mesh.nodes) for body in model.bodies]),
-        mesh_cells=_cells(model),
+        mesh_cells={name: np.concatenate(parts) for name, parts in cells.items()},
         displacement=displacement,
         model=model,
         states=states,
@@ -123,58 +110,51 @@ def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
 
 def _outcome(model: Model, last: Step) -> tuple[Status, str]:
     """Status and message of the solution from the last step."""
-    if last.status is Status.CONVERGED:
+    status, pair, comma = last.status, "", ","
+    if status is Status.CONVERGED:
         return Status.COMPLETED, Status.COMPLETED.value
-    pair = "" if last.pair is None else f" ({model.pairs[last.pair].name})"
-    if last.status is Status.END_CONTACT and last.pair is not None:
-        contact = model.pairs[last.pair].contact
-        pair = (
-            f": {contact.node} meets the {nearest_end(model.pairs[last.pair], last.state)} of {contact.strip}"
-        )
-    cause = "" if last.cause is last.status else f" because {last.cause.value}"
-    preposition = "at" if last.status in EVENTS else "after"
-    squeezed = min(body.least_volume(last.state.u[part]) for body, part in model.bodies_and_nodes())
-    if last.status is Status.LIMIT_POINT and squeezed < _SMALL_STRAIN:
+    if last.pair is not None:
+        touched = model.pairs[last.pair]
+        pair = f" ({touched.name})"
+        if status is Status.END_CONTACT:
+            end, contact = nearest_end(touched, last.state), touched.contact
+            pair, comma = f": {contact.node} meets the {end} of {contact.strip}", ""
+    cause = "" if last.cause is status else f" because {last.cause.value}"
+    squeezed = min(body.least_volume(last.state.u[body.part]) for body in model.bodies)
+    if status is Status.LIMIT_POINT and squeezed < _SMALL_STRAIN:
         cause += f"; an element is compressed to {squeezed:.2g} of its area: refine the mesh, or the strain is beyond the comparison"
-    comma = "" if last.status is Status.END_CONTACT else ","
+    preposition = "at" if status in EVENTS else "after"
     return (
-        last.status,
-        f"{last.status.value}{cause}{pair}{comma} {preposition} load parameter {last.load_parameter:.9g}",
+        status,
+        f"{status.value}{cause}{pair}{comma} {preposition} load parameter {last.load_parameter:.9g}",
     )
 
 
-def _contact_history(
-    states: tuple[State, ...], number: int, events: tuple[ContactEvent, ...]
-) -> ContactHistory:
+def _contact(states: tuple[State, ...], steps: list[Step], number: int) -> ContactHistory:
+    """History of one contact."""
     touches = [state.touches[number] for state in states]
-    frictions = [touch.condition.friction for touch in touches]
+    events = tuple(event for step in steps for event in step.events if event.pair == number)
+
+    def values(name: str) -> Floats:
+        return np.array([getattr(touch, name) for touch in touches])
+
+    normal, tangential = values("force"), values("tangential")
     return ContactHistory(
-        force=np.array([float(np.hypot(touch.force, touch.tangential_force)) for touch in touches]),
-        normal_force=np.array([touch.force for touch in touches]),
-        tangential_force=np.array([touch.tangential_force for touch in touches]),
-        arc_position=np.array([touch.projection.zeta if touch.closed else np.nan for touch in touches]),
-        gap=np.array([touch.reported_gap for touch in touches]),
-        vector=np.array([contact_force(touch) for touch in touches]).reshape(-1, 2),
+        force=np.hypot(normal, tangential),
+        normal_force=normal,
+        tangential_force=tangential,
+        arc_position=np.array([touch.at.zeta if touch.closed else np.nan for touch in touches]),
+        gap=values("reported_gap"),
+        vector=values("vector").reshape(-1, 2),
         slip_off=next((event.load_parameter for event in events if event.kind == SLIP_OFF), np.nan),
-        direction=np.array([state.contact_set[number][1] for state in states], dtype=np.int64),
-        slip=np.array([0.0 if friction is None else friction.slip for friction in frictions]),
-        dissipated=np.array([0.0 if friction is None else friction.dissipated for friction in frictions]),
+        direction=values("direction").astype(np.int64),
+        slip=values("slipped"),
+        dissipated=values("dissipated"),
         events=events,
     )
 
 
-def _supports(model: Model, states: tuple[State, ...]) -> dict[str, SupportHistory]:
-    clamps = [f"{strip.name}.{end}" for strip in model.problem.strips for end in strip.clamped]
-    nodes = [*clamps, *(support.node for support in model.problem.supports)]
-    return _histories(nodes, [reactions(model, state) for state in states])
-
-
-def _springs(model: Model, states: tuple[State, ...]) -> dict[str, SupportHistory]:
-    nodes = [spring.node for spring in model.problem.springs]
-    return _histories(nodes, [spring_forces(model, state) for state in states] if nodes else [])
-
-
-def _histories(nodes: list[str], rows: list[dict[str, Reaction]]) -> dict[str, SupportHistory]:
+def _histories(rows: list[dict[str, Reaction]], nodes: dict[str, Reaction]) -> dict[str, SupportHistory]:
     """Histories of forces and moments by end."""
     return {
         node: SupportHistory(
@@ -187,12 +167,4 @@ def _histories(nodes: list[str], rows: list[dict[str, Reaction]]) -> dict[str, S
 
 def _tips(model: Model, strip: str, states: tuple[State, ...]) -> Floats:
     end = 0 if model.problem.strip(strip).clamped == ("end",) else -1
-    return np.array([section_means(model, state, strip)[end] for state in states]).reshape(-1, 2)
-
-
-def _cells(model: Model) -> dict[str, Ints]:
-    """Cells of all bodies by meshio cell type."""
-    cells: dict[str, list[Ints]] = {}
-    for body, part in model.bodies_and_nodes():
-        cells.setdefault(CELL_TYPES[body.strip.element], []).append(body.mesh.cells + part.start)
-    return {name: np.concatenate(parts) for name, parts in cells.items()}
+    return np.array([section_means(state, strip)[end] for state in states]).reshape(-1, 2)

@@ -1,13 +1,14 @@
 """A strip: geometry, section, material, clamps and mesh."""
 
+from cmath import rect
 from dataclasses import dataclass
-from math import atan2, cos, hypot, pi, sin
+from math import atan2, hypot, pi, sin
 from typing import Any
 
 import numpy as np
 
 from fem_reference.arrays import Array, Floats
-from fem_reference.checks import Point, require, require_choice, require_point, require_positive
+from fem_reference.checks import Point, require, require_choice, require_finite, require_positive
 from fem_reference.material import MATERIALS, PLANES
 
 ELEMENTS = ("Q1", "Q2", "Q2-full")
@@ -62,10 +63,8 @@ class Strip:
     element
         ``"Q2"``: biquadratic with two Gauss points along the strip and three across. ``"Q2-full"``: biquadratic with
         three by three Gauss points. ``"Q1"``: bilinear; elements that are longer than high lock in bending.
-    grading
-        Length ratio of the last element along the axis to the first.
     mesh_file
-        File with a mesh of quadrilaterals in the strip's frame, which replaces ``mesh`` and ``grading``; see
+        File with a mesh of quadrilaterals in the strip's frame, which replaces ``mesh``; see
         `fem_reference.mesh_file.read_mesh`.
     material
         A key of `fem_reference.material.MATERIALS`.
@@ -92,63 +91,48 @@ class Strip:
     clamp: str = "rod"
     mesh: tuple[int, int] = (50, 2)
     element: str = "Q2"
-    grading: float = 1.0
     mesh_file: str | None = None
     material: str = "st-venant-kirchhoff"
     plane: str = "stress"
 
     def __post_init__(self) -> None:
-        owner = f"Strip({self.name!r})"
-        require_point(owner, "start", self.start)
-        require_point(owner, "end", self.end)
-        require(abs(self.turn) < 2 * pi, owner, "turn", self.turn, "must lie between -2 pi and 2 pi")
-        require(self.length > 0, owner, "end", self.end, "must differ from start")
-        self._require_arc(owner)
-        for field in ("height", "width", "youngs_modulus", "grading"):
-            require_positive(owner, field, getattr(self, field))
-        for field in ("end_height", "end_width"):
-            if getattr(self, field) is not None:
-                require_positive(owner, field, getattr(self, field))
-                rule = "must be None with a mesh file, which has the strip's shape"
-                require(
-                    self.mesh_file is None or field == "end_width", owner, field, getattr(self, field), rule
-                )
-        nu = self.poissons_ratio
-        require(-1 < nu < 0.5, owner, "poissons_ratio", nu, "must lie between -1 and 0.5")
-        require_choice(owner, "clamped", self.clamped, ((), ("start",), ("end",), ("start", "end")))
-        whole = len(self.mesh) == 2 and all(isinstance(n, int) and n < 10**15 for n in self.mesh)
-        require(
-            whole and self.mesh[0] >= 2 and self.mesh[1] >= 1,
-            owner,
-            "mesh",
-            self.mesh,
-            "must be two whole numbers, >= 2 and >= 1",
-        )
-        require_choice(owner, "element", self.element, ELEMENTS)
-        if self.mesh_file is None:
-            memory, work = solution_cost(self.mesh, self.element)
+        given, mesh = self.mesh_file is None, self.mesh
+        require_finite(self, "start", self.start, 2)
+        require_finite(self, "end", self.end, 2)
+        require(self, "turn", abs(self.turn) < 2 * pi, "must lie between -2 pi and 2 pi")
+        require(self, "end", self.length > 0, "must differ from start")
+        room = abs(self.curvature) * self.largest_height < 2
+        require(self, "turn", room, "must leave the radius of the axis above half the height")
+        require(self, "turn", given or not self.turn, "must be zero with a mesh file")
+        rule = "must be None with a mesh file, which has the strip's shape"
+        require(self, "end_height", given or self.end_height is None, rule)
+        require_positive(self, "height", "width", "youngs_modulus", "end_height", "end_width")
+        require(self, "poissons_ratio", -1 < self.poissons_ratio < 0.5, "must lie between -1 and 0.5")
+        require_choice(self, "clamped", ((), ("start",), ("end",), ("start", "end")))
+        require_choice(self, "element", ELEMENTS)
+        require_choice(self, "clamp", ("rod", "full"))
+        require_choice(self, "material", tuple(MATERIALS))
+        require_choice(self, "plane", PLANES)
+        whole = len(mesh) == 2 and all(isinstance(n, int) and n < 10**15 for n in mesh)
+        rule = "must be two whole numbers, >= 2 and >= 1"
+        require(self, "mesh", whole and mesh[0] >= 2 and mesh[1] >= 1, rule)
+        if given:
+            memory, work = solution_cost(mesh, self.element)
             rule = f"must need at most {LARGEST_MEMORY / 2**30:g} GiB, needs about {memory / 2**30:.3g}"
-            require(memory <= LARGEST_MEMORY, owner, "mesh", self.mesh, rule)
+            require(self, "mesh", memory <= LARGEST_MEMORY, rule)
             rule = f"must need at most {LARGEST_WORK:g} operations a factorisation, needs about {work:.2g}"
-            require(work <= LARGEST_WORK, owner, "mesh", self.mesh, rule)
-        require_choice(owner, "clamp", self.clamp, ("rod", "full"))
-        require_choice(owner, "material", self.material, tuple(MATERIALS))
-        require_choice(owner, "plane", self.plane, PLANES)
+            require(self, "mesh", work <= LARGEST_WORK, rule)
 
-    def _require_arc(self, owner: str) -> None:
-        """Require an arc that has room for its section."""
-        if self.turn:
-            narrow = abs(self.curvature) * self.largest_height < 2
-            require(
-                narrow, owner, "turn", self.turn, "must leave the radius of the axis above half the height"
-            )
-            require(self.mesh_file is None, owner, "turn", self.turn, "must be zero with a mesh file")
+    @property
+    def chord(self) -> complex:
+        """Vector from start to end in the complex plane [m]."""
+        return complex(*self.end) - complex(*self.start)
 
     @property
     def length(self) -> float:
         """Length of the axis [m]."""
-        chord, half = hypot(self.end[0] - self.start[0], self.end[1] - self.start[1]), self.turn / 2
-        return chord * (half / sin(half)) if half else chord
+        half = self.turn / 2
+        return abs(self.chord) * (half / sin(half) if half else 1.0)
 
     @property
     def curvature(self) -> float:
@@ -169,11 +153,11 @@ class Strip:
 
     def height_at(self, x: Any) -> Any:
         """Height of the sections at the axial coordinates ``x`` [m]."""
-        return _linear(self.height, self.end_height, x / self.length)
+        return self.height + x / self.length * ((self.end_height or self.height) - self.height)
 
     def width_at(self, x: Any) -> Any:
         """Width of the sections at the axial coordinates ``x`` [m]."""
-        return _linear(self.width, self.end_width, x / self.length)
+        return self.width + x / self.length * ((self.end_width or self.width) - self.width)
 
     @property
     def largest_height(self) -> float:
@@ -183,11 +167,10 @@ class Strip:
     @property
     def frame(self) -> Floats:
         """Rotation ``Q (2, 2)`` from the strip's frame (x along the axis, origin at start) to the global one."""
-        chord = hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
-        c, s = (self.end[0] - self.start[0]) / chord, (self.end[1] - self.start[1]) / chord
+        direction = self.chord / abs(self.chord)
         if self.turn:
-            angle = atan2(s, c) - self.turn / 2
-            c, s = cos(angle), sin(angle)
+            direction *= rect(1.0, -self.turn / 2)
+        c, s = direction.real, direction.imag
         return np.array([[c, -s], [s, c]])
 
     def directions(self, x: Array) -> tuple[Array, Array]:
@@ -214,14 +197,8 @@ class Strip:
 
     def to_local(self, points: Array) -> Array:
         """Transform points ``(..., 2)`` from the global frame to the strip's frame."""
-        local: Array = (points - np.array(self.start)) @ self.frame
-        return local
+        return np.asarray((points - np.array(self.start)) @ self.frame)
 
     def to_global(self, points: Array) -> Array:
         """Transform points ``(..., 2)`` from the strip's frame to the global frame."""
-        placed: Array = points @ self.frame.T + np.array(self.start)
-        return placed
-
-
-def _linear(start: float, end: float | None, fraction: Any) -> Any:
-    return start if end is None else start + fraction * (end - start)
+        return np.asarray(points @ self.frame.T + np.array(self.start))

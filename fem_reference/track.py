@@ -1,23 +1,32 @@
-"""Accepted states of a path: prediction of the next state, and the check that a step stays on its branch."""
+"""Accepted states of a path: prediction of the next state, the check that a step stays on its branch, and states between."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from math import inf, isfinite
+from typing import TypeVar
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline, KroghInterpolator
 
-from fem_reference.active_set import equilibrium
-from fem_reference.arrays import Array, Floats
-from fem_reference.dissipation import with_dissipation
-from fem_reference.model import Model
-from fem_reference.newton import force_scale
-from fem_reference.settings import Settings
-from fem_reference.state import State, as_accepted, build_state, with_contact_forces
+from fem_reference.arrays import Floats
+from fem_reference.friction import force_before_slip, settled, slip_gradient
+from fem_reference.newton import augmented, equilibrium
+from fem_reference.state import State
 from fem_reference.status import Status
-from fem_reference.tangent import Correction, Tangent, linearise
+from fem_reference.system import Correction, Tangent, linearise, pin_motion
 
+Item = TypeVar("Item")
 TRACK_LENGTH = 3
 """Largest number of accepted states in a prediction."""
+LARGEST_DEPARTURE = 1 / 3
+"""Largest accepted distance of a step from the tangents at its ends, relative to the step's length."""
 ORDER = 3
 """Degree of the polynomial in the load parameter that extrapolates accepted states and their rates."""
+_INTERVAL = 1e-6
+"""Interval of the load parameter over which the motion of a pin is a velocity."""
+_MAX_STEPS = 80
+_VANISHED = 1e-9
+"""Value at which a search ends, relative to the one at the beginning."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -27,41 +36,83 @@ class Accepted:
     state: State  # the state
     tangent: Tangent  # linearisation at the state
     index: int  # number of negative eigenvalues of the energy's Hessian; -1 if undefined, see `Tangent.index`
-    _rates: dict[tuple[float, float], Correction] = field(default_factory=dict, repr=False)
+    rates: dict[tuple[float, float], Correction] = field(default_factory=dict)  # results of `rate`
+
+    @property
+    def t(self) -> float:
+        """Load parameter."""
+        return self.state.t
 
     def rate(self, before: float, after: float) -> Correction:
         """Change per load parameter with the mean velocity of the pins between two load parameters; nan if singular."""
-        if (before, after) not in self._rates:
-            rate = self.tangent.rate(before, after)
-            if rate is None:
-                count = self.state.contact_forces.size + self.state.tie_forces.size
-                rate = Correction(u=np.full_like(self.state.u, np.nan), forces=np.full(count, np.nan))
-            self._rates[before, after] = rate
-        return self._rates[before, after]
+        if (before, after) not in self.rates:
+            nan = Correction(u=self.state.u * np.nan, forces=self.state.forces * np.nan)
+            self.rates[before, after] = self.tangent.rate(before, after) or nan
+        return self.rates[before, after]
+
+    def slip_rates(self, pair: int, *, forward: bool) -> Floats:
+        """Rates of slip [m] and tangential force [N] of a closed contact ``(2,)``, before a corner of a pin's path or ``forward``."""
+        state, touch = self.state, self.state.touches[pair]
+        before, after = (self.t, self.t + _INTERVAL) if forward else (self.t - _INTERVAL, self.t)
+        rate = self.rate(before, after)
+        motion = touch.slopes.T @ rate.u.ravel() + pin_motion(touch, before, after)
+        number = len(state.closed) + state.rubbing.index(touch)
+        return np.array([slip_gradient(touch) @ motion, rate.forces[number]])
 
 
-def accept(model: Model, state: State, settings: Settings, last: Accepted | None = None) -> Accepted | None:
-    """Linearise at a state, from which slip then counts; None if its tangent is singular.
-
-    With the ``last`` accepted state, the energy that friction dissipates is accurate to the fourth order of the step.
-    """
-    state = as_accepted(state)
-    tangent = linearise(model, state)
+def accept(state: State, last: Accepted | None = None) -> Accepted | None:
+    """Linearise at a state, from which slip then counts; None if its tangent is singular. Energy is dissipated since ``last``."""
+    if any(touch.begin for touch in state.touches):
+        state = state.touching(tuple(map(settled, state.touches)))
+    tangent = linearise(state)
     if tangent is None:
         return None
-    if last is not None and (state.rubbing or last.state.rubbing):
-        state = with_dissipation(last.tangent, tangent)
-        tangent = replace(tangent, state=state)
-    force_tolerance = settings.tolerance * force_scale(model, state)
-    return Accepted(state=state, tangent=tangent, index=tangent.index(force_tolerance))
+    index = tangent.index(state.model.settings.tolerance * state.force_scale)
+    found = Accepted(state=state, tangent=tangent, index=index)
+    if last is None or not (state.rubbing or last.state.rubbing):
+        return found
+    touches = [
+        replace(touch, dissipated=touch.dissipated + _dissipated(last, found, pair))
+        for pair, touch in enumerate(state.touches)
+    ]
+    state = state.touching(touches)
+    return replace(found, state=state, tangent=replace(tangent, state=state))
 
 
-def accepted_state(
-    model: Model, states: tuple[Accepted, ...], t: float, settings: Settings
-) -> Accepted | None:
-    """Equilibrium at ``t`` from the linear extrapolation of the last state; None if it does not converge."""
-    attempt = equilibrium(model, predict(model, states, t, 1), settings)
-    return accept(model, attempt.state, settings) if attempt.status is Status.CONVERGED else None
+def _dissipated(last: Accepted, found: Accepted, pair: int) -> float:
+    """Energy ``integral T d xi`` that a contact dissipates between two states, where slip and force are cubic polynomials [J].
+
+    A contact that slips and opens in between dissipates until its force is zero: to first order in the step, slip goes on at its rate, and
+    the force falls to zero at its rate.
+    """
+    before, after, span = last.state.touches[pair], found.state.touches[pair], found.t - last.t
+    if before.closed and not after.closed and before.direction:
+        slip, fall = last.slip_rates(pair, forward=True)
+        if not fall * before.tangential < 0:
+            return 0.0
+        duration = min(-before.tangential / fall, span)
+        return max(0.0, float((before.tangential + 0.5 * fall * duration) * slip * duration))
+    if not (after.closed and after.direction):
+        return 0.0
+    begin = force_before_slip(after.direction, after.tangential, before.tangential)
+    change = np.array([after.slipped - before.slipped, after.tangential - begin])
+    final = span * found.slip_rates(pair, forward=False)
+    final = final if np.all(np.isfinite(final)) else change
+    slips = before.closed and before.direction == after.direction
+    first = span * last.slip_rates(pair, forward=True) if slips else np.array([np.nan])
+    first = first if np.all(np.isfinite(first)) else 2 * change - final  # polynomials of degree 2
+    path = CubicHermiteSpline([0.0, 1.0], [0 * change, change], [first, final])
+    x, w = np.polynomial.legendre.leggauss(3)
+    points = (1 + x) / 2
+    return float(w / 2 @ ((begin + path(points)[:, 1]) * path(points, 1)[:, 0]))
+
+
+def state_at(last: Accepted, t: float, *, keep_set: bool = False) -> Accepted | None:
+    """Equilibrium at ``t`` from the linear extrapolation of a state; None if it does not converge. ``keep_set`` keeps its contact set."""
+    attempt = equilibrium(predict((last,), t, 1), keep_set=keep_set)
+    if attempt.status is not Status.CONVERGED:
+        return None
+    return accept(attempt.state, last if keep_set else None)
 
 
 def departure(a: Accepted, b: Accepted, floor: float) -> float:
@@ -72,10 +123,8 @@ def departure(a: Accepted, b: Accepted, floor: float) -> float:
     ``|d - dt ((1 - tau) v_a + tau v_b)| / |d|`` over tau between 0 and 1. Norms are root mean squares over the nodes.
     Differences below ``floor`` [m] count as zero.
     """
-    before, after = sorted((a.state.t, b.state.t))
-    dt = b.state.t - a.state.t
-    d = b.state.u - a.state.u
-    va, vb = (dt * accepted.rate(before, after).u for accepted in (a, b))
+    dt, d = b.t - a.t, b.state.u - a.state.u
+    va, vb = (dt * accepted.rate(a.t, b.t).u for accepted in (a, b))
     if a.state.contact_set == b.state.contact_set:
         errors = [_size(d - va), _size(d - vb)]
     else:
@@ -90,67 +139,60 @@ def _size(u: Floats) -> float:
     return float(np.sqrt(np.mean(u**2)))
 
 
-def predict(model: Model, states: tuple[Accepted, ...], t: float, degree: int) -> State:
-    """Extrapolate the last states to ``t`` by Hermite's polynomial, with the contact set of the last state.
+def predict(states: tuple[Accepted, ...], t: float, degree: int) -> State:
+    """Extrapolate the last states that have the contact set of the last one to ``t`` by Hermite's polynomial."""
+    last = states[-1].state
+    same = [item for item in states[-TRACK_LENGTH:] if item.state.contact_set == last.contact_set]
+    nodes, conditions = list[float](), list[Floats]()
+    for item, after in zip(same[::-1], [t, *(item.t for item in same[:0:-1])], strict=True):
+        rate = item.rate(item.t, after)
+        nodes += [item.t, item.t]
+        conditions += [np.append(item.state.u, item.state.forces), np.append(rate.u, rate.forces)]
+    found = KroghInterpolator(nodes[: degree + 1], conditions[: degree + 1])(t)
+    state = last.moved(found[: last.u.size].reshape(-1, 2), t, found[last.u.size :])
+    return state.touching(tuple(map(augmented, state.touches)))
 
-    Only states with this contact set are used, so that the degree may be lower than ``degree``.
+
+def root(
+    evaluate: Callable[[float, Item], tuple[float, Item] | None],
+    low: tuple[float, float, Item],
+    end: float,
+    precision: float = 1e-14,
+) -> tuple[float, Item] | None:
+    """Place and item where a value that is positive at ``low`` vanishes up to ``end``; None where it stays positive.
+
+    Regula falsi in Illinois' form. ``evaluate`` has a place and the item of the nearest place before. A place for which it returns
+    None, since nothing converges, counts as one beyond the root. If the value does not vanish, the last place before is the answer.
     """
-    last = states[-1]
-    same = [
-        accepted
-        for accepted in states[-TRACK_LENGTH:]
-        if accepted.state.contact_set == last.state.contact_set
-    ]
-    if degree == 0:
-        return build_state(model, last.state.u, t, last.state.conditions, last.state.tie_forces)
-    nodes, values, rates = [], [], []
-    following = [*(accepted.state.t for accepted in same[1:]), t]
-    for accepted, after in zip(same, following, strict=True):
-        rate = accepted.rate(accepted.state.t, after)
-        nodes.append(accepted.state.t)
-        at = accepted.state
-        values.append(np.concatenate([at.u.ravel(), at.contact_forces, at.tie_forces]))
-        rates.append(np.append(rate.u.ravel(), rate.forces))
-    extrapolated = hermite(nodes[::-1], values[::-1], rates[::-1], t, degree)
-    size, count = last.state.u.size, last.state.contact_forces.size
-    u = extrapolated[:size].reshape(-1, 2)
-    conditions = with_contact_forces(last.state.conditions, extrapolated[size : size + count])
-    augmented = (touch.closed and touch.pair.contact.penetration is not None for touch in last.state.touches)
-    conditions = tuple(
-        replace(condition, multiplier=condition.force if removed else 0.0)
-        for condition, removed in zip(conditions, augmented, strict=True)
-    )
-    return build_state(model, u, t, conditions, extrapolated[size + count :])
+    (x, value, item), high, beyond, side = low, end, -inf, 0
+    vanished = _VANISHED * value
+    for step in range(_MAX_STEPS):
+        width = high - x
+        if width <= precision:
+            break
+        share = value / (value - beyond) if isfinite(beyond) else 0.5
+        at = end if step == 0 else x + min(max(share, 1e-6), 1 - 1e-6) * width
+        found = evaluate(at, item)
+        if found is not None and found[0] > 0:
+            if step == 0:
+                return None
+            x, (value, item) = at, found
+            beyond, side = beyond / 2 if side > 0 else beyond, 1
+        else:
+            high, beyond = at, -inf if found is None else found[0]
+            value, side = value / 2 if side < 0 else value, -1
+        if found is not None and abs(found[0]) <= vanished:
+            return at, found[1]
+    return x, item
 
 
-def hermite(nodes: list[float], values: list[Array], rates: list[Array], t: float, degree: int) -> Array:
-    """Evaluate Hermite's interpolation polynomial at ``t`` by Newton's form with every node repeated.
+def located(last: Accepted, end: float, margin: Callable[[Accepted], float]) -> Accepted | None:
+    """Accepted state with the contact set of ``last`` at which a positive ``margin`` vanishes up to ``end``; None without one."""
 
-    The polynomial takes the first ``degree + 1`` conditions in the order value and rate at the first node, value and rate
-    at the second node, and so on.
+    def evaluate(t: float, low: Accepted) -> tuple[float, Accepted] | None:
+        at = state_at(low, t, keep_set=True)
+        return None if at is None else (margin(at), at)
 
-    >>> hermite([0.0, 1.0], [np.array([0.0]), np.array([1.0])], [np.array([0.0]), np.array([3.0])], 2.0, 3)
-    array([8.])
-    """
-    twice = [node for node in nodes for _ in range(2)][: degree + 1]
-    column: list[Array] = [value for value in values for _ in range(2)][: degree + 1]
-    total, power = column[0].copy(), 1.0
-    for order in range(1, len(twice)):
-        column = [
-            rates[k // 2]
-            if twice[k] == twice[k + order]
-            else (column[k + 1] - column[k]) / (twice[k + order] - twice[k])
-            for k in range(len(column) - 1)
-        ]
-        power *= t - twice[order - 1]
-        total += power * column[0]
-    return total
-
-
-def root_by_inverse_interpolation(values: list[tuple[float, float]]) -> float:
-    """Load parameter at which a quantity vanishes, by inverse interpolation of pairs ``(value, t)``."""
-    total = 0.0
-    for number, (value, t) in enumerate(values):
-        others = [other for k, (other, _) in enumerate(values) if k != number]
-        total += t * float(np.prod([other / (other - value) for other in others]))
-    return total
+    value = margin(last)
+    found = (last.t, last) if value < 0 else root(evaluate, (last.t, value, last), end)
+    return None if found is None else found[1]

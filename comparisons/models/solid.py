@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from comparisons.models.theory import Bending
     from comparisons.response import Array, ContactEvent, Response
     from comparisons.scene import BeamSpec, Scene, SupportSpec
-    from fem_reference import EndLoad, Joint, LineLoad, PointLoad, SolidProblem, Spring, Strip, Support
+    from fem_reference import Joint, LineLoad, PointLoad, SolidProblem, Spring, Strip, Support
 
 REFINED = ((25, 1), (50, 2), (100, 4), (200, 8))
 """Meshes refined alike in both directions, to which an order of convergence can be fitted."""
@@ -105,12 +105,12 @@ def _solved(scene: Scene, options: Options, watch: Watch) -> Response:
     from comparisons.response.material import Deferred
 
     def report(step: Any) -> None:
-        touching = (f"{touch.pair.name} at {float(touch.projection.zeta):.4g}" for touch in step.state.closed)
+        touching = (f"{touch.pair.name} at {touch.at.zeta:.4g}" for touch in step.state.closed)
         watch(Reached(step.load_parameter, step.iterations, tuple(touching)))
 
     problem = to_solid(scene, mesh=options.mesh)
     result = result_of(fem_reference, problem, scene, options, report)
-    beam = np.repeat(np.arange(len(scene.beams)), [part.stop - part.start for part in result.model.parts])
+    beam = np.repeat(np.arange(len(scene.beams)), [len(body.mesh.nodes) for body in result.model.bodies])
 
     def axis_line(beam: str, k: int) -> tuple[Array, Array]:
         return fem_reference.axis_stations(result, beam), fem_reference.axis_line(result, beam, k)
@@ -196,8 +196,7 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> SolidProbl
         ),
         joints=tuple(joints.stated()),
         springs=tuple(_springs(scene, joints)),
-        loads=tuple(_end_loads(scene, joints)),
-        inner_loads=tuple(_inner_loads(scene)),
+        loads=(*_end_loads(scene, joints), *_inner_loads(scene)),
         pins=tuple(
             fem.Pin(name=pin.name, path=path, radius=pin.radius or 0.0, onward=tuple(p[1:] for p in onward))
             for pin in scene.pins
@@ -285,9 +284,9 @@ def _springs(scene: Scene, joints: _Joints) -> Iterator[Spring]:
             yield Spring(strip=spec.beam, end=spec.end, stiffness=(*spec.stiffness, turning))
 
 
-def _end_loads(scene: Scene, joints: _Joints) -> Iterator[EndLoad]:
+def _end_loads(scene: Scene, joints: _Joints) -> Iterator[PointLoad]:
     """Yield the forces and moments on the ends; a moment acts on an end without a hinge."""
-    from fem_reference import EndLoad
+    from fem_reference import PointLoad
 
     for stage, load in scene.numbered_loads():
         if load.end is None:
@@ -298,7 +297,7 @@ def _end_loads(scene: Scene, joints: _Joints) -> Iterator[EndLoad]:
                 f'the solid model states a moment on a joint with an end without a hinge, "{load.node}" has none'
             )
         beam, end = (plain if load.node in joints.hinges else load.node).split(".")
-        yield EndLoad(strip=beam, end=end, force=load.force, moment=load.moment, stage=stage)
+        yield PointLoad(strip=beam, at=float(end == "end"), force=load.force, moment=load.moment, stage=stage)
 
 
 def _inner_loads(scene: Scene) -> Iterator[PointLoad | LineLoad]:

@@ -40,9 +40,8 @@ def make_problem(path=None, radius=0.0, contact=None, **changes):
 KINDS = {
     fr.Support: "supports",
     fr.Spring: "springs",
-    fr.EndLoad: "loads",
-    fr.LineLoad: "inner_loads",
-    fr.PointLoad: "inner_loads",
+    fr.LineLoad: "loads",
+    fr.PointLoad: "loads",
 }
 
 
@@ -67,7 +66,7 @@ def support(end="start", motion=(0.0, 0.0, 0.0), **values):
 
 
 def load(**values):
-    return fr.EndLoad(**({"strip": STRIP} | values))
+    return fr.PointLoad(**({"strip": STRIP} | values))
 
 
 def portal():
@@ -84,7 +83,7 @@ def portal():
             fr.Support(strip="right", end="end", motion=(None, -0.01, None)),
         ),
         joints=(fr.Joint(ends=("left.end", "girder.start")), fr.Joint(ends=("right.start", "girder.end"))),
-        loads=(fr.EndLoad(strip="girder", end="start", force=(1e-4, 0.0), moment=2e-5),),
+        loads=(fr.PointLoad(strip="girder", at=0.0, force=(1e-4, 0.0), moment=2e-5),),
     )
 
 
@@ -93,7 +92,7 @@ def upper_on_lower(mesh, friction=0.0, **contact):
     upper = make_strip(name="upper", start=(0.0, 0.1), end=(0.8, 0.05), mesh=mesh)
     lower = make_strip(name="lower", start=(1.0, 0.0), end=(0.1, 0.0), mesh=mesh)
     values = {"node": "upper.end", "strip": "lower", "surface": "face", "friction": friction}
-    pressed = fr.EndLoad(strip="upper", force=(0.0, -4e-3))
+    pressed = fr.PointLoad(strip="upper", force=(0.0, -4e-3))
     return fr.SolidProblem(
         strips=(upper, lower), contacts=(fr.Contact(**(values | contact)),), loads=(pressed,)
     )

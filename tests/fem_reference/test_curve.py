@@ -6,12 +6,12 @@ from scipy.interpolate import CubicSpline
 from scipy.sparse import eye_array
 
 # Orders and derivatives of the curve: answers hold it to about 1e-4 only.
-from fem_reference.curve import ContactCurve, CurveFrom, averaging, band_slopes, closest
+from fem_reference.curve import ContactCurve, averaging, cardinal_slopes, closest
 
 
 def curve_through(stations, offsets=(0.0,), kernel=(1.0,)):
     rows = eye_array(stations.size, format="csr")
-    slopes = band_slopes(stations)
+    slopes = cardinal_slopes(stations)
     kernel, offsets = np.array(kernel), np.array(offsets)
     return ContactCurve(stations=stations, slopes=slopes, rows=rows, offsets=offsets, kernel=kernel)
 
@@ -29,7 +29,7 @@ def test_slopes_in_windows_equal_the_slopes_of_the_whole_spline(m):
     rng = np.random.default_rng(m)
     s = np.cumsum(rng.uniform(0.5, 2, m))
     values = rng.standard_normal(m)
-    slopes = curve_through(s).spline @ values
+    slopes = cardinal_slopes(s) @ values
     np.testing.assert_allclose(slopes, CubicSpline(s, values)(s, 1), atol=1e-13)
 
 
@@ -47,7 +47,7 @@ def test_a_point_beside_the_centre_of_curvature_has_its_nearest_foot(point):
     s = np.linspace(0, 1, 6)
     curve = curve_through(s)
     X = np.stack([s, 0.15 * np.cos(2 * np.pi * s)], axis=1)
-    zeta, stationary = closest(CurveFrom(curve=curve, points=X - np.array(point)))
+    zeta, stationary = closest(curve, X - point, curve.slopes @ (X - point))
     places = np.linspace(0, 1, 4001)
     distances = [np.hypot(*(curve.basis(z)[0] @ X - point)) for z in places]
     assert stationary

@@ -111,7 +111,7 @@ def test_a_joint_of_two_strips_bears_its_springs_moment():
         make_strip(name="b", start=(a, 0.0), clamped=("end",), **part),
     )
     joint = fr.Joint(ends=("a.end", "b.start"), hinged=("b.start",), stiffness=(EI * stiffness,))
-    pushed = fr.EndLoad(strip="a", force=(0.0, -SMALL))
+    pushed = fr.PointLoad(strip="a", force=(0.0, -SMALL))
     result = fr.solve(fr.SolidProblem(strips=halves, joints=(joint,), loads=(pushed,)), loads(1))
     # each half: force SMALL/2 and moment m = c 2 turn against its turn at the joint
     c = 2 * stiffness * a

@@ -1,4 +1,4 @@
-"""Meshes of strips: sections, grading, size, and files of the user's own."""
+"""Meshes of strips: sections, size, and files of the user's own."""
 
 import os
 import re
@@ -111,13 +111,6 @@ def test_axis_is_the_mean_of_the_sections(element):
         section = np.flatnonzero(np.abs(result.mesh_points[:, 0] - station) < 1e-9)
         section = section[np.argsort(result.mesh_points[section, 1])]
         np.testing.assert_allclose(weights @ places[section], mean, atol=1e-15)
-
-
-def test_grading_is_the_ratio_of_last_to_first_element():
-    stations = fr.axis_stations(pulled(mesh=(6, 1), grading=8.0), STRIP)
-    lengths = np.diff(stations[::2])
-    np.testing.assert_allclose(lengths[1:] / lengths[:-1], 8 ** (1 / 5), rtol=1e-12)
-    assert (stations[0], stations[-1]) == (0.0, 1.0)
 
 
 def test_memory_is_what_a_refusal_says():

@@ -9,6 +9,7 @@ from skfem import MeshQuad
 
 # Laws at every gradient, displacements of a whole boundary, body forces: strips have none of them.
 from fem_reference.assembly import deformation_gradient, element_entries, internal_force, pattern
+from fem_reference.factor import full
 from fem_reference.material import MATERIALS, PLANES, elastic_law, lame_constants
 from fem_reference.mesh import from_basis, scalar_basis
 from tests.fem_reference.conftest import NU, E, elements, make_strip, rotation
@@ -37,7 +38,7 @@ def solve_inside(mesh, law, exact, loads):
     for _ in range(30):
         F = deformation_gradient(mesh, u)
         R = T.T @ (internal_force(mesh, law.stress(F)) - loads).ravel()
-        step = spsolve(stiffness.matrix(element_entries(mesh, law.tangent, u)), -R)
+        step = spsolve(full(stiffness.band(element_entries(mesh, law.tangent, u))), -R)
         u = u + (T @ step).reshape(-1, 2)
         if np.abs(step).max() < 1e-14:
             return u

@@ -75,7 +75,7 @@ def test_pin_that_jumps_past_the_clamp_is_not_taken_for_an_open_contact():
     ("contact", "n", "settings", "status", "said"),
     [
         ({}, 10, {"max_iterations": 2, "min_step": 0.02}, "CUTBACK_FLOOR", "because Newton's method did not converge"),
-        ({"penalty": 1.0, "penetration": 1e-12}, 4, {"max_augmentations": 1, "min_step": 0.1}, "CUTBACK_FLOOR", fr.Status.AUGMENTATION_LIMIT.value),
+        ({"penalty": 1.0, "penetration": 1e-12}, 4, {"min_step": 0.1}, "CUTBACK_FLOOR", fr.Status.AUGMENTATION_LIMIT.value),
         ({"penalty": 1.0}, 10, {}, "CUTBACK_FLOOR", fr.Status.TOO_DEEP.value),
         ({}, 2, {"max_iterations": 3, "max_attempts": 3}, "STEP_LIMIT", ""),
     ],

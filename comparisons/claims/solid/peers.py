@@ -59,9 +59,9 @@ def peers(report: Report) -> Iterator[Row]:
 
 def dead_load(strip: "Strip", force: float, steps: int = 10) -> tuple[Array, Array]:
     """Mean displacement of the free end and the clamp's force under a transverse dead load [N] that is spread over the end."""
-    from fem_reference import EndLoad, SolidProblem
+    from fem_reference import PointLoad, SolidProblem
 
-    load = EndLoad(strip=strip.name, end="end", force=(0.0, force))
+    load = PointLoad(strip=strip.name, force=(0.0, force))
     result = solved(SolidProblem(strips=(strip,), loads=(load,)), np.arange(1, steps + 1) / steps)
     (support,) = result.supports.values()
     return result.tips[strip.name][-1] - strip.end, support.force[-1]
