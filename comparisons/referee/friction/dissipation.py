@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from comparisons.referee.friction.history import History
 from comparisons.referee.friction.slip import slip_rate
-from comparisons.referee.grip import Grip, UnknownFrictionError
+from comparisons.referee.grip import UnknownFrictionError
 from comparisons.referee.path import corners, reach
 from comparisons.referee.state import Equilibrium
 
@@ -30,70 +30,55 @@ def dissipated(history: History, k: int, exact: Equilibrium) -> dict[str, float]
     """Return what every contact with friction dissipates since the load parameter before number k; nan where a change is not found."""
     times = history.response.load_parameter
     begin, end = (float(times[k - 1]) if k else 0.0), float(times[k])
-    pairs = [spec.pair for spec in history.scene.contacts if spec.friction]
-    between = [t for t in corners(history.scene) if begin < t < end]
+    spent: dict[str, float] = {spec.pair: 0.0 for spec in history.scene.contacts if spec.friction}
+    cuts: dict[float, Equilibrium | None] = dict.fromkeys(
+        t for t in corners(history.scene) if begin < t < end
+    )
     try:
-        cuts = dict.fromkeys([begin, *between]) | _cuts(history, k) | {end: exact}
-        spent, there = dict.fromkeys(pairs, 0.0), None
+        for pair, own in history.phases.items():
+            before = history.numbers[pair][k - 1] if k else 0
+            for phase in own[before + 1 : history.numbers[pair][k] + 1]:
+                if phase.before is not None and phase.slip != phase.before.slip:
+                    change = history.begin(phase)
+                    cuts[change.load_parameter] = change
+        cuts |= {begin: None, end: exact}
+        there: Equilibrium | None = None
         for first, last in reversed(list(pairwise(sorted(cuts)))):
             there = cuts[last] or there
             if last - first > _LEAST:
-                energies, there = _between(history, first, last, there)
-                for pair, energy in energies.items():
-                    spent[pair] += energy
+                there = _between(history, first, last, there, spent)
     except UnknownFrictionError:
-        return dict.fromkeys(pairs, math.nan)
+        return dict.fromkeys(spent, math.nan)
     return spent
 
 
-def _cuts(history: History, k: int) -> dict[float, Equilibrium | None]:
-    """Load parameters before number k, after the one before, at which a contact changes, with the equilibria there."""
-    found: dict[float, Equilibrium | None] = {}
-    for pair, own in history.phases.items():
-        before = history.numbers[pair][k - 1] if k else 0
-        for phase in own[before + 1 : history.numbers[pair][k] + 1]:
-            if phase.before is not None and phase.slip != phase.before.slip:
-                begin = history.begin(phase)
-                found[begin.load_parameter] = begin
-    return found
-
-
 def _between(
-    history: History, first: float, last: float, there: Equilibrium | None
-) -> tuple[dict[str, float], Equilibrium | None]:
-    """Dissipation between two load parameters without a change, and the equilibrium at the first; `there` is one at the last, in any state."""
+    history: History, first: float, last: float, there: Equilibrium | None, spent: dict[str, float]
+) -> Equilibrium | None:
+    """Add the dissipation between two load parameters without a change; `there` is an equilibrium next to them, as is the returned one."""
     middle = (first + last) / 2.0
     grips, closed = history.around(middle), history.closed(middle)
-    if not any(grip.slip for grip in grips.values()):
-        return {}, None
-    if there is None or closed != there.closed.keys():
-        there = history.near(middle, closed, grips)
-    spent: dict[str, float] = {}
-    spans = [(first, last, _DEPTH)]
-    while spans:
-        low, high, depth = spans.pop()
-        powers, there = _powers(low, high, there, grips)
-        terms = np.abs([_LEGENDRE @ values for values in powers.values()])
-        if depth and np.any(terms[:, -2:].sum(axis=1) > _SMOOTH * terms[:, 0]):
-            spans += [(low, (low + high) / 2.0, depth - 1), ((low + high) / 2.0, high, depth - 1)]
-            continue
-        for pair, values in powers.items():
-            spent[pair] = spent.get(pair, 0.0) + float(_WEIGHTS @ values) * (high - low) / 2.0
-    return spent, there
+    slipping = [pair for pair, grip in grips.items() if grip.slip]
+    if not slipping:
+        return None
+    now = history.near(middle, closed, grips) if there is None or closed != there.closed.keys() else there
 
-
-def _powers(
-    low: float, high: float, there: Equilibrium, grips: dict[str, Grip]
-) -> tuple[dict[str, Array], Equilibrium]:
-    """``F_t v`` of the slipping contacts at the Gauss points between two load parameters, and the equilibrium at the first of them."""
-    powers: dict[str, Array] = {}
-    for k in reversed(range(len(_POINTS))):
-        t = float((low + high) / 2.0 + _POINTS[k] * (high - low) / 2.0)
-        there = reach(there, t, grips)
-        if not there.found:
+    def power(t: float) -> Array:
+        nonlocal now
+        now = reach(now, t, grips)
+        if not now.found:
             raise UnknownFrictionError(f"no equilibrium was found at load parameter {t:.6g}")
-        for touch in there.layout.touches:
-            if touch.grip is not None and touch.grip.slip:
-                power = there.contacts[touch.spec.pair].drag * slip_rate(there, touch) * there.layout.length
-                powers.setdefault(touch.spec.pair, np.zeros(len(_POINTS)))[k] = power
-    return powers, there
+        rates = [slip_rate(now, now.layout.touch(pair)) * now.layout.length for pair in slipping]
+        return np.array([now.contacts[pair].drag for pair in slipping]) * rates
+
+    def energy(low: float, high: float, depth: int) -> Array:
+        places = (low + high) / 2.0 + _POINTS * (high - low) / 2.0
+        powers = np.array([power(float(t)) for t in places[::-1]])[::-1]
+        terms, half = np.abs(_LEGENDRE @ powers), (low + high) / 2.0
+        if depth and np.any(terms[-2:].sum(axis=0) > _SMOOTH * terms[0]):
+            return energy(half, high, depth - 1) + energy(low, half, depth - 1)
+        return np.asarray(_WEIGHTS @ powers * (high - low) / 2.0)
+
+    for pair, lost in zip(slipping, energy(first, last, _DEPTH).tolist(), strict=True):
+        spent[pair] += lost
+    return now

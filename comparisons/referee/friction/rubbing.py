@@ -1,12 +1,11 @@
 """Checks of Coulomb's law: in the numbers that an answer states, in the exact equilibrium, and along the path."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
 import numpy as np
 
-from comparisons.referee.certificate import Judgement
 from comparisons.referee.friction.dissipation import dissipated
 from comparisons.referee.friction.history import History, at_rest
 from comparisons.referee.friction.phases import OPEN, UNKNOWN
@@ -153,21 +152,19 @@ def _misspent(history: History, k: int, exact: Equilibrium, tolerance: float) ->
 
 
 def rubs_wrongly_on_the_way(
-    history: History, numbers: Sequence[int], states: Sequence[Judgement], allowed: float
+    history: History, found: Mapping[int, Equilibrium], apart: float, allowed: float
 ) -> Iterator[str]:
-    """Yield changes of slip and stick that are unstated or elsewhere, and work and dissipation up to judged load parameters that are not exact."""
-    response = history.response
+    """Yield changes of slip and stick that are unstated or elsewhere, and work and dissipation up to the equilibria `found` that are not exact.
+
+    `apart` is the largest difference of the answer from them.
+    """
     for spec in history.scene.contacts:
-        friction = response.contacts[spec.pair].friction
-        if spec.friction and friction is not None:
-            yield from _falls(spec, friction, response, _least_energy(history.scene))
         if spec.friction:
+            yield from _falls(history, spec)
             yield from _elsewhere(history, spec, allowed)
-    apart = max((item.distance.largest[1] for item in states if item.distance is not None), default=0.0)
-    found = [(k, item.exact) for k, item in zip(numbers, states, strict=True) if item.exact is not None]
-    for k, exact in found:
+    for k, exact in found.items():
         yield from _unpaid(history, k, exact, ENERGY + _SPREAD * apart)
-    for k, exact in found[-_MOST:]:
+    for k, exact in [*found.items()][-_MOST:]:
         yield from _misspent(history, k, exact, ENERGY + _SPREAD * apart)
 
 
@@ -176,11 +173,12 @@ def _least_energy(scene: Scene) -> float:
     return LEAST * least_force(scene) * min(beam.length for beam in scene.beams)
 
 
-def _falls(spec: ContactSpec, friction: FrictionHistory, response: Response, least: float) -> Iterator[str]:
+def _falls(history: History, spec: ContactSpec) -> Iterator[str]:
     """Yield the first load parameter at which the dissipation of a contact is smaller than before."""
-    spent = np.concatenate([[0.0], friction.dissipated])
-    work = friction.dissipated if response.work is None else response.work
-    falls = np.diff(spent) < -FALL * np.abs(np.concatenate([work, friction.dissipated])).max(initial=least)
+    response, friction = history.response, history.response.contacts[spec.pair].friction
+    spent = np.zeros(1) if friction is None else np.append(0.0, friction.dissipated)
+    largest = np.abs(np.append(spent, () if response.work is None else response.work)).max()
+    falls = np.diff(spent) < -FALL * max(largest, _least_energy(history.scene))
     if falls.any():
         yield f"the dissipation of {spec.pair} falls up to load parameter {response.load_parameter[np.argmax(falls)]:.6g}"
 
