@@ -36,7 +36,6 @@ _POINTS = 401
 """Points of an axis between which the feet of an open contact's node are sought."""
 LOCAL = 1.5
 """Distance from contacts, loads and ends, over the height, within which the section forces of a solid are not compared."""
-_PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 _SHARPEST = 1.4
 """Largest angle between neighbouring chords in the bound of the chords' error [rad]; beyond it the tangent grows without limit."""
 
@@ -109,38 +108,29 @@ def distance(response: Response, k: int, exact: Equilibrium, largest: Scales) ->
     length = max(beam.length for beam in scene.beams)
     last = force_round_off(scene, size)
     last_moment = min(force_round_off(scene, math.inf) * length, UNRESOLVED * moment)
-    found: dict[str, dict[str, float]] = {name: {} for name in (*COMPARED, *ROUGH, "place")}
-    for name, pair, off in _contact_differences(response, k, exact):
-        found[name][pair] = off
-    for end, total, stated in _holds(response, k, exact):
-        x, y, turn = total - np.array(stated)
-        found["reaction"][f"force of {end}"] = _beyond(float(np.hypot(x, y)), size, last)
-        found["reaction"][f"moment of {end}"] = _beyond(abs(float(turn)), moment, last_moment)
-    apart: dict[str, float] = {}
-    for beam in scene.beams:
-        there = exact.ends[f"{beam.name}.{scene.tip(beam.name)}"]
-        tip = float(np.hypot(*(there - response.tips[beam.name][k])))
-        axis = float(np.hypot(*(axes[beam.name] - lines[beam.name][1]).T).max())
-        found["tip"][beam.name], found["shape"][beam.name] = tip / beam.length, axis / beam.length
-        apart[beam.name] = max(_size(tip), _size(axis))
-        for name, off in _section_differences(response, k, exact, beam):
-            of = (moment, last_moment) if name == "M" else (size, last)
-            found["sections"][f"{name} of {beam.name}"] = _beyond(off, *of)
-    misplaced = [*_misplaced(response, k, exact)]
-    found["place"] = {name: off / length for name, off, length in misplaced}
     places = [np.abs(place) for beam in scene.beams for place in (beam.start, beam.end)]
     soft = max(beam.length**3 / beam.EI for beam in scene.beams)
     floor = RESIDUAL * length + LAST_PLACES * float(np.max(places)) + last * soft
-    for relative, lengths in (
-        ("displacement", apart),
-        ("constraint", {name: off for name, off, _ in misplaced}),
-    ):
-        found[relative] = {
-            name: 0.0 if off <= floor else _size(off / moved) if moved else math.inf
-            for name, off in lengths.items()
-        }
-    where = {name: max(sizes, key=lambda key: _size(sizes[key])) for name, sizes in found.items() if sizes}
-    sizes = {name: _size(found[name][where[name]]) if name in where else 0.0 for name in found}
+    rows = [*_contact_differences(response, k, exact)]
+    for end, total, stated in _holds(response, k, exact):
+        x, y, turn = total - np.array(stated)
+        rows.append(("reaction", f"force of {end}", _beyond(float(np.hypot(x, y)), size, last)))
+        rows.append(("reaction", f"moment of {end}", _beyond(abs(float(turn)), moment, last_moment)))
+    for beam in scene.beams:
+        name, there = beam.name, exact.ends[f"{beam.name}.{scene.tip(beam.name)}"]
+        tip = float(np.hypot(*(there - response.tips[name][k])))
+        axis = float(np.hypot(*(axes[name] - lines[name][1]).T).max())
+        rows += [("tip", name, tip / beam.length), ("shape", name, axis / beam.length)]
+        rows.append(("displacement", name, _beyond(max(_size(tip), _size(axis)), moved, floor)))
+        for letter, off in _section_differences(response, k, exact, beam):
+            of = (moment, last_moment) if letter == "M" else (size, last)
+            rows.append(("sections", f"{letter} of {name}", _beyond(off, *of)))
+    for name, off, own in _misplaced(response, k, exact):
+        rows += [("place", name, off / own), ("constraint", name, _beyond(off, moved, floor))]
+    sizes, where = dict.fromkeys((*COMPARED, *ROUGH, "place"), 0.0), dict[str, str]()
+    for name, at, off in rows:
+        if name not in where or _size(off) > sizes[name]:
+            sizes[name], where[name] = _size(off), at
     return Distance(sizes=sizes, where=where, scales=scales)
 
 
@@ -152,10 +142,10 @@ def _contact_differences(response: Response, k: int, exact: Equilibrium) -> Iter
         contact, stated = exact.contacts.get(pair), response.contacts[pair]
         if contact is not None:
             # without its direction, a force has the exact one
-            off = float(np.hypot(*contact.force)) - float(stated.force[k])
+            off = abs(np.hypot(*contact.force) - stated.force[k])
             if stated.vector is not None:
-                off = float(np.hypot(*(contact.force - stated.vector[k])))
-            yield "force", pair, _beyond(abs(off), largest, force_round_off(exact.scene, largest))
+                off = np.hypot(*(contact.force - stated.vector[k]))
+            yield "force", pair, _beyond(float(off), largest, force_round_off(exact.scene, largest))
             yield "arc_position", pair, abs(contact.arc_position - float(stated.arc_position[k])) / length
         if contact is not None or math.isfinite(stated.gap[k]):
             yield "gap", pair, gap_off(exact, spec, float(stated.gap[k])) / length
@@ -212,23 +202,20 @@ def _section_differences(
         kept &= (arc[1:] < min(jump) - near) | (arc[:-1] > max(jump) + near)
     begins, station = np.flatnonzero(kept), exact.shape(beam.name, arc)
     middle = exact.shape(beam.name, ((arc[1:] + arc[:-1]) / 2.0)[kept])
-    for name, values, ends, middles in zip(
-        "NVM",
-        (at.N, at.V, at.M),
-        (station.N, station.Q, station.moment),
-        (middle.N, middle.Q, middle.moment),
-        strict=True,
-    ):
+    for letter, name in (("N", "N"), ("V", "Q"), ("M", "moment")):
+        values = getattr(at, letter)
         offs = (
-            (values - ends)[np.unique([begins, begins + 1])],
-            ((values[1:] + values[:-1]) / 2.0)[kept] - middles,
+            (values - getattr(station, name))[np.unique([begins, begins + 1])],
+            ((values[1:] + values[:-1]) / 2.0)[kept] - getattr(middle, name),
         )
-        yield name, min(float(np.max(np.nan_to_num(np.abs(off), nan=np.inf), initial=0.0)) for off in offs)
+        yield letter, min(float(np.max(np.nan_to_num(np.abs(off), nan=np.inf), initial=0.0)) for off in offs)
 
 
 def _beyond(off: float, size: float, last: float) -> float:
     """Relative difference `off / size`; zero if it is at most the round-off `last`."""
-    return 0.0 if off <= last else _size(off / size)
+    if off <= last:
+        return 0.0
+    return _size(off / size) if size else math.inf
 
 
 def largest_force(exact: Equilibrium) -> float:
@@ -256,13 +243,8 @@ def _loads(scene: Scene, t: float) -> Iterator[tuple[float, float, float]]:
         x, y, moment = item.at(t)
         span = (last - first) * scene.beam(item.load.beam).length if along else 1.0
         yield x * span, y * span, 0.0 if along else moment
-    gravity = scene.gravity_at(t)
-    for beam in scene.beams:
-        if beam.density is not None and any(gravity):
-            mass = sum(
-                w * beam.mass_per_length((1.0 + x) / 2.0) for x, w in zip(_PLACES, _WEIGHTS, strict=True)
-            )
-            yield gravity[0] * mass * beam.length / 2.0, gravity[1] * mass * beam.length / 2.0, 0.0
+    x, y = scene.gravity_at(t)
+    yield from ((beam.mass * x, beam.mass * y, 0.0) for beam in scene.beams)
 
 
 def _misplaced(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple[str, float, float]]:

@@ -137,13 +137,14 @@ class Layout:
     """Number of unknowns without the rotations inside the parts."""
 
     @cached_property
-    def _touched(self) -> list[tuple[int, Touch]]:
+    def touched(self) -> list[tuple[int, Touch]]:
+        """The closed contacts with the numbers of their stations."""
         return [(k, item.touch) for k, item in enumerate(self.stations) if item.touch is not None]
 
     @property
     def touches(self) -> tuple[Touch, ...]:
         """The closed contacts."""
-        return tuple(touch for _, touch in self._touched)
+        return tuple(touch for _, touch in self.touched)
 
     @cached_property
     def arcs(self) -> Ints:
@@ -208,7 +209,7 @@ class Layout:
     def shifts(self, z: Array) -> Array:
         """Ways (stations, 2) of the axis from the references."""
         ways = self.motions(z)[:, :2]
-        for k, touch in self._touched:
+        for k, touch in self.touched:
             if touch.angle != NONE:
                 ways[k] -= touch.away(float(z[touch.arc])) * normal(float(z[touch.angle]))
         return ways

@@ -61,14 +61,11 @@ def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
     z, turns = first_guess(layout, answer)
     reason = _reason_not_to_judge(layout, z)
     if reason:
-        mesh, status = mesh_of(layout, [np.array([0.0, 1.0])] * len(layout.parts)), SearchStatus.NOT_JUDGED
-        return Equilibrium(
-            layout=layout, mesh=mesh, z=z, bubbles=np.zeros((0, DEGREE - 1)), status=status, message=reason
-        )
+        return replace(undeformed(layout, 1), z=z, status=SearchStatus.NOT_JUDGED, message=reason)
     mesh = mesh_of(layout, _first_grids(layout, z))
     places = _places(mesh)
     seen = [
-        turns[part.beam].angle(a + (b - a) * places[mesh.part == k])
+        np.interp(a + (b - a) * places[mesh.part == k], *turns[part.beam])
         for k, (part, (a, b)) in enumerate(zip(layout.parts, layout.extents(z), strict=True))
     ]
     start = _fitted(layout, mesh, z, np.concatenate(seen), _FIT_LOW)
@@ -81,6 +78,13 @@ def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
         if best.status is SearchStatus.NO_EQUILIBRIUM or _is_near(z, other):
             best = other
     return best
+
+
+def undeformed(layout: Layout, elements: int) -> Equilibrium:
+    """Return the guess that nothing moves, with a number of elements of every part."""
+    mesh = mesh_of(layout, [np.linspace(0.0, 1.0, elements + 1)] * len(layout.parts))
+    bubbles = np.zeros((len(mesh.part), DEGREE - 1))
+    return Equilibrium(layout=layout, mesh=mesh, z=np.zeros(mesh.unknowns), bubbles=bubbles)
 
 
 def _is_near(z: Array, found: Equilibrium) -> bool:
@@ -126,13 +130,13 @@ def _rotations_corrected(guess: Equilibrium, held: Ints) -> Equilibrium:
 
 def _reason_not_to_judge(layout: Layout, z: Array) -> str:
     """Return the reason why the first guess cannot be corrected; empty if it can."""
+    stiffness = [beam.EI / beam.length**2 for beam in layout.scene.beams]
     if not np.all(np.isfinite(z)):
         return "the answer is not finite"
-    stiffness = [beam.EI / beam.length**2 for beam in layout.scene.beams]
     if max(stiffness) > _STIFFNESS_RATIO * min(stiffness):
         return f"the stiffest beam is {max(stiffness) / min(stiffness):.1g} times as stiff as the most flexible one"
-    for part, (begin, end) in zip(layout.parts, layout.extents(z), strict=True):
-        if end - begin <= SHORTEST:
+    for part, extent in zip(layout.parts, np.diff(layout.extents(z)), strict=True):
+        if extent <= SHORTEST:
             beam = layout.scene.beams[part.beam].name
             return (
                 f'two contacts on beam "{beam}", or a contact and an end, are at one place or beyond the end'
@@ -142,14 +146,11 @@ def _reason_not_to_judge(layout: Layout, z: Array) -> str:
 
 def _first_grids(layout: Layout, z: Array) -> list[Array]:
     """About one element for 1.5 of the length sqrt(EI/n) over which the deflection varies, at most 50."""
-    grids = []
-    for part, extent in zip(layout.parts, np.diff(layout.extents(z))[:, 0], strict=True):
-        n = float(np.hypot(*part.constant(z)))
-        EI, stretch, shear = part.rod.greatest
-        rate = np.sqrt(n * (1.0 + n * abs(stretch - shear)) / EI)
-        count = int(np.clip(np.ceil(extent * rate / 1.5), 1, 50))
-        grids.append(np.linspace(0.0, 1.0, count + 1))
-    return grids
+    EI, stretch, shear = np.array([part.rod.greatest for part in layout.parts]).T
+    n = np.hypot(*z[layout.forces].reshape(-1, 2).T)
+    rate = np.sqrt(n * (1.0 + n * np.abs(stretch - shear)) / EI)
+    counts = np.clip(np.ceil(np.diff(layout.extents(z))[:, 0] * rate / 1.5), 1, 50)
+    return [np.linspace(0.0, 1.0, int(count) + 1) for count in counts]
 
 
 def _places(mesh: Mesh) -> Array:

@@ -7,12 +7,12 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.elements import DEGREE, mesh_for, mesh_of
+from comparisons.referee.elements import mesh_for
 from comparisons.referee.equations import orientation_of
 from comparisons.referee.grip import Grip
 from comparisons.referee.guess import AnswerState
 from comparisons.referee.layout import lay_out
-from comparisons.referee.newton import correct, equilibrium, newton_step
+from comparisons.referee.newton import correct, equilibrium, newton_step, undeformed
 from comparisons.referee.state import Change, Equilibrium, rotation_at
 from comparisons.response import ContactEvent, Response
 from comparisons.scene import Scene
@@ -163,10 +163,7 @@ def _alike(one: Equilibrium, other: Equilibrium) -> bool:
 
 def at_rest(scene: Scene) -> Equilibrium:
     """Return the undeformed state of a scene with all contacts open."""
-    layout = lay_out(scene, 0.0, {})
-    mesh = mesh_of(layout, [np.linspace(0.0, 1.0, 4) for _ in layout.parts])
-    bubbles = np.zeros((len(mesh.part), DEGREE - 1))
-    return correct(Equilibrium(layout=layout, mesh=mesh, z=np.zeros(mesh.unknowns), bubbles=bubbles), 6)
+    return correct(undeformed(lay_out(scene, 0.0, {}), 3), 6)
 
 
 def departs(first: Equilibrium, last: Equilibrium) -> str:
