@@ -169,51 +169,41 @@ def pairs(vector: Complex) -> Array:
 def elements(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> tuple[Array, Array, Array]:
     """Gradient (e, p + 5) and Hessian of the energy in `theta_a, theta_b, c_x, c_y, s_a, s_b` and the bubbles; strain energy (e,)."""
     ends = layout.extents(z)[mesh.part]
-    extent = (ends[:, 1] - ends[:, 0])[:, None]
-    x = mesh.start[:, None] + mesh.share[:, None] * (1.0 + GAUSS) / 2.0
-    half, grows = mesh.share[:, None] * extent / 2.0, mesh.share[:, None] / 2.0
+    extent, share = (ends[:, 1] - ends[:, 0])[:, None], mesh.share[:, None]
+    x = mesh.start[:, None] + share * (1.0 + GAUSS) / 2.0
     there = places(layout, mesh.part, ends[:, :1] + extent * x, z[mesh.local[:, 2:4]])
     coefficients = rotations(layout, mesh, z, bubbles)
-    by_theta, by_theta2, by_bent, by_y, by_yy, by_theta_y, by_bent_y, stored = _at_points(
-        there, half, coefficients @ VALUES.T, coefficients @ SLOPES.T
-    )
-    # from (c_x, c_y, s_a, s_b) to y
-    to = np.zeros((*x.shape, 4, 4))
-    to[..., 0, 0] = to[..., 1, 1] = 1.0
-    to[..., 2, 2], to[..., 2, 3], to[..., 3, 2], to[..., 3, 3] = -grows, grows, 1.0 - x, x
-    to_y = to * WEIGHTS[:, None, None]
+    # from the unknowns of an element to theta, theta_xi, c_x, c_y, half and s
     size = coefficients.shape[1] + 4
-    turn = np.r_[0, 1, OUTER:size]
-    gradient, hessian = np.zeros((len(x), size)), np.zeros((len(x), size, size))
-    gradient[:, turn] = (by_bent * WEIGHTS) @ SLOPES + (by_theta * WEIGHTS) @ VALUES
-    gradient[:, 2:OUTER] = (by_y[..., None, :] @ to_y).sum(axis=1)[:, 0]
-    bending, straining = (there.EI / half * WEIGHTS)[:, None, :], (by_theta2 * WEIGHTS)[:, None, :]
-    hessian[:, turn[:, None], turn] = (SLOPES.T * bending) @ SLOPES + (VALUES.T * straining) @ VALUES
-    mixed = VALUES.T @ (by_theta_y[..., None, :] @ to_y)[..., 0, :]
-    mixed += SLOPES.T @ (by_bent_y[..., None, :] @ to_y)[..., 0, :]
-    hessian[:, turn, 2:OUTER], hessian[:, 2:OUTER, turn] = mixed, mixed.swapaxes(1, 2)
-    hessian[:, 2:OUTER, 2:OUTER] = (to.swapaxes(-1, -2) @ by_yy @ to_y).sum(axis=1)
+    turn, to = np.r_[0, 1, OUTER:size], np.zeros((*x.shape, 6, size))
+    to[..., 0, turn], to[..., 1, turn] = VALUES, SLOPES
+    to[..., 2, 2] = to[..., 3, 3] = 1.0
+    to[..., 4, 4], to[..., 4, 5], to[..., 5, 4], to[..., 5, 5] = -share / 2.0, share / 2.0, 1.0 - x, x
+    first, second, stored = _at_points(there, share * extent / 2.0, *(coefficients @ by.T for by in (VALUES, SLOPES)))  # fmt: skip
+    gradient = np.einsum("egi,egis->es", first * WEIGHTS[:, None], to)
+    rows, weighted = (len(x), -1, size), second * WEIGHTS[:, None, None]
+    hessian = to.reshape(rows).swapaxes(1, 2) @ (weighted @ to).reshape(rows)
     return gradient, hessian, stored @ WEIGHTS
 
 
-def _at_points(there: Places, half: Array, theta: Array, bent: Array) -> tuple[Array, ...]:
-    """Energy by theta, twice, by theta_xi, by ``y = (c_x, c_y, half, s)``, twice, by theta and y, by theta_xi and y, and what is stored."""
+def _at_points(there: Places, half: Array, theta: Array, bent: Array) -> tuple[Array, Array, Array]:
+    """Gradient (..., 6) and Hessian of the energy in theta, theta_xi, c_x, c_y, half and s at points (...), and what is stored."""
     a, b, n, d = there.stretch, there.shear, there.n, np.exp(1.0j * theta)
     N, Q, tangent = fields(theta, there)
     stretched, stored = 1.0 + N * (a - b), (a * N**2 + b * Q**2) / 2.0
     turned = d * (Q * (a - b) + 1.0j * stretched)
     moment, square = there.EI * bent / half, (there.frame * d) ** 2
-    energy = moment * bent / 2.0
-    y, yy = np.zeros((*theta.shape, 4)), np.zeros((*theta.shape, 4, 4))
-    theta_y, bent_y = np.zeros_like(y), np.zeros_like(y)
-    y[..., :2] = -pairs(half * there.frame * tangent)
-    y[..., 2] = stored - energy / half - (n.conj() * tangent).real
-    yy[..., 0, :2] = -half[..., None] / 2.0 * pairs(a + b + (a - b) * square)
-    yy[..., 1, :2] = -half[..., None] / 2.0 * pairs(1.0j * (a + b - (a - b) * square))
-    yy[..., :2, 2] = yy[..., 2, :2] = y[..., :2] / half[..., None]
-    yy[..., 2, 2] = 2.0 * energy / half**2
-    theta_y[..., :2], theta_y[..., 2] = -pairs(half * there.frame * turned), -Q * stretched
-    bent_y[..., 2] = -moment / half
+    energy, wide = moment * bent / 2.0, half[..., None]
+    first, second = np.zeros((*theta.shape, 6)), np.zeros((*theta.shape, 6, 6))
+    first[..., 0], first[..., 1] = -half * Q * stretched, moment
+    first[..., 2:4] = -wide * pairs(there.frame * tangent)
+    first[..., 4] = stored - energy / half - (n.conj() * tangent).real
+    second[..., 0, 0] = half * (N * stretched - Q**2 * (a - b))
+    second[..., 1, 1], second[..., 4, 4] = there.EI / half, 2.0 * energy / half**2
+    second[..., 2, 2:4] = -wide / 2.0 * pairs(a + b + (a - b) * square)
+    second[..., 3, 2:4] = -wide / 2.0 * pairs(1.0j * (a + b - (a - b) * square))
+    mixed = {(0, 4): -Q * stretched, (1, 4): -moment / half}
+    both = {0: -wide * pairs(there.frame * turned), 4: first[..., 2:4] / wide}
     if there.by_s is not None:
         one, two, k0 = there.by_s
         along, over = (one.n / d).real, (one.n / d).imag
@@ -223,11 +213,14 @@ def _at_points(there: Places, half: Array, theta: Array, bent: Array) -> tuple[A
             a * along**2 + b * over**2 + 2.0 * (one.stretch * N * along + one.shear * Q * over)
             + (tangent.conj() * two.n).real + (two.stretch * N**2 + two.shear * Q**2) / 2.0
         )  # fmt: skip
-        y[..., 3] = one.EI * bent**2 / (2.0 * half) - half * f_s
-        yy[..., 3, 3] = two.EI * bent**2 / (2.0 * half) - half * f_ss
-        yy[..., :2, 3] = yy[..., 3, :2] = -pairs(half * there.frame * (lean + 1.0j * k0 * tangent))
-        yy[..., 2, 3] = yy[..., 3, 2] = -one.EI * bent**2 / (2.0 * half**2) - f_s
-        theta_y[..., 3] = -half * ((turned.conj() * one.n).real + (one.stretch - one.shear) * N * Q)
-        bent_y[..., 3] = one.EI * bent / half
-    theta2 = half * (N * stretched - Q**2 * (a - b))
-    return -half * Q * stretched, theta2, moment, y, yy, theta_y, bent_y, energy + half * stored
+        first[..., 5] = one.EI * bent**2 / (2.0 * half) - half * f_s
+        second[..., 5, 5] = two.EI * bent**2 / (2.0 * half) - half * f_ss
+        both[5] = -wide * pairs(there.frame * (lean + 1.0j * k0 * tangent))
+        mixed[0, 5] = -half * ((turned.conj() * one.n).real + (one.stretch - one.shear) * N * Q)
+        mixed[1, 5] = one.EI * bent / half
+        mixed[4, 5] = -one.EI * bent**2 / (2.0 * half**2) - f_s
+    for (i, j), value in mixed.items():
+        second[..., i, j] = second[..., j, i] = value
+    for i, vector in both.items():
+        second[..., i, 2:4] = second[..., 2:4, i] = vector
+    return first, second, energy + half * stored
