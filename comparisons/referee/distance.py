@@ -32,6 +32,8 @@ ROUGH = ("gap", "sections", "constraint")
 """Differences held against it too, which are interpolated and therefore no measure of an answer's accuracy; `place` has its own limit."""
 NONE = 1e-9
 """Difference below which only its bound is told."""
+_TIE = 1e-6
+"""Relative difference of sizes of which the first is told, so that round-off chooses no name."""
 _POINTS = 401
 """Points of an axis between which the feet of an open contact's node are sought."""
 LOCAL = 1.5
@@ -77,8 +79,8 @@ class Distance:
         return self._largest(ROUGH)
 
     def _largest(self, names: Sequence[str]) -> tuple[str, float]:
-        name = max(names, key=lambda name: self.sizes[name])
-        return name, self.sizes[name]
+        most = max(self.sizes[name] for name in names)
+        return next(name for name in names if self.sizes[name] * (1.0 + _TIE) >= most), most
 
     def line(self, of: tuple[str, float] | None = None) -> str:
         """Return a difference, the largest one if none is given, in words, as ``force off by 20 % (pin->strip)``."""
@@ -129,8 +131,9 @@ def distance(response: Response, k: int, exact: Equilibrium, largest: Scales) ->
         rows += [("place", name, off / own), ("constraint", name, _beyond(off, moved, floor))]
     sizes, where = dict.fromkeys((*COMPARED, *ROUGH, "place"), 0.0), dict[str, str]()
     for name, at, off in rows:
-        if name not in where or _size(off) > sizes[name]:
-            sizes[name], where[name] = _size(off), at
+        if name not in where or _size(off) > (1.0 + _TIE) * sizes[name]:
+            where[name] = at
+        sizes[name] = max(sizes[name], _size(off))
     return Distance(sizes=sizes, where=where, scales=scales)
 
 
