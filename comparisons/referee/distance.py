@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.guess import SHORTEST
+from comparisons.referee.guess import SHORTEST, end_of
 from comparisons.referee.rod import angle, axis_at_rest, cross, face_of
 from comparisons.referee.state import Equilibrium
 from comparisons.response import Response
@@ -116,11 +116,11 @@ def distance(response: Response, k: int, exact: Equilibrium, largest: Scales) ->
     rows = [*_contact_differences(response, k, exact)]
     for end, total, stated in _holds(response, k, exact):
         x, y, turn = total - np.array(stated)
-        rows.append(("reaction", f"force of {end}", _beyond(float(np.hypot(x, y)), size, last)))
+        rows.append(("reaction", f"force of {end}", _beyond(math.hypot(x, y), size, last)))
         rows.append(("reaction", f"moment of {end}", _beyond(abs(float(turn)), moment, last_moment)))
     for beam in scene.beams:
         name, there = beam.name, exact.ends[f"{beam.name}.{scene.tip(beam.name)}"]
-        tip = float(np.hypot(*(there - response.tips[name][k])))
+        tip = math.hypot(*(there - response.tips[name][k]))
         axis = float(np.hypot(*(axes[name] - lines[name][1]).T).max())
         rows += [("tip", name, tip / beam.length), ("shape", name, axis / beam.length)]
         rows.append(("displacement", name, _beyond(max(_size(tip), _size(axis)), moved, floor)))
@@ -164,7 +164,8 @@ def _holds(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple[str
         if node in response.springs:
             own = response.springs[node]
             way = np.array(spring.stiffness) * (exact.ends[node] - np.array(exact.scene.place(node)))
-            total = -np.append(way, spring.rotation * exact.joint_rotation(node))
+            turn = exact.layout.motions(exact.z)[exact.layout.joint(node), 2]
+            total = -np.append(way, spring.rotation * turn)
             yield f"the spring at {node}", total, (*own.force[k], own.moment[k])
 
 
@@ -223,9 +224,7 @@ def _beyond(off: float, size: float, last: float) -> float:
 
 def largest_force(exact: Equilibrium) -> float:
     """Return the largest contact force, at least the force below which nothing acts."""
-    return max(
-        [least_force(exact.scene), *(float(np.hypot(*item.force)) for item in exact.contacts.values())]
-    )
+    return max([least_force(exact.scene), *(math.hypot(*item.force) for item in exact.contacts.values())])
 
 
 def _forces(exact: Equilibrium) -> tuple[float, float]:
@@ -255,16 +254,14 @@ def _misplaced(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple
     scene = exact.scene
 
     def end(node: str) -> Array:
-        beam, where = node.split(".")
-        line = response.axis_line(beam, k)[1]
-        return np.asarray(line[0 if where == "start" else -1])
+        return end_of(node, lambda beam: response.axis_line(beam, k))
 
     for spec in scene.contacts:
         if spec.pair in exact.contacts:
             arc = float(response.contacts[spec.pair].arc_position[k])
             place, cut = _on_axis(*response.axis_line(spec.beam, k), arc)
             node = end(spec.node) if "." in spec.node else exact.place(spec.node)
-            apart = abs(float(np.hypot(*(place - node))) - face_of(scene, spec).reach(arc))
+            apart = abs(math.hypot(*(place - node)) - face_of(scene, spec).reach(arc))
             yield spec.pair, max(0.0, apart - cut), scene.beam(spec.beam).length
     for support in scene.all_supports:
         way = (end(support.node) - scene.place(support.node)).tolist()
@@ -285,5 +282,5 @@ def _on_axis(arcs: Array, line: Array, arc: float) -> tuple[Array, float]:
         line[last] - line[k + 1] if last > k + 1 else way,
     )
     turn = min(max(angle(before, way), angle(way, behind)), _SHARPEST)
-    cut = 0.5 * float(np.hypot(*way)) * math.tan(turn)
+    cut = 0.5 * math.hypot(*way) * math.tan(turn)
     return (1.0 - part) * line[k] + part * line[k + 1], cut

@@ -1,7 +1,7 @@
 """The first guess of the exact equilibrium from the axes, forces and arc positions of an answer."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -53,11 +53,6 @@ class AnswerState:
     reactions: Mapping[str, Sequence[float] | Array] = field(default_factory=dict)
     grips: dict[str, Grip] = field(default_factory=dict)
 
-    def end(self, node: str) -> Array:
-        """Return the position of a beam's end such as ``upper.end``."""
-        beam, end = node.split(".")
-        return np.asarray(self.axes[beam][1][0 if end == "start" else -1])
-
 
 def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
     """Return the state at load parameter number k; a contact whose force is round-off is open at an end of its beam, but its force counts."""
@@ -76,6 +71,12 @@ def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
             node: (*item.force[k].tolist(), float(item.moment[k])) for node, item in response.supports.items()
         },
     )
+
+
+def end_of(node: str, axis_line: Callable[[str], tuple[Array, Array]]) -> Array:
+    """Return the position of a beam's end such as ``upper.end`` on the beams' axes."""
+    beam, _, end = node.partition(".")
+    return np.asarray(axis_line(beam)[1][0 if end == "start" else -1])
 
 
 def pull_allowed(beam: BeamSpec) -> float:
@@ -169,7 +170,7 @@ def _set_displacements(layout: Layout, answer: AnswerState, turns: list[Rotation
         touch, unknown = station.touch, station.numbers[:2]
         if touch is None:
             if station.arc is None:
-                seen = answer.end((station.joint or station.ends)[0])
+                seen = end_of((station.joint or station.ends)[0], answer.axes.__getitem__)
             else:
                 part = next(item for item in layout.parts if item.first == number)
                 arcs, line = answer.axes[beams[part.beam].name]

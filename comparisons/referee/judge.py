@@ -155,7 +155,7 @@ def _impossible_contact(contact: ContactHistory, scene: Scene, spec: ContactSpec
     elif not 0.0 <= arc <= scene.beam(spec.beam).length:
         yield f"the arc position of {spec.pair} is not on its beam"
     elif contact.vector is not None:
-        size = float(np.hypot(*contact.vector[k]))
+        size = math.hypot(*contact.vector[k])
         if not abs(size - abs(force)) <= LAST_PLACES * size:
             yield f"the force of {spec.pair} and its components differ"
 

@@ -9,6 +9,7 @@ from comparisons.referee.elements import AMPLITUDE, DEGREE, GAUSS, VALUES, Mesh,
 from comparisons.referee.equations import solved
 from comparisons.referee.guess import SHORTEST, AnswerState, first_guess
 from comparisons.referee.layout import Layout, lay_out
+from comparisons.referee.rod import largest
 from comparisons.referee.state import Change, Equilibrium, SearchStatus, rotation_at, tails
 from comparisons.scene import Scene
 
@@ -90,7 +91,7 @@ def undeformed(layout: Layout, elements: int) -> Equilibrium:
 def _is_near(z: Array, found: Equilibrium) -> bool:
     """Whether an equilibrium was found with nearly the forces and arc positions of the answer."""
     arcs, forces = found.layout.arcs, found.layout.forces
-    size = float(np.abs(z[forces]).max(initial=0.0))
+    size = largest(z[forces])
     apart = np.abs(found.z[: len(z)] - z)
     close = apart[forces].max(initial=0.0) <= _NEAR * size and apart[arcs].max(initial=0.0) <= _NEAR
     return found.found and bool(close)
@@ -123,7 +124,7 @@ def _rotations_corrected(guess: Equilibrium, held: Ints) -> Equilibrium:
         if change is None:
             break
         turns = change[0][guess.layout.unknowns :]
-        turn = max(float(np.abs(turns).max(initial=0.0)), float(np.abs(change[1]).max()))
+        turn = max(largest(turns), largest(change[1]))
         guess = guess.plus(change, min(1.0, _LARGEST_ROTATION / max(turn, 1e-300)))
     return guess
 
@@ -184,9 +185,9 @@ def _newton(now: Equilibrium, iterations: int) -> Equilibrium:
             message = "the equations are singular"
             break
         change, inside = step
-        turn = max(float(np.abs(change[turning]).max(initial=0.0)), float((np.abs(inside) * AMPLITUDE).max()))
-        moved = float(np.abs(change[layout.moving]).max(initial=0.0))
-        scale, forced = (float(np.abs(x[layout.forces]).max()) for x in (now.z, change))
+        turn = max(largest(change[turning]), float((np.abs(inside) * AMPLITUDE).max()))
+        moved = largest(change[layout.moving])
+        scale, forced = (largest(x[layout.forces]) for x in (now.z, change))
         size = max(turn, moved, forced / (scale + 1e-6 + least))
         error = max(turn, moved, forced / (scale + 1e-6))
         part = min(1.0, _LARGEST_ROTATION / max(turn, 1e-300), _damping(layout, now.z, change))

@@ -1,5 +1,6 @@
 """Checks between the load parameters of an answer: no node passes through a beam, contacts change at events only, and these are true."""
 
+import math
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from typing import NamedTuple
@@ -8,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.distance import gap_off, largest_force
-from comparisons.referee.guess import answer_state
+from comparisons.referee.guess import answer_state, end_of
 from comparisons.referee.newton import equilibrium
 from comparisons.referee.path import PASSES, at_rest, changes_of, events_between, on_the_way, reach
 from comparisons.referee.rod import axis_at_rest, cross, face_of
@@ -141,21 +142,20 @@ class _Pair:
     def moment(self, k: int) -> _Moment:
         """The beam and the node at load parameter k; undeformed for k = -1."""
 
-        def line(beam: str) -> Array:
+        def axis(beam: str) -> tuple[Array, Array]:
             arc, line = self.response.axis_line(beam, max(k, 0))
-            return line if k >= 0 else axis_at_rest(self.scene.beam(beam), arc)
+            return arc, line if k >= 0 else axis_at_rest(self.scene.beam(beam), arc)
 
         t, (beam, _, end) = (
             float(self.response.load_parameter[k]) if k >= 0 else 0.0,
             self.spec.node.partition("."),
         )
         if not end:
-            node = self.scene.pin(beam).position(t)
-        elif k >= 0 and end == self.scene.tip(beam):
-            node = self.response.tips[beam][k]
+            node = np.array(self.scene.pin(beam).position(t))
         else:
-            node = line(beam)[0 if end == "start" else -1]
-        return _Moment(t, line(self.spec.beam), np.array(node))
+            tip = k >= 0 and end == self.scene.tip(beam)
+            node = self.response.tips[beam][k] if tip else end_of(self.spec.node, axis)
+        return _Moment(t, axis(self.spec.beam)[1], np.asarray(node))
 
     def cuts(self, now: _Moment, start: Array) -> bool:
         """Whether the way of the node from `start` crosses the curve of touching nodes from the pair's side."""
@@ -251,6 +251,6 @@ def _wrong(spec: ContactSpec, event: ContactEvent, there: Equilibrium, allowed: 
     off = abs(contact.arc_position - event.arc_position) / length
     if not off <= allowed:
         return f"arc position off by {off:.2g}"
-    force = 0.0 if event.kind in CLOSES else float(np.hypot(*contact.force))
+    force = 0.0 if event.kind in CLOSES else math.hypot(*contact.force)
     off = abs(force - event.force) / largest_force(there)
     return "" if off <= allowed else f"contact force off by {off:.2g}"

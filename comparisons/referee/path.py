@@ -13,6 +13,7 @@ from comparisons.referee.grip import Grip
 from comparisons.referee.guess import AnswerState
 from comparisons.referee.layout import lay_out
 from comparisons.referee.newton import correct, equilibrium, newton_step, undeformed
+from comparisons.referee.rod import largest
 from comparisons.referee.state import Change, Equilibrium, rotation_at
 from comparisons.response import ContactEvent, Response
 from comparisons.scene import Scene
@@ -73,7 +74,7 @@ def reach(near: Equilibrium, t: float, grips: Mapping[str, Grip], halvings: int 
     """Return the equilibrium at load parameter t with the same contacts, held by `grips`, by steps from `near`."""
     there = correct(moved(near, t, grips), _ITERATIONS)
     turning = [k for k in (item.numbers[2] for item in there.layout.stations) if k >= 0]
-    turned = float(np.abs(there.z[turning] - near.z[turning]).max(initial=0.0))
+    turned = largest(there.z[turning] - near.z[turning])
     if (there.found and turned < _TURN) or not halvings or near.load_parameter == t:
         return there
     middle = reach(near, (near.load_parameter + t) / 2.0, grips, halvings - 1)
@@ -241,7 +242,7 @@ def _off(now: Equilibrium, rate: Change, there: Equilibrium) -> float:
 
 
 def _apart(one: Equilibrium, other: Equilibrium) -> float:
-    return float(np.abs(_state(one) - _state(other)).max())
+    return largest(_state(one) - _state(other))
 
 
 @lru_cache(maxsize=3)

@@ -241,10 +241,6 @@ class Equilibrium:
             return self.ends[node]
         return np.array(self.scene.pin(node).position(self.load_parameter))
 
-    def joint_rotation(self, end: str) -> float:
-        """Return the rotation of the joint to which a beam's end belongs, which differs from the end's behind a hinge."""
-        return float(self.layout.motions(self.z)[self.layout.joint(end), 2])
-
 
 def rotation_at(exact: Equilibrium, part: Ints, x: Array) -> Array:
     """Return the rotations at fractions x (...) of the parts `part` (...)."""

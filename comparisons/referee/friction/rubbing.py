@@ -14,6 +14,7 @@ from comparisons.referee.friction.slip import place, relative_slip_rate, slip_ra
 from comparisons.referee.grip import Hold, UnknownFrictionError
 from comparisons.referee.layout import Touch
 from comparisons.referee.path import corners, reach
+from comparisons.referee.rod import largest
 from comparisons.referee.state import Equilibrium
 from comparisons.response import Response
 from comparisons.response.round_off import LEAST, least_force
@@ -81,7 +82,7 @@ def rubs_wrongly(history: History, k: int, exact: Equilibrium, allowed: float) -
             continue
         contact, pair = exact.contacts[touch.spec.pair], touch.spec.pair
         outside = abs(contact.drag) - touch.grip.friction * contact.push
-        size = max(float(np.hypot(*contact.force)), least_force(history.scene))
+        size = max(math.hypot(*contact.force), least_force(history.scene))
         if touch.grip.hold is None:
             if _backwards(exact, touch) > allowed:
                 yield f"{pair} slips against the stated direction"
@@ -131,7 +132,7 @@ def _spent(history: History, k: int, exact: Equilibrium) -> tuple[float, float]:
     """Return the stated dissipation, and the largest energy up to a load parameter, to which the error of a sum over the path is relative."""
     response = history.response
     spent = sum(float(item.friction.dissipated[k]) for item in response.contacts.values() if item.friction)
-    work = 0.0 if response.work is None else float(np.abs(response.work[: k + 1]).max())
+    work = 0.0 if response.work is None else largest(response.work[: k + 1])
     return spent, max(work, exact.strain_energy, spent, _least_energy(history.scene))
 
 
