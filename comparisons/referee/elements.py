@@ -64,6 +64,8 @@ def up_to(xi: Array) -> Array:
 class Mesh(NamedTuple):
     """Elements of all parts, in order."""
 
+    grids: list[Array]
+    """Their ends as fractions of every part, from 0 to 1."""
     part: Ints
     start: Array
     share: Array
@@ -75,28 +77,22 @@ class Mesh(NamedTuple):
 
 
 def mesh_of(layout: Layout, grids: list[Array]) -> Mesh:
-    """Return the elements between the fractions `grids` of every part, each from 0 to 1."""
-    part: list[int] = []
+    """Return the elements between the fractions `grids` of every part."""
     local: list[tuple[int, ...]] = []
     count = layout.unknowns
-    for number, (item, grid) in enumerate(zip(layout.parts, grids, strict=True)):
-        inner = range(count, count + len(grid) - 2)
+    for item, grid in zip(layout.parts, grids, strict=True):
         begin, end = (int(layout.stations[k].numbers[2]) for k in (item.first, item.last))
-        part += [number] * (len(grid) - 1)
-        local += [(*ends, item.force, item.force + 1, *item.arcs) for ends in pairwise([begin, *inner, end])]
-        count += len(inner)
+        chain = [begin, *range(count, count + len(grid) - 2), end]
+        local += [(*ends, item.force, item.force + 1, *item.arcs) for ends in pairwise(chain)]
+        count += len(grid) - 2
     return Mesh(
-        part=np.array(part),
+        grids=grids,
+        part=np.repeat(np.arange(len(grids)), [len(grid) - 1 for grid in grids]),
         start=np.concatenate([grid[:-1] for grid in grids]),
         share=np.concatenate([np.diff(grid) for grid in grids]),
         local=np.array(local),
         unknowns=count,
     )
-
-
-def mesh_for(layout: Layout, mesh: Mesh) -> Mesh:
-    """Return the same elements for the layout of another load parameter, which has other prescribed rotations."""
-    return mesh_of(layout, [np.append(mesh.start[mesh.part == k], 1.0) for k in range(len(layout.parts))])
 
 
 def rotations(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> Array:

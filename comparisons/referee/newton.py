@@ -106,7 +106,10 @@ def correct(guess: Equilibrium, iterations: int) -> Equilibrium:
         coarse = tails(found.bubbles) > _RESOLVED
         if not found.found or not coarse.any():
             return replace(found, iterations=spent)
-        grids = _refined(found.mesh, coarse)
+        grids = [
+            np.sort(np.append(grid, ((grid[:-1] + grid[1:]) / 2.0)[coarse[found.mesh.part == k]]))
+            for k, grid in enumerate(found.mesh.grids)
+        ]
         if max(map(len, grids)) > _MOST_ELEMENTS:
             break
         finer = mesh_of(layout, grids)
@@ -216,13 +219,3 @@ def _damping(layout: Layout, z: Array, change: Array) -> float:
     before = np.diff(layout.extents(z))
     less = before - np.diff(layout.extents(z + change))
     return float(np.min(2.0 / 3.0 * before / np.maximum(less, 2.0 / 3.0 * before)))
-
-
-def _refined(mesh: Mesh, coarse: NDArray[np.bool_]) -> list[Array]:
-    """Grids of the parts with the coarse elements halved."""
-    grids = []
-    for number in range(int(mesh.part.max()) + 1):
-        inside = mesh.part == number
-        start, share, split = mesh.start[inside], mesh.share[inside], coarse[inside]
-        grids.append(np.sort(np.concatenate([start, (start + share / 2.0)[split], [1.0]])))
-    return grids

@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.elements import mesh_for
+from comparisons.referee.elements import mesh_of
 from comparisons.referee.equations import orientation_of
 from comparisons.referee.grip import Grip
 from comparisons.referee.guess import AnswerState
@@ -67,7 +67,7 @@ def corners(scene: Scene) -> tuple[float, ...]:
 def moved(now: Equilibrium, t: float, grips: Mapping[str, Grip]) -> Equilibrium:
     """Return the guess at load parameter t with the contacts of an equilibrium and its unknowns."""
     layout = lay_out(now.layout.scene, t, now.closed, grips)
-    return Equilibrium(layout=layout, mesh=mesh_for(layout, now.mesh), z=now.z, bubbles=now.bubbles)
+    return Equilibrium(layout=layout, mesh=mesh_of(layout, now.mesh.grids), z=now.z, bubbles=now.bubbles)
 
 
 def reach(near: Equilibrium, t: float, grips: Mapping[str, Grip], halvings: int = _HALVINGS) -> Equilibrium:
@@ -236,7 +236,7 @@ def _kind(now: Equilibrium) -> int:
 
 def _off(now: Equilibrium, rate: Change, there: Equilibrium) -> float:
     """Error of a prediction along a tangent over the change from one state to another; infinite for a large error."""
-    guess = replace(now, layout=there.layout, mesh=mesh_for(there.layout, now.mesh))
+    guess = replace(now, layout=there.layout, mesh=mesh_of(there.layout, now.mesh.grids))
     off = _apart(guess.plus(rate, there.load_parameter - now.load_parameter), there)
     return off / (_apart(now, there) + _ROUND_OFF) if off < _SHORT else np.inf
 
