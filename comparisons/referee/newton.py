@@ -10,7 +10,7 @@ from comparisons.referee.equations import solved
 from comparisons.referee.guess import SHORTEST, AnswerState, first_guess
 from comparisons.referee.layout import Layout, lay_out
 from comparisons.referee.rod import largest
-from comparisons.referee.state import Change, Equilibrium, SearchStatus, rotation_at, tails
+from comparisons.referee.state import Change, Equilibrium, SearchStatus, located, tails
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
@@ -113,7 +113,7 @@ def correct(guess: Equilibrium, iterations: int) -> Equilibrium:
         if max(map(len, grids)) > _MOST_ELEMENTS:
             break
         finer = mesh_of(layout, grids)
-        seen = rotation_at(found, finer.part[:, None], _places(finer))
+        seen = located(found, finer.part[:, None], _places(finer))[2]
         guess = _fitted(layout, finer, found.z[: layout.unknowns], seen, _FIT)
     status = SearchStatus.NOT_RESOLVED
     return replace(found, status=status, message=status.value, iterations=spent)

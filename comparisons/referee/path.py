@@ -14,7 +14,7 @@ from comparisons.referee.guess import AnswerState
 from comparisons.referee.layout import lay_out
 from comparisons.referee.newton import correct, equilibrium, newton_step, undeformed
 from comparisons.referee.rod import largest
-from comparisons.referee.state import Change, Equilibrium, rotation_at
+from comparisons.referee.state import Change, Equilibrium, located
 from comparisons.response import ContactEvent, Response
 from comparisons.scene import Scene
 
@@ -250,4 +250,4 @@ def _state(now: Equilibrium) -> Array:
     """Displacements, arc positions and directions of the stations, and the rotations along all parts."""
     layout = now.layout
     rest = np.delete(now.z[: layout.unknowns], layout.forces)
-    return np.append(rest, rotation_at(now, np.arange(len(layout.parts))[:, None], _PLACES))
+    return np.append(rest, located(now, np.arange(len(layout.parts))[:, None], _PLACES)[2])

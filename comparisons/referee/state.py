@@ -196,28 +196,24 @@ class Equilibrium:
         layout, z, mesh, s = self.layout, self.z, self.mesh, np.asarray(arc) / self.layout.length
         parts = [k for k, part in enumerate(layout.parts) if layout.scene.beams[part.beam].name == beam]
         rod, extents = layout.parts[parts[0]].rod, layout.extents(z)
-        mine = np.isin(mesh.part, parts)
-        of, start, width, local = mesh.part[mine], mesh.start[mine], mesh.share[mine], mesh.local[mine]
-        rotation = rotations(layout, mesh, z, self.bubbles)[mine]
-        begin, extent = extents[of, 0], np.diff(extents)[of, 0]
-        half = width * extent / 2.0
-        points = (begin + extent * start + half)[:, None] + half[:, None] * GAUSS
-        within = places(layout, of, points, z[local[:, 2:4]])
-        inner = within.frame * fields(rotation @ VALUES.T, within)[2]
-        before = np.append(0.0, np.cumsum(half * (inner @ WEIGHTS)))
-        # the part and the element of every point
         part = np.array(parts)[np.searchsorted(extents[parts[1:], 0], s, side="right")]
         first, last = extents[part].T
-        share = (s - first) / (last - first)
-        e = np.searchsorted(of + start, part + np.clip(share, 0.0, _INSIDE), side="right") - 1
-        xi = 2.0 * (share - start[e]) / width[e] - 1.0
-        values, slopes = shapes(xi)
-        theta, bent = ((item * rotation[e]).sum(axis=1) for item in (values, slopes))
-        there = places(layout, part, s[:, None], z[local[e, 2:4]])
-        N, Q, tangent = fields(theta[:, None], there)
+        e, xi, theta, bent = located(self, part, (s - first) / (last - first))
+        # integrals of the strained tangent over the elements before
+        mine = slice(*np.searchsorted(mesh.part, [parts[0], parts[-1] + 1]).tolist())
+        of, e = mesh.part[mine], e - mine.start
+        extent = np.diff(extents)[of, 0]
+        half = mesh.share[mine] * extent / 2.0
+        points = (extents[of, 0] + extent * mesh.start[mine] + half)[:, None] + half[:, None] * GAUSS
+        within = places(layout, of, points, z[mesh.local[mine, 2:4]])
+        rotation = rotations(layout, mesh, z, self.bubbles)[mine]
+        inner = within.frame * fields(rotation @ VALUES.T, within)[2]
+        before = np.append(0.0, np.cumsum(half * (inner @ WEIGHTS)))
         along = before[e] - before[np.searchsorted(of, part)] + half[e] * (up_to(xi) * inner[e]).sum(axis=1)
-        begins = np.array([layout.position(z, layout.parts[k].first) for k in parts])
-        position = begins[np.searchsorted(parts, part)] + (pairs(along) + rod.between(first, s)) @ rod.axes.T
+        there = places(layout, part, s[:, None], z[mesh.local[mine, 2:4]][e])
+        N, Q, tangent = fields(theta[:, None], there)
+        begins = np.array([layout.position(z, layout.parts[k].first) for k in parts])[part - parts[0]]
+        position = begins + (pairs(along) + rod.between(first, s)) @ rod.axes.T
         direction = pairs(there.frame * tangent)[:, 0] + rod.direction(s)
         return Shape(
             position=np.array(layout.scene.beams[0].start) + layout.length * position,
@@ -242,12 +238,14 @@ class Equilibrium:
         return np.array(self.scene.pin(node).position(self.load_parameter))
 
 
-def rotation_at(exact: Equilibrium, part: Ints, x: Array) -> Array:
-    """Return the rotations at fractions x (...) of the parts `part` (...)."""
-    mesh, inside = exact.mesh, np.minimum(x, _INSIDE)
-    e = np.searchsorted(mesh.part + mesh.start, part + inside, side="right") - 1
-    values = shapes(2.0 * (x - mesh.start[e]) / mesh.share[e] - 1.0)[0]
-    return np.asarray((values * rotations(exact.layout, mesh, exact.z, exact.bubbles)[e]).sum(axis=-1))
+def located(exact: Equilibrium, part: Ints, x: Array) -> tuple[Ints, Array, Array, Array]:
+    """Return elements, xi, rotations and their derivatives by xi at fractions x (...) of the parts `part` (...)."""
+    mesh = exact.mesh
+    e = np.searchsorted(mesh.part + mesh.start, part + np.clip(x, 0.0, _INSIDE), side="right") - 1
+    xi = 2.0 * (x - mesh.start[e]) / mesh.share[e] - 1.0
+    rotation = rotations(exact.layout, mesh, exact.z, exact.bubbles)[e]
+    theta, bent = ((item * rotation).sum(axis=-1) for item in shapes(xi))
+    return e, xi, theta, bent
 
 
 def tails(bubbles: Array) -> Array:
