@@ -36,8 +36,6 @@ _FIT = np.asarray(np.linalg.pinv(VALUES[:, 2:]), dtype=np.float64)
 _FIT_LOW = np.zeros_like(_FIT)
 _FIT_LOW[:4] = np.linalg.pinv(VALUES[:, 2:6])
 """From values at the Gauss points to all bubbles, and to the lowest ones, since an answer's rotations are inaccurate."""
-_INSIDE = 1.0 - 1e-9
-"""Fraction of a part up to which points lie before its end."""
 _PLACES = np.append((GAUSS + 1.0) / 2.0, [0.0, 1.0])
 
 
