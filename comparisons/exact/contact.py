@@ -28,8 +28,6 @@ from numpy.typing import NDArray
 
 from comparisons.exact.section import (
     COMPLEX_STEP,
-    GAUSS,
-    WEIGHTS,
     Array,
     Flexibility,
     Section,
@@ -42,7 +40,7 @@ _LARGEST_CORRECTION, _CONVERGED = 0.1, 3e-8
 _ROUND_OFF, _NOISE = 1e-14, 1e-5
 """A residual at round-off, and the correction that it may leave where the equations are stiff."""
 _SINGULAR = 1e13
-ARC = np.array([0.0, 0.0, 0.0, 1.0])
+_ARC = np.array([0.0, 0.0, 0.0, 1.0])
 
 
 class Contact(NamedTuple):
@@ -73,9 +71,11 @@ class Phase(NamedTuple):
 
 
 class Linear(NamedTuple):
-    """Unknowns (4,), the contact there, and its derivatives, unknowns on their first axis."""
+    """Contact and the residual (4,) of all equations at unknowns (4,), with their derivatives, unknowns on their last axis."""
 
     z: Real
+    residual: Real
+    matrix: Real
     here: Contact
     slope: Contact
 
@@ -87,11 +87,11 @@ class Linear(NamedTuple):
     @property
     def slip(self) -> Real:
         """Derivatives (4,) of the slip."""
-        return np.asarray(self.here.factor * ARC + self.slope.roll)
+        return np.asarray(self.here.factor * _ARC + self.slope.roll)
 
-    def rates(self, row: Real, velocity: Real) -> Real | None:
-        """Rates of the unknowns (4,) at a velocity of the pin (2,), where a row (4,) has none; None where they are not determined."""
-        matrix = np.vstack([self.slope.residual.T, row])
+    def rates(self, velocity: Real, *, stick: bool) -> Real | None:
+        """Rates of the unknowns (4,) at a velocity of the pin (2,); None where they are not determined."""
+        matrix = np.vstack([self.matrix[:3], self.slip]) if stick else self.matrix
         return _solved(matrix, np.array([*velocity, 0.0, 0.0]))
 
 
@@ -111,20 +111,24 @@ class Cantilever:
     """A rod under a pin: flexibility, distance h of the face from the axis, radius R of the pin, coefficient of friction."""
 
     flexibility: Flexibility
-    face: float
-    radius: float
-    friction: float
+    face: float = 0.0
+    radius: float = 0.0
+    friction: float = 0.0
 
     @property
     def reach(self) -> float:
         """Distance of the pin's centre from the axis."""
         return self.face + self.radius
 
+    def sections(self, z: Array, fractions: Real | None = None) -> Section:
+        """Section at the contact for unknowns (..., 4), or sections (k,) at fractions (k,) of the loaded part."""
+        Fx, Fy, moment, s = np.moveaxis(np.asarray(z), -1, 0)
+        zero = np.zeros_like(s)
+        return integrate(Section(zero, zero, zero, moment), (Fx, Fy), s, self.flexibility, fractions)
+
     def contact(self, z: Array, pin: Real) -> Contact:
         """Contact at unknowns (..., 4)."""
-        Fx, Fy, moment, s = np.moveaxis(z, -1, 0)
-        zero = np.zeros_like(s)
-        end = integrate(Section(zero, zero, zero, moment), (Fx, Fy), s, self.flexibility)
+        end, (Fx, Fy) = self.sections(z), np.moveaxis(z[..., :2], -1, 0)
         c, d = np.cos(end.theta), np.sin(end.theta)
         before = tangent(end.theta, (Fx, Fy), self.flexibility)
         bx, by = (before[0] + c) / 2.0, (before[1] + d) / 2.0
@@ -142,58 +146,34 @@ class Cantilever:
             roll=self.face * shear + self.radius * (end.theta + shear),
         )
 
-    def linearise(self, z: Real, pin: Real) -> Linear:
-        """Contact and its derivatives at unknowns (4,)."""
-        columns = self.contact(z + 1j * COMPLEX_STEP * np.eye(4), pin)
+    def linearise(self, z: Real, pin: Real, phase: Phase, t: float) -> Linear:
+        """Equations of a phase and their derivatives at unknowns (4,) and a load parameter."""
+        table = z + 1j * COMPLEX_STEP * np.eye(4)
+        found = self.contact(table, pin)
+        last = found.tangential - phase.sense * self.friction * found.normal
+        if not phase.sense:
+            arc, factor, roll = phase.held
+            last = (found.factor + factor) / 2.0 * (table[:, 3] - arc) + found.roll - roll - phase.area(t)
+        rows = np.column_stack([found.residual, last])
         here, slope = (
-            Contact(*part)
-            for part in zip(*((f[0].real, f.imag / COMPLEX_STEP) for f in columns), strict=True)
+            Contact(*part) for part in zip(*((f[0].real, f.imag / COMPLEX_STEP) for f in found), strict=True)
         )
-        return Linear(z, here, slope)
-
-    def law(self, linear: Linear, phase: Phase, t: float) -> tuple[float, Real]:
-        """Residual of the last equation, slip or stick, and its derivatives (4,)."""
-        if phase.sense:
-            here, slope = (part.tangential - phase.sense * self.friction * part.normal for part in linear[1:])
-            return float(here), np.asarray(slope)
-        arc, factor, roll = phase.held
-        mean, way = (linear.here.factor + factor) / 2.0, linear.z[3] - arc
-        row = linear.slope.factor * way / 2.0 + mean * ARC + linear.slope.roll
-        return float(mean * way + linear.here.roll - roll - phase.area(t)), np.asarray(row)
+        return Linear(z, rows[0].real, rows.imag.T / COMPLEX_STEP, here, slope)
 
     @np.errstate(all="ignore")
     def solve(self, z: Real, pin: Real, phase: Phase, t: float) -> tuple[Linear | None, int]:
         """Equilibrium from nearby unknowns by Newton's method, None without convergence, and the iterations."""
-        last, count = _LARGEST_CORRECTION, 0
-        while count < 14:
-            count += 1
-            linear = self.linearise(z, pin)
-            value, row = self.law(linear, phase, t)
-            residual, matrix = (
-                np.append(linear.here.residual, value),
-                np.vstack([linear.slope.residual.T, row]),
-            )
-            change = _solved(matrix, -residual, np.inf) if z[3] > 0.0 else None
+        last = _LARGEST_CORRECTION
+        for count in range(1, 15):
+            linear = self.linearise(z, pin, phase, t)
+            change = _solved(linear.matrix, -linear.residual, np.inf) if z[3] > 0.0 else None
             if change is None:
                 break
             size = float(np.max(np.abs(change) / (1.0 + np.abs(z))))
-            if size < (_NOISE if np.max(np.abs(residual)) < _ROUND_OFF else _CONVERGED):
-                return self.linearise(z + change, pin), count
+            z = z + change
+            if size < (_NOISE if np.max(np.abs(linear.residual)) < _ROUND_OFF else _CONVERGED):
+                return self.linearise(z, pin, phase, t), count
             if not size <= last:
                 break
-            z, last = z + change, size / 2.0
+            last = size / 2.0
         return None, count
-
-    def sections(self, z: Real, fractions: Real) -> Section:
-        """Sections (k,) of the loaded part at fractions (k,) of its length."""
-        Fx, Fy, moment, s = (np.asarray(value) for value in z)
-        zero = np.zeros(())
-        return integrate(Section(zero, zero, zero, moment), (Fx, Fy), s, self.flexibility, fractions)
-
-    def energy(self, z: Real) -> float:
-        """Strain energy."""
-        part = self.sections(z, GAUSS)
-        c, d = np.cos(part.theta), np.sin(part.theta)
-        N, Q = z[0] * c + z[1] * d, z[1] * c - z[0] * d
-        density = part.moment**2 + self.flexibility.stretch * N**2 + self.flexibility.shear * Q**2
-        return float(z[3] * (WEIGHTS @ density) / 2.0)

@@ -12,7 +12,6 @@ so that the polar angle of the pin is `tc - arctan(I2/I1)`. It grows with `tc` u
 is a little behind the clamp. The branch below the fold starts at the straight beam.
 """
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -20,11 +19,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 from scipy.special import elliprd, elliprf
 
-from comparisons.exact.checks import require_positive
 from comparisons.exact.contact import Cantilever
-from comparisons.exact.follow import Standing, changed
-from comparisons.exact.outcome import Outcome
-from comparisons.exact.rod import RodPath, collect, fractions, vertices
+from comparisons.exact.path import Event, Outcome, RodPath, Row, changed, collected, require, vertices
 from comparisons.exact.section import Flexibility
 
 Array = NDArray[np.float64]
@@ -74,20 +70,20 @@ def fold_angle() -> float:
     return float(brentq(slope, 2.0, 3.1, xtol=1e-15))
 
 
-def _state(x: float, y: float) -> tuple[Outcome, list[float]]:
+def _state(x: float, y: float) -> tuple[Outcome, Array]:
     """State of contact with a pin at a place, where EI = L = 1, and force, moment at the clamp and arc position."""
     if y <= 0.0:
         touches = y == 0.0 and 0.0 < x <= 1.0
-        return Outcome.CONTACT if touches else Outcome.OPEN, [0.0, 0.0, 0.0, x]
+        return Outcome.CONTACT if touches else Outcome.OPEN, np.array([0.0, 0.0, 0.0, x])
     polar, fold = float(np.arctan2(y, x)), fold_angle()
     if polar >= _polar_angle(fold):
-        return Outcome.LOST, [np.nan] * 4
+        return Outcome.LOST, np.full(4, np.nan)
     tc = float(brentq(lambda angle: _polar_angle(angle) - polar, polar, fold, xtol=1e-300, rtol=1e-15))
     I0, I1, I2 = map(float, _integrals(tc))
     lam = float(np.hypot(x, y)) / float(np.hypot(I1, I2))
     F, s = 1.0 / (2.0 * lam**2), lam * I0
     outcome = Outcome.CONTACT if s <= 1.0 else Outcome.SLIPPED
-    return outcome, [-F * float(np.sin(tc)), F * float(np.cos(tc)), F * lam * I1, s]
+    return outcome, np.array([-F * np.sin(tc), F * np.cos(tc), F * lam * I1, s])
 
 
 def elastica_under_pin(points: ArrayLike, *, EI: float = 1.0, length: float = 1.0) -> RodPath:
@@ -121,13 +117,15 @@ def elastica_under_pin(points: ArrayLike, *, EI: float = 1.0, length: float = 1.
     >>> [round(float(value[0]), 12) for value in (path.magnitude, path.arc_position, path.clamp_moment)]
     [8.182128140184, 0.89572169201, -3.14159265359]
     """
-    require_positive(EI=EI, length=length)
-    pins, path, standing = vertices(points) / length, list[Standing](), Standing(z=np.zeros(4))
-    rod = Cantilever(flexibility=Flexibility(stretch=0.0, shear=0.0), face=0.0, radius=0.0, friction=0.0)
-    for t, (x, y) in zip(fractions(pins).tolist(), pins.tolist(), strict=True):
-        outcome, z = _state(x, y)
-        standing = replace(standing, t=t, z=np.array(z))
-        if outcome is not standing.state and (y <= 0.0 or standing.state is not Outcome.SLIPPED):
-            standing = changed(standing, outcome)
-        path.append(standing)
-    return collect(rod, path, EI=EI, length=length)
+    require("positive and finite", EI=EI, length=length)
+    pins, times = vertices(points)
+    rows, events, before = list[Row](), list[Event](), Outcome.OPEN
+    for t, (x, y) in zip(times.tolist(), (pins / length).tolist(), strict=True):
+        state, z = _state(x, y)
+        if before is Outcome.SLIPPED and y > 0.0:
+            state = before
+        if state is not before:
+            events.append(changed(t, before, state, z))
+        rows.append(Row(t, state, z))
+        before = state
+    return collected(Cantilever(flexibility=Flexibility(0.0, 0.0)), rows, events, EI, length)

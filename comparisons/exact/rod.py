@@ -1,111 +1,305 @@
-"""A Reissner rod under a pin that moves along a path, without or with Coulomb friction.
+"""A Reissner rod under a pin that moves along a path, without or with Coulomb friction, with all changes of state.
 
-The clamp is at the origin and the undeformed rod lies along +x. A pin below it pushes to +y.
+The clamp is at the origin and the undeformed rod lies along +x. A pin below it pushes to +y. Steps end at the first event. The answer
+depends on history only through the place at which a stick began, so that it does not depend on the steps. Where a contact begins, where
+the path of the pin turns and where a phase ends, the state that follows is the one whose forces and slip have admissible rates.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator
+from enum import IntEnum
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.polynomial import Polynomial
+from numpy.typing import ArrayLike
+from scipy.interpolate import CubicHermiteSpline
+from scipy.optimize import brentq
 
-from comparisons.exact.checks import require_not_negative, require_positive
-from comparisons.exact.contact import Cantilever
-from comparisons.exact.follow import Event, Standing, follow
-from comparisons.exact.outcome import Outcome
-from comparisons.exact.section import Flexibility
+from comparisons.exact.contact import Cantilever, Held, Linear, Phase, Real
+from comparisons.exact.path import Event, Outcome, RodPath, Row, changed, collected, require, vertices
+from comparisons.exact.section import Flexibility, rule
 
-Array = NDArray[np.float64]
+_GAUSS, _WEIGHTS = rule(8)
+_FEWER = [0, 1, 3, 4, 6, 7]
+_DIFFERENCE = _WEIGHTS.copy()
+_DIFFERENCE[_FEWER] -= np.linalg.solve(np.vander(_GAUSS[_FEWER], increasing=True).T, 1.0 / np.arange(1, 7))
+"""Weights of the difference between eight points, of degree 15, and six of them, of degree 5."""
+_ALLOWED_FLOW, _ALLOWED_AREA = 1e-6, 1e-11
+"""Differences of work and dissipation, and of c in a stick."""
+_SAME, _SWEEPS = 1e-15, 20
+"""Largest change of c in the last of so many sweeps at most."""
+_TOGETHER, _AT_ONCE, _EDGE = 1e-9, 1e-14, 1e-12
+"""Load parameters nearer than the first are one event (a pin that leaves square to the rod ends its slip where it leaves), nearer
+than the second are one; a margin within the third is at its edge."""
+_TOUCH = 1e-12
+"""Distance, in lengths of the rod, below which the pin touches."""
+_FIRST_STEP, _SMALLEST_STEP = 0.05, 1e-11
+_MOST_ITERATIONS = 3000
+"""On a straight piece without friction; more are spent near a place without equilibrium."""
+_SAME_DIRECTION = 1e-9
+_NO_RATE, _SHORT_STEP = 1e-9, 1e-5
+"""A rate below the first is zero; the next order shows after the second, in load parameters."""
+_STATES = {1: Outcome.SLIP_TO_TIP, -1: Outcome.SLIP_TO_CLAMP, 0: Outcome.STICK}
 
 
-@dataclass(frozen=True, kw_only=True)
-class RodPath:
-    """States of the rod at `s` positions of the pin.
+class Ending(IntEnum):
+    """Why a phase ends, in the order of the margins; of two at one load parameter the later one counts."""
 
-    Without contact the rod is straight, `arc_position` is nan and the forces are zero. Where the path has ended (`Outcome.ends`) all
-    arrays are nan.
+    FRICTION = 0
+    RELEASE = 1
+    SLIP_OFF = 2
 
-    Attributes
-    ----------
-    load_parameter : ndarray, shape (s,)
-        Fraction of the length of the pin's path.
-    outcome : tuple of Outcome
-        State of contact at every position. At an event it is the state after the event.
-    force : ndarray, shape (s, 2)
-        Force of the pin on the rod.
-    tangential, normal : ndarray, shape (s,)
-        Component of the force along the mean tangent towards the tip, and its component away from the pin.
-    arc_position : ndarray, shape (s,)
-        Distance of the contact from the clamp along the undeformed axis.
-    clamp_moment : ndarray, shape (s,)
-        Moment of the clamp on the rod, anticlockwise positive; the force of the clamp is that of the pin, reversed.
-    tip : ndarray, shape (s, 2)
-        Position of the free tip.
-    work, dissipated : ndarray, shape (s,)
-        Work of the pin since the start, and energy lost in slip, the integral of `mu F_n |v|`; zero without friction.
-    stored, released : ndarray, shape (s,)
-        Strain energy, and strain energy lost where the pin leaves the rod over its tip.
-    iterations : ndarray of int, shape (s,)
-        Newton iterations since the previous position, including rejected steps.
-    events : tuple of Event
-        Changes of state in the order of the load parameter.
-    unknowns : ndarray, shape (s, 4)
-        Unknowns of `rod`, `comparisons.exact.contact.Cantilever`.
-    length : float
-        Undeformed length.
+
+class Node(NamedTuple):
+    """Equilibrium at a load parameter: unknowns and rates (4,), margins (3,), rates of work and dissipation (2,), place of a stick and dc/dt.
+
+    The margins are positive while a phase lasts: slip rate or distance from the cone, normal force, rest of the rod.
     """
 
-    load_parameter: Array
-    outcome: tuple[Outcome, ...]
-    force: Array
-    tangential: Array
-    normal: Array
-    arc_position: Array
-    clamp_moment: Array
-    tip: Array
-    work: Array
-    dissipated: Array
-    stored: Array
-    released: Array
-    iterations: NDArray[np.int64]
-    events: tuple[Event, ...]
-    unknowns: Array
-    rod: Cantilever
-    length: float
+    t: float
+    z: Real
+    rates: Real
+    margins: Real
+    flow: Real
+    held: Held
+    creep: float
 
-    @property
-    def magnitude(self) -> Array:
-        """Contact force, shape (s,)."""
-        return np.asarray(np.hypot(*self.force.T))
 
-    @property
-    def slip_off(self) -> float:
-        """Fraction of the path's length at which the pin first leaves the rod over its tip; nan without slip-off."""
-        return next((item.load_parameter for item in self.events if item.after is Outcome.SLIPPED), np.nan)
+class Follower:
+    """A contact that is followed along the straight pieces of the path of a pin, whose start has been checked."""
 
-    def shape(self, k: int, n: int) -> Array:
-        """Position and rotation `x, y, theta` at `n` equal distances along the undeformed axis from the clamp to the tip.
+    def __init__(self, rod: Cantilever, place: Real) -> None:
+        x, height = place[0], place[1] + rod.reach
+        if (height > _TOUCH and x <= 1.0 + _TOUCH) or (height >= -_TOUCH and x <= 0.0):
+            raise ValueError(
+                f"points[0] = {place} length: the path must start below the rod, on its surface or beyond its tip"
+            )
+        touches = not rod.friction and height >= -_TOUCH and x <= 1.0 + _TOUCH
+        self.rod, self.state = rod, Outcome.CONTACT if touches else Outcome.OPEN
+        self.t, self.z, self.phase = 0.0, np.array([0.0, 0.0, 0.0, x]), Phase(1, 0.0, Held(1.0, 1.0, 0.0))
+        self.energies = np.zeros(2)
+        self.events: list[Event] = []
+        self.iterations = 0
+        self.start, self.begin, self.velocity = place, 0.0, np.zeros(2)
 
-        Returns
-        -------
-        ndarray, shape (n, 3)
+    def follow(self, pins: Real, t: Real) -> Iterator[Row]:
+        """Yield the equilibria at the vertices (s, 2) of a path, whose load parameters are t (s,)."""
+        for (start, end), (begin, finish) in zip(pairwise(pins), pairwise(t), strict=True):
+            if not self.rod.friction or finish <= begin:
+                yield self._row()
+            if finish > begin:
+                way, before = (end - start) / (finish - begin), self.velocity
+                self.start, self.begin, self.velocity = start, begin, way
+                if self.rod.friction:
+                    if not self.state.touches and self._touching(finish) == self.t:
+                        self._touch(self.t)
+                    elif self.state.touches and np.linalg.norm(way - before) > _SAME_DIRECTION * np.linalg.norm(before):  # fmt: skip
+                        self._turn()
+                    yield self._row()
+                self._along(finish)
+        yield self._row()
+
+    def _row(self) -> Row:
+        return Row(self.t, self.state, self.z, self.energies, self.iterations)
+
+    def _pin(self, t: float) -> Real:
+        """Position of the pin."""
+        return np.asarray(self.start + (t - self.begin) * self.velocity)
+
+    def _along(self, finish: float) -> None:
+        """Follow the contact to the end of a piece."""
+        step, growth, before = _FIRST_STEP, 2.0, self.iterations
+        while finish - self.t > _AT_ONCE and not self.state.ends:
+            if not self.state.touches:
+                t = self._touching(finish)
+                if t is not None:
+                    self._touch(t)
+                    continue
+                if self.state is Outcome.SLIPPED and -self._pin(finish)[1] - self.rod.reach > _TOUCH:
+                    self.state = Outcome.OPEN
+                break
+            end = finish if finish - self.t <= 1.001 * step else self.t + step
+            if self._taken(end):
+                step, growth = growth * step, 2.0
+                continue
+            step, growth = (end - self.t) / 3.0, 1.0
+            many = not self.rod.friction and self.iterations - before > _MOST_ITERATIONS
+            if step < _SMALLEST_STEP or many:
+                self._change(Outcome.LOST)
+        self.t = finish
+
+    def _touching(self, finish: float) -> float | None:
+        """Load parameter at which the pin touches the straight rod up to the end of a piece; None if it does not."""
+        gaps = [-self._pin(t)[1] - self.rod.reach for t in (self.t, finish)]
+        resting = self.state is Outcome.OPEN and abs(gaps[0]) <= _TOUCH and gaps[1] < -_TOUCH
+        if not resting and (gaps[0] <= _TOUCH or gaps[1] > _TOUCH):
+            return None
+        share = 0.0 if resting else min(gaps[0] / (gaps[0] - gaps[1]), 1.0)
+        t = self.t + share * (finish - self.t)
+        beside = not 0.0 < self._pin(t)[0] <= 1.0 + _TOUCH
+        return None if beside or (t >= finish and self.rod.friction) else t
+
+    def _touch(self, t: float) -> None:
+        """Begin a contact."""
+        self.t, self.z = t, np.array([0.0, 0.0, 0.0, min(float(self._pin(t)[0]), 1.0)])
+        if self.rod.friction:
+            self._decide((0, 1, -1))
+        else:
+            self._enter([1])
+
+    def _turn(self) -> None:
+        """Pass a corner of the pin's path; on the edge of the cone a slip goes on or begins, or the pin sticks."""
+        here = self._linear().here
+        edge = self.phase.sense or int(np.sign(here.tangential))
+        if self.rod.friction * here.normal - edge * here.tangential <= _EDGE:
+            self._decide((edge, 0))
+
+    def _decide(self, senses: Iterable[int]) -> None:
+        """Enter the only state whose rates are admissible: slip in the sense of its friction, stick whose force enters the cone.
+
+        At a touch, where there is no force, they raise the normal force.
         """
-        return _axis(self.rod, self.outcome[k], self.unknowns[k], np.linspace(0.0, 1.0, n)) * [
-            self.length,
-            self.length,
-            1.0,
-        ]
+        touch, possible = not self.state.touches, []
+        for sense in senses:
+            linear = self._linear(sense)
+            rates = linear.rates(self.velocity, stick=not sense)
+            if rates is None or (touch and linear.slope.normal @ rates <= 0.0):
+                continue
+            drag = linear.slope.tangential @ rates
+            margin = float(sense * linear.slip @ rates)
+            if not sense:
+                beyond = abs(drag) if touch else np.sign(linear.here.tangential) * drag
+                margin = float(self.rod.friction * linear.slope.normal @ rates - beyond)
+            if touch and abs(margin) < _NO_RATE * np.linalg.norm(self.velocity):
+                soon = self._node(Phase(sense, self.t, linear.held), self.t + _SHORT_STEP, self.z)
+                margin = -1.0 if soon is None else float(soon.margins[0])
+            if margin > 0.0:
+                possible.append(sense)
+        self._enter(possible)
 
+    def _enter(self, possible: list[int]) -> None:
+        """Enter the only possible state."""
+        if len(possible) != 1:
+            self._change(Outcome.JAMMED)
+        elif not self.state.touches or possible[0] != self.phase.sense:
+            self.phase = Phase(possible[0], self.t, self._linear().held)
+            self._change(_STATES[possible[0]] if self.rod.friction else Outcome.CONTACT)
 
-def _axis(rod: Cantilever, outcome: Outcome, z: Array, arcs: Array) -> Array:
-    """Position and rotation (n, 3) at arc positions (n,) of a rod of length 1; behind the contact it is straight."""
-    if not outcome.touches:
-        return np.outer(np.full(len(arcs), np.nan) if outcome.ends else arcs, [1.0, 0.0, 0.0])
-    s = z[3]
-    part = rod.sections(z, np.minimum(arcs, s) / s)
-    tail = np.maximum(arcs - s, 0.0)
-    return np.column_stack(
-        [part.x + tail * np.cos(part.theta), part.y + tail * np.sin(part.theta), part.theta]
-    )
+    def _linear(self, sense: int = 1) -> Linear:
+        """Equations at the present state, of a phase that begins here."""
+        pin, phase = self._pin(self.t), Phase(sense, self.t, self.phase.held)
+        return self.rod.linearise(self.z, pin, phase, self.t)
+
+    def _change(self, state: Outcome) -> None:
+        """Change the state, with the event."""
+        self.events.append(changed(self.t, self.state, state, self.z))
+        self.state = state
+
+    def _taken(self, end: float) -> bool:
+        """Take a step up to a load parameter or the first event before it; false where the step must be shorter."""
+        phase, start = self.phase, self._node(self.phase, self.t, self.z)
+        swept = None if start is None else self._sweep(phase, start, end)
+        if start is None or swept is None:
+            return False
+        (phase, nodes), ending = swept, None
+        for before, after in zip([start, *nodes], nodes, strict=False):
+            if np.any(after.margins < -_EDGE):
+                event = self._event(phase, start, before, after)
+                if event is None:
+                    return False
+                t, ending = event
+                own = [] if t - start.t < _AT_ONCE else self._nodes(phase, start, t)
+                if own is None:
+                    return False
+                nodes = own
+                break
+        if self.rod.friction and nodes:
+            flow = (nodes[-1].t - start.t) * np.array([each.flow for each in nodes[:-1]])
+            if np.any(np.abs(_DIFFERENCE @ flow) > _ALLOWED_FLOW):
+                return False
+            self.energies = self.energies + _WEIGHTS @ flow
+        node = [start, *nodes][-1]
+        self.t, self.z, self.phase = node.t, node.z, Phase(phase.sense, phase.since, node.held)
+        if ending is not None:
+            self._end(ending)
+        return True
+
+    def _end(self, ending: Ending) -> None:
+        """Enter the state after the end of a phase."""
+        if ending is not Ending.FRICTION:
+            self._change(Outcome.OPEN if ending is Ending.RELEASE else Outcome.SLIPPED)
+        elif self.phase.sense:
+            self._enter([0])
+        else:
+            self._decide((int(np.sign(self._linear().here.tangential)),))
+
+    def _node(self, phase: Phase, t: float, guess: Real) -> Node | None:
+        """Equilibrium at a load parameter from nearby unknowns; None without convergence."""
+        linear, count = self.rod.solve(guess, self._pin(t), phase, t)
+        self.iterations += count
+        rates = None if linear is None else linear.rates(self.velocity, stick=not phase.sense)
+        if linear is None or rates is None:
+            return None
+        z, tangential, normal = linear.z, float(linear.here.tangential), float(linear.here.normal)
+        slip = float(linear.slip @ rates) if phase.sense else 0.0
+        first = phase.sense * slip if phase.sense else self.rod.friction * normal - abs(tangential)
+        margins = np.array([first if self.rod.friction else 1.0, normal, 1.0 - z[3]])
+        flow = np.array([z[:2] @ self.velocity, tangential * slip])
+        return Node(t, z, rates, margins, flow, linear.held, float(linear.matrix[3] @ rates))
+
+    def _sweep(self, phase: Phase, start: Node, end: float) -> tuple[Phase, list[Node]] | None:
+        """Phase with c of its stick in a step, and the nodes of the step; None where the step must be shorter."""
+        for _ in range(_SWEEPS):
+            nodes = self._nodes(phase, start, end)
+            if nodes is None or phase.sense:
+                return None if nodes is None else (phase, nodes)
+            times, creep = np.array([(node.t, node.creep) for node in nodes]).T
+            if abs(_DIFFERENCE @ creep[:-1]) * (end - start.t) > _ALLOWED_AREA:
+                return None
+            area = Polynomial.fit(times[:-1], creep[:-1], len(_GAUSS) - 1).integ(lbnd=start.t)
+            if np.max(np.abs(area(times) - phase.area(times))) < _SAME:
+                return phase, nodes
+            phase = phase._replace(area=area)
+        return None
+
+    def _nodes(self, phase: Phase, start: Node, end: float) -> list[Node] | None:
+        """Equilibria at the Gauss points of a step, unless there is no friction, and at its end."""
+        nodes = [start]
+        for t in (*(start.t + (end - start.t) * _GAUSS if self.rod.friction else ()), end):
+            guess = start.z + (t - start.t) * start.rates
+            if len(nodes) > 1:
+                times, z, rates = zip(*((node.t, node.z, node.rates) for node in nodes[-2:]), strict=True)
+                guess = CubicHermiteSpline(times, z, rates)(t)
+            node = self._node(phase, float(t), guess)
+            if node is None:
+                return None
+            nodes.append(node)
+        return nodes[1:]
+
+    def _event(self, phase: Phase, start: Node, before: Node, after: Node) -> tuple[float, Ending] | None:
+        """First root of a margin between two equilibria of a step, and which; None where the first one is an event itself."""
+
+        def margin(t: float, k: int) -> float:
+            share = (t - before.t) / (after.t - before.t)
+            node = self._node(phase, t, before.z + share * (after.z - before.z))
+            return float(node.margins[k]) if node is not None else np.nan
+
+        roots: list[tuple[float, Ending]] = []
+        for ending in Ending:
+            if after.margins[ending] >= -_EDGE:
+                continue
+            goes_on = start.t - phase.since > _TOGETHER or ending is Ending.SLIP_OFF or not self.rod.friction
+            if before is start and start.margins[ending] <= _EDGE and goes_on:
+                return start.t, ending
+            if before.margins[ending] <= _EDGE:
+                return None
+            try:
+                roots.append((float(brentq(margin, before.t, after.t, args=(ending,), xtol=1e-15)), ending))
+            except ValueError:  # Newton's method fails in between
+                return None
+        first = min(t for t, _ in roots)
+        return max((item for item in roots if item[0] <= first + _TOGETHER), key=lambda item: item[1])
 
 
 def rod_under_pin(
@@ -158,66 +352,13 @@ def rod_under_pin(
     >>> [event.after.value for event in path.events]
     ['slip to clamp', 'stick', 'slip to tip']
     """
-    require_positive(EI=EI, length=length)
-    require_positive(infinite=True, EA=EA, GA=GA)
-    require_not_negative(friction=friction, offset=offset, radius=radius)
-    pins = vertices(points)
+    require("positive and finite", EI=EI, length=length)
+    require("positive", EA=EA, GA=GA)
+    require("finite and not negative", friction=friction, offset=offset, radius=radius)
+    pins, t = vertices(points)
     unit = EI / length**2
-    rod = Cantilever(
-        flexibility=Flexibility(stretch=unit / EA, shear=unit / GA),
-        face=offset / length,
-        radius=radius / length,
-        friction=friction,
-    )
-    path = follow(rod, pins / length, fractions(pins))
-    return collect(rod, list(path), EI=EI, length=length)
-
-
-def vertices(points: ArrayLike) -> Array:
-    """Return the vertices (s, 2) of a path."""
-    pins = np.asarray(points, dtype=np.float64)
-    if pins.ndim != 2 or pins.shape[1] != 2 or not len(pins) or not np.all(np.isfinite(pins)):
-        raise ValueError(f"points, shape {pins.shape}: must be finite and of shape (s, 2), s >= 1")
-    return pins
-
-
-def fractions(points: Array) -> Array:
-    """Fractions of a path's length at its vertices."""
-    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
-    return np.asarray(way / (way[-1] or 1.0))
-
-
-def collect(rod: Cantilever, path: list[Standing], *, EI: float, length: float) -> RodPath:
-    """Return the states in the units of the input."""
-    unit, energy = EI / length**2, EI / length
-    outcome = tuple(one.state for one in path)
-    touches = np.array([state.touches for state in outcome])
-    lost = np.where([state.ends for state in outcome], np.nan, 0.0)
-    z = np.where(touches[:, None], [one.z for one in path], [0.0, 0.0, 0.0, 1.0])
-    contact = rod.contact(z, np.zeros(2))
-
-    def column(name: str) -> Array:
-        return energy * (np.array([getattr(one, name) for one in path]) + lost)
-
-    return RodPath(
-        load_parameter=np.array([one.t for one in path]),
-        outcome=outcome,
-        force=unit * (z[:, :2] + lost[:, None]),
-        tangential=unit * (contact.tangential + lost),
-        normal=unit * (contact.normal + lost),
-        arc_position=length * np.where(touches, z[:, 3], np.nan),
-        clamp_moment=-energy * (z[:, 2] + lost),
-        tip=length * np.array([_axis(rod, *one, np.ones(1))[0, :2] for one in zip(outcome, z, strict=True)]),
-        work=column("work"),
-        dissipated=column("dissipated"),
-        stored=energy * (np.array([rod.energy(row) for row in z]) + lost),
-        released=column("released"),
-        iterations=np.diff([one.iterations for one in path], prepend=0),
-        events=tuple(
-            replace(event, arc_position=length * event.arc_position, magnitude=unit * event.magnitude)
-            for event in path[-1].events
-        ),
-        unknowns=z,
-        rod=rod,
-        length=length,
-    )
+    flexibility = Flexibility(stretch=unit / EA, shear=unit / GA)
+    rod = Cantilever(flexibility=flexibility, face=offset / length, radius=radius / length, friction=friction)
+    follower = Follower(rod, pins[0] / length)
+    rows = list(follower.follow(pins / length, t))
+    return collected(rod, rows, follower.events, EI, length)

@@ -16,8 +16,10 @@ BALANCE = 1e-6
 
 _FEWEST = 8
 """Fewest load parameters up to which the work is compared with the strain energy."""
-_PANELS, _NODES = 20, 4
-"""Panels, and nodes in each, of the quadrature of a load along a beam."""
+_NODES, _OWN = np.polynomial.legendre.leggauss(4)
+_PARTS = ((np.arange(20)[:, None] + (_NODES + 1.0) / 2.0) / 20).ravel()
+_WEIGHTS = np.tile(_OWN / 2.0, 20) / 20
+"""Quadrature of a load along a beam, in twenty panels."""
 
 
 class Action(NamedTuple):
@@ -137,10 +139,10 @@ def _places(response: Response, scene: Scene, node: str) -> Array:
 
 
 def _supports(response: Response, scene: Scene) -> list[Action]:
-    motions, times, actions = scene.prescribed_motions, response.load_parameter.tolist(), []
+    times, actions = (0.0, *response.load_parameter.tolist()), []
     for node, history in response.supports.items():
-        turns = [motions[node].at(t)[2] for t in (0.0, *times)] if node in motions else []
-        angle = np.array([turn or 0.0 for turn in turns]) if turns else None
+        motion = scene.prescribed_motions.get(node)
+        angle = None if motion is None else np.array([motion.at(t)[2] or 0.0 for t in times])
         actions.append(Action(history.force, _places(response, scene, node), history.moment, angle))
     return actions
 
@@ -157,14 +159,11 @@ def _springs(response: Response, scene: Scene) -> list[Action]:
 def _loads(response: Response, scene: Scene) -> list[Action]:
     """Return the dead loads and the weights; those along a beam and inside it act on the axis that the response states."""
     times, actions = response.load_parameter.tolist(), []
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
-    inside = ((np.arange(_PANELS)[:, None] + (nodes + 1.0) / 2.0) / _PANELS).ravel()
-    weights = np.tile(weights / 2.0, _PANELS) / _PANELS
     for history in scene.load_histories:
         load, beam = history.load, scene.beam(history.load.beam)
         acting, (first, last) = np.array([history.at(t) for t in times]).reshape(-1, 3), load.span
         if load.force_per_length is not None:
-            parts, extents = first + (last - first) * inside, (last - first) * beam.length * weights
+            parts, extents = first + (last - first) * _PARTS, (last - first) * beam.length * _WEIGHTS
             actions.append(_inside(response, beam, parts, extents, acting * (1.0, 1.0, 0.0)))
         elif load.at is not None:
             actions.append(_inside(response, beam, np.array([load.at]), np.ones(1), acting))
@@ -173,8 +172,8 @@ def _loads(response: Response, scene: Scene) -> list[Action]:
     gravity = np.array([(*scene.gravity_at(t), 0.0) for t in times]).reshape(-1, 3)
     for beam in scene.beams:
         if beam.density is not None:
-            masses = beam.length * weights * [beam.mass_per_length(part) for part in inside]
-            actions.append(_inside(response, beam, inside, masses, gravity))
+            masses = beam.length * _WEIGHTS * [beam.mass_per_length(part) for part in _PARTS]
+            actions.append(_inside(response, beam, _PARTS, masses, gravity))
     return actions
 
 
@@ -192,12 +191,11 @@ def _inside(response: Response, beam: BeamSpec, parts: Array, weights: Array, ac
 def _pins(response: Response, scene: Scene, outer: Array) -> tuple[NDArray[np.int64], Array, list[Action]]:
     """Return the number of pins that push, the sum of their magnitudes, and their actions; a single pin balances the forces `outer`."""
     touching = [(spec, response.contacts[spec.pair]) for spec in scene.contacts if "." not in spec.node]
-    steps, actions = len(response.load_parameter), []
-    pushing = np.sum([np.zeros(steps, dtype=np.int64), *(item.force > 0.0 for _, item in touching)], axis=0)
-    magnitude = np.sum([np.zeros(steps), *(item.force for _, item in touching)], axis=0)
+    forces = np.array([np.zeros(len(response.load_parameter)), *(item.force for _, item in touching)])
+    pushing, actions = np.sum(forces > 0.0, axis=0), []
     for spec, history in touching:
         places = [scene.pin(spec.node).position(t) for t in (0.0, *response.load_parameter.tolist())]
-        vector = np.full((steps, 2), np.nan) if history.vector is None else history.vector
+        vector = np.full_like(outer, np.nan) if history.vector is None else history.vector
         force = np.where((pushing <= 1)[:, None], -outer, vector)
         force = np.where((history.force > 0.0)[:, None], force, 0.0)
         rolling: Array | float = 0.0
@@ -206,4 +204,4 @@ def _pins(response: Response, scene: Scene, outer: Array) -> tuple[NDArray[np.in
             lever = scene.radius(spec) + np.where(history.force > 0.0, history.gap, 0.0)
             rolling = (1.0 if spec.side == "left" else -1.0) * lever * history.friction.tangential
         actions.append(Action(force, np.array(places), rolling))
-    return pushing, magnitude, actions
+    return pushing, forces.sum(axis=0), actions

@@ -4,13 +4,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from comparisons.referee.balance import BALANCE, balance_failures, unpaid
 from comparisons.referee.certificate import Certificate, Judgement, Verdict
-from comparisons.referee.judge import compared, impossible, judged
+from comparisons.referee.judge import Trial, compared, impossible, judged
 from comparisons.referee.passing import changes, misstated, passages
 from comparisons.referee.path import changes_of, departures
 from comparisons.referee.state import Equilibrium
@@ -20,9 +19,6 @@ from comparisons.response.material import material_forces
 from comparisons.response.round_off import least_force
 from comparisons.scene import Scene
 from comparisons.scene.keys import REFEREE, unstated
-
-if TYPE_CHECKING:
-    from comparisons.referee.friction import History
 
 ALLOWED = 5e-2
 """Default of the largest difference allowed to an answer; ten straight elements of a beam that bends to a half circle need it."""
@@ -69,7 +65,7 @@ def certify(
         from comparisons.referee.friction import History
 
         history = History(response, scene)
-    states = _judged(response, scene, numbers, allowed, history)
+    states = _judged(Trial(response, scene, allowed, history), numbers)
     found = {k: item.exact for k, item in zip(numbers, states, strict=True) if item.exact is not None}
     unsound = [*_unsound(response, scene, allowed, contradictions)] or [
         *unpaid(response, scene, found, allowed)
@@ -78,7 +74,8 @@ def certify(
     if history is not None:
         from comparisons.referee.friction import rubs_wrongly_on_the_way
 
-        path += rubs_wrongly_on_the_way(history, numbers, states, allowed)
+        apart = max((item.distance.largest[1] for item in states if item.distance is not None), default=0.0)
+        path += rubs_wrongly_on_the_way(history, found, apart, allowed)
     verdict, reason = _worst(states, unsound, path)
     if verdict is Verdict.CERTIFIED:
         verdict, reason = _sound(response, scene, numbers, states)
@@ -92,21 +89,17 @@ def certify(
     )  # fmt: skip
 
 
-def _judged(
-    response: Response, scene: Scene, numbers: Sequence[int], allowed: float, history: "History | None"
-) -> list[Judgement]:
+def _judged(trial: Trial, numbers: Sequence[int]) -> list[Judgement]:
     """Return the judgements; an equilibrium is sought from the one at the load parameter before, where that was judged."""
     states: list[Judgement] = []
     for n, k in enumerate(numbers):
-        before = states[-1].exact if n and numbers[n - 1] == k - 1 else None
-        states.append(judged(response, scene, k, allowed, history, before))
+        states.append(judged(trial, k, states[-1].exact if n and numbers[n - 1] == k - 1 else None))
     sizes = [item.distance.scales for item in states if item.distance is not None]
-    for n, k in enumerate(numbers):
-        item = states[n]
+    for n, (k, item) in enumerate(zip(numbers, states, strict=True)):
         if item.verdict is Verdict.NOT_AN_EQUILIBRIUM and item.exact is not None:
             # a moment that changes its sign is small, and a difference relative to it alone is large
             force, moment, moved = (max(column) for column in zip(*sizes, strict=True))
-            states[n] = compared(response, k, item.exact, allowed, history, (force, moment, moved))
+            states[n] = compared(trial, k, item.exact, (force, moment, moved))
     return states
 
 
@@ -134,9 +127,7 @@ def default_allowance(response: Response, scene: Scene) -> float:
 def _chosen(response: Response, scene: Scene) -> list[int]:
     """Return the indices of the load parameters that are judged by default: see `certify`."""
     times, steps = response.load_parameter, len(response.load_parameter)
-    if not steps:
-        return []
-    numbers = {steps - 1}
+    numbers = {steps - 1} if steps else set()
     for event in sorted(changes_of(response), key=lambda event: -event.load_parameter):
         after = int(np.searchsorted(times, event.load_parameter))
         for k in (after, after - 1):
@@ -162,13 +153,10 @@ def _sound(
     worst = max((item.distance for item in states if item.distance), key=lambda item: item.largest[1])
     stable = "stable" if all(item.index == 0 for item in states) else "stability not judged (friction)"
     count = f"{len(states)} of {len(scene.times)} load parameters"
-    most = next((f"{response.load_parameter[k]:.6g}" for k in _hardest(response) if k in numbers), "")
-    loaded = (
-        f", the largest contact force (at {most}) among them"
-        if most and len(states) < len(scene.times)
-        else ""
-    )
-    return Verdict.CERTIFIED, f"{worst.line()}, admissible, {stable}; judged at {count}{loaded}"
+    for k in _hardest(response):
+        if k in numbers and len(states) < len(scene.times):
+            count += f", the largest contact force (at {response.load_parameter[k]:.6g}) among them"
+    return Verdict.CERTIFIED, f"{worst.line()}, admissible, {stable}; judged at {count}"
 
 
 def _unsound(

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.guess import SHORTEST
+from comparisons.referee.guess import SHORTEST, end_of
 from comparisons.referee.rod import angle, axis_at_rest, cross, face_of
 from comparisons.referee.state import Equilibrium
 from comparisons.response import Response
@@ -32,11 +32,12 @@ ROUGH = ("gap", "sections", "constraint")
 """Differences held against it too, which are interpolated and therefore no measure of an answer's accuracy; `place` has its own limit."""
 NONE = 1e-9
 """Difference below which only its bound is told."""
+_TIE = 1e-6
+"""Relative difference of sizes of which the first is told, so that round-off chooses no name."""
 _POINTS = 401
 """Points of an axis between which the feet of an open contact's node are sought."""
 LOCAL = 1.5
 """Distance from contacts, loads and ends, over the height, within which the section forces of a solid are not compared."""
-_PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 _SHARPEST = 1.4
 """Largest angle between neighbouring chords in the bound of the chords' error [rad]; beyond it the tangent grows without limit."""
 
@@ -78,8 +79,8 @@ class Distance:
         return self._largest(ROUGH)
 
     def _largest(self, names: Sequence[str]) -> tuple[str, float]:
-        name = max(names, key=lambda name: self.sizes[name])
-        return name, self.sizes[name]
+        most = max(self.sizes[name] for name in names)
+        return next(name for name in names if self.sizes[name] * (1.0 + _TIE) >= most), most
 
     def line(self, of: tuple[str, float] | None = None) -> str:
         """Return a difference, the largest one if none is given, in words, as ``force off by 20 % (pin->strip)``."""
@@ -109,38 +110,30 @@ def distance(response: Response, k: int, exact: Equilibrium, largest: Scales) ->
     length = max(beam.length for beam in scene.beams)
     last = force_round_off(scene, size)
     last_moment = min(force_round_off(scene, math.inf) * length, UNRESOLVED * moment)
-    found: dict[str, dict[str, float]] = {name: {} for name in (*COMPARED, *ROUGH, "place")}
-    for name, pair, off in _contact_differences(response, k, exact):
-        found[name][pair] = off
-    for end, total, stated in _holds(response, k, exact):
-        x, y, turn = total - np.array(stated)
-        found["reaction"][f"force of {end}"] = _beyond(float(np.hypot(x, y)), size, last)
-        found["reaction"][f"moment of {end}"] = _beyond(abs(float(turn)), moment, last_moment)
-    apart: dict[str, float] = {}
-    for beam in scene.beams:
-        there = exact.ends[f"{beam.name}.{scene.tip(beam.name)}"]
-        tip = float(np.hypot(*(there - response.tips[beam.name][k])))
-        axis = float(np.hypot(*(axes[beam.name] - lines[beam.name][1]).T).max())
-        found["tip"][beam.name], found["shape"][beam.name] = tip / beam.length, axis / beam.length
-        apart[beam.name] = max(_size(tip), _size(axis))
-        for name, off in _section_differences(response, k, exact, beam):
-            of = (moment, last_moment) if name == "M" else (size, last)
-            found["sections"][f"{name} of {beam.name}"] = _beyond(off, *of)
-    misplaced = [*_misplaced(response, k, exact)]
-    found["place"] = {name: off / length for name, off, length in misplaced}
     places = [np.abs(place) for beam in scene.beams for place in (beam.start, beam.end)]
     soft = max(beam.length**3 / beam.EI for beam in scene.beams)
     floor = RESIDUAL * length + LAST_PLACES * float(np.max(places)) + last * soft
-    for relative, lengths in (
-        ("displacement", apart),
-        ("constraint", {name: off for name, off, _ in misplaced}),
-    ):
-        found[relative] = {
-            name: 0.0 if off <= floor else _size(off / moved) if moved else math.inf
-            for name, off in lengths.items()
-        }
-    where = {name: max(sizes, key=lambda key: _size(sizes[key])) for name, sizes in found.items() if sizes}
-    sizes = {name: _size(found[name][where[name]]) if name in where else 0.0 for name in found}
+    rows = [*_contact_differences(response, k, exact)]
+    for end, total, stated in _holds(response, k, exact):
+        x, y, turn = total - np.array(stated)
+        rows.append(("reaction", f"force of {end}", _beyond(math.hypot(x, y), size, last)))
+        rows.append(("reaction", f"moment of {end}", _beyond(abs(float(turn)), moment, last_moment)))
+    for beam in scene.beams:
+        name, there = beam.name, exact.ends[f"{beam.name}.{scene.tip(beam.name)}"]
+        tip = math.hypot(*(there - response.tips[name][k]))
+        axis = float(np.hypot(*(axes[name] - lines[name][1]).T).max())
+        rows += [("tip", name, tip / beam.length), ("shape", name, axis / beam.length)]
+        rows.append(("displacement", name, _beyond(max(_size(tip), _size(axis)), moved, floor)))
+        for letter, off in _section_differences(response, k, exact, beam):
+            of = (moment, last_moment) if letter == "M" else (size, last)
+            rows.append(("sections", f"{letter} of {name}", _beyond(off, *of)))
+    for name, off, own in _misplaced(response, k, exact):
+        rows += [("place", name, off / own), ("constraint", name, _beyond(off, moved, floor))]
+    sizes, where = dict.fromkeys((*COMPARED, *ROUGH, "place"), 0.0), dict[str, str]()
+    for name, at, off in rows:
+        if name not in where or _size(off) > (1.0 + _TIE) * sizes[name]:
+            where[name] = at
+        sizes[name] = max(sizes[name], _size(off))
     return Distance(sizes=sizes, where=where, scales=scales)
 
 
@@ -152,10 +145,10 @@ def _contact_differences(response: Response, k: int, exact: Equilibrium) -> Iter
         contact, stated = exact.contacts.get(pair), response.contacts[pair]
         if contact is not None:
             # without its direction, a force has the exact one
-            off = float(np.hypot(*contact.force)) - float(stated.force[k])
+            off = abs(np.hypot(*contact.force) - stated.force[k])
             if stated.vector is not None:
-                off = float(np.hypot(*(contact.force - stated.vector[k])))
-            yield "force", pair, _beyond(abs(off), largest, force_round_off(exact.scene, largest))
+                off = np.hypot(*(contact.force - stated.vector[k]))
+            yield "force", pair, _beyond(float(off), largest, force_round_off(exact.scene, largest))
             yield "arc_position", pair, abs(contact.arc_position - float(stated.arc_position[k])) / length
         if contact is not None or math.isfinite(stated.gap[k]):
             yield "gap", pair, gap_off(exact, spec, float(stated.gap[k])) / length
@@ -171,7 +164,8 @@ def _holds(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple[str
         if node in response.springs:
             own = response.springs[node]
             way = np.array(spring.stiffness) * (exact.ends[node] - np.array(exact.scene.place(node)))
-            total = -np.append(way, spring.rotation * exact.joint_rotation(node))
+            turn = exact.layout.motions(exact.z)[exact.layout.joint(node), 2]
+            total = -np.append(way, spring.rotation * turn)
             yield f"the spring at {node}", total, (*own.force[k], own.moment[k])
 
 
@@ -212,30 +206,25 @@ def _section_differences(
         kept &= (arc[1:] < min(jump) - near) | (arc[:-1] > max(jump) + near)
     begins, station = np.flatnonzero(kept), exact.shape(beam.name, arc)
     middle = exact.shape(beam.name, ((arc[1:] + arc[:-1]) / 2.0)[kept])
-    for name, values, ends, middles in zip(
-        "NVM",
-        (at.N, at.V, at.M),
-        (station.N, station.Q, station.moment),
-        (middle.N, middle.Q, middle.moment),
-        strict=True,
-    ):
+    for letter, name in (("N", "N"), ("V", "Q"), ("M", "moment")):
+        values = getattr(at, letter)
         offs = (
-            (values - ends)[np.unique([begins, begins + 1])],
-            ((values[1:] + values[:-1]) / 2.0)[kept] - middles,
+            (values - getattr(station, name))[np.unique([begins, begins + 1])],
+            ((values[1:] + values[:-1]) / 2.0)[kept] - getattr(middle, name),
         )
-        yield name, min(float(np.max(np.nan_to_num(np.abs(off), nan=np.inf), initial=0.0)) for off in offs)
+        yield letter, min(float(np.max(np.nan_to_num(np.abs(off), nan=np.inf), initial=0.0)) for off in offs)
 
 
 def _beyond(off: float, size: float, last: float) -> float:
     """Relative difference `off / size`; zero if it is at most the round-off `last`."""
-    return 0.0 if off <= last else _size(off / size)
+    if off <= last:
+        return 0.0
+    return _size(off / size) if size else math.inf
 
 
 def largest_force(exact: Equilibrium) -> float:
     """Return the largest contact force, at least the force below which nothing acts."""
-    return max(
-        [least_force(exact.scene), *(float(np.hypot(*item.force)) for item in exact.contacts.values())]
-    )
+    return max([least_force(exact.scene), *(math.hypot(*item.force) for item in exact.contacts.values())])
 
 
 def _forces(exact: Equilibrium) -> tuple[float, float]:
@@ -256,13 +245,8 @@ def _loads(scene: Scene, t: float) -> Iterator[tuple[float, float, float]]:
         x, y, moment = item.at(t)
         span = (last - first) * scene.beam(item.load.beam).length if along else 1.0
         yield x * span, y * span, 0.0 if along else moment
-    gravity = scene.gravity_at(t)
-    for beam in scene.beams:
-        if beam.density is not None and any(gravity):
-            mass = sum(
-                w * beam.mass_per_length((1.0 + x) / 2.0) for x, w in zip(_PLACES, _WEIGHTS, strict=True)
-            )
-            yield gravity[0] * mass * beam.length / 2.0, gravity[1] * mass * beam.length / 2.0, 0.0
+    x, y = scene.gravity_at(t)
+    yield from ((beam.mass * x, beam.mass * y, 0.0) for beam in scene.beams)
 
 
 def _misplaced(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple[str, float, float]]:
@@ -270,16 +254,14 @@ def _misplaced(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple
     scene = exact.scene
 
     def end(node: str) -> Array:
-        beam, where = node.split(".")
-        line = response.axis_line(beam, k)[1]
-        return np.asarray(line[0 if where == "start" else -1])
+        return end_of(node, lambda beam: response.axis_line(beam, k))
 
     for spec in scene.contacts:
         if spec.pair in exact.contacts:
             arc = float(response.contacts[spec.pair].arc_position[k])
             place, cut = _on_axis(*response.axis_line(spec.beam, k), arc)
             node = end(spec.node) if "." in spec.node else exact.place(spec.node)
-            apart = abs(float(np.hypot(*(place - node))) - face_of(scene, spec).reach(arc))
+            apart = abs(math.hypot(*(place - node)) - face_of(scene, spec).reach(arc))
             yield spec.pair, max(0.0, apart - cut), scene.beam(spec.beam).length
     for support in scene.all_supports:
         way = (end(support.node) - scene.place(support.node)).tolist()
@@ -300,5 +282,5 @@ def _on_axis(arcs: Array, line: Array, arc: float) -> tuple[Array, float]:
         line[last] - line[k + 1] if last > k + 1 else way,
     )
     turn = min(max(angle(before, way), angle(way, behind)), _SHARPEST)
-    cut = 0.5 * float(np.hypot(*way)) * math.tan(turn)
+    cut = 0.5 * math.hypot(*way) * math.tan(turn)
     return (1.0 - part) * line[k] + part * line[k + 1], cut

@@ -13,18 +13,20 @@ is continuous at the contact, which is ``F.(r'_- + r'_+) = 0``, contact without 
 this one: see `comparisons.referee.grip`.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.elements import OUTER, Mesh, elements
 from comparisons.referee.grip import rows
-from comparisons.referee.layout import NONE, Layout, Part, Touch, normal
+from comparisons.referee.layout import NONE, Layout, Part, Touch
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+_STEP = 1e-30
+"""Imaginary step of derivatives, which have no error of subtraction."""
 _DENSE = 300
 """Number of unknowns up to which matrices are solved as full ones."""
 
@@ -84,28 +86,36 @@ def element_before(mesh: Mesh, touch: Touch) -> int:
 
 
 def _add_parts(layout: Layout, z: Array, g: Array, k: Array) -> None:
-    """Add ``c.(r_b - r_a - R_b + R_a)`` of the parts."""
-    shifts = layout.shifts(z)
-    for part, (begin, end) in zip(layout.parts, layout.extents(z), strict=True):
-        own, axes = slice(part.force, part.force + 2), part.rod.axes
-        n = z[own]
-        g[own] += _apart(layout, part, shifts, part.rod.between(begin, end))
-        for number, sign in ((part.first, -1.0), (part.last, 1.0)):
-            there = layout.stations[number]
-            for component, unknown in enumerate(there.numbers[:2]):
-                g[unknown] += sign * axes[component] @ n
-                k[own, unknown] += sign * axes[component]
-                k[unknown, own] += sign * axes[component]
-            touch = there.touch
-            if touch is None:
-                continue
-            e = part.rod.direction(float(z[touch.arc]))
-            g[touch.arc] -= sign * n @ e
-            k[own, touch.arc] -= sign * e
-            k[touch.arc, own] -= sign * e
-            k[touch.arc, touch.arc] -= sign * part.rod.curvature * (n[1] * e[0] - n[0] * e[1])
-            if touch.angle != NONE:
-                _add_offset(part, touch, sign, z, g, k)
+    """Add ``c.(r_b - r_a - R_b + R_a)`` of the parts; at a contact ``r = x - offset(s) nu(phi)``."""
+    local, sizes = layout.sides
+    given = layout.full(z)[local].T[..., None] + 1j * _STEP * np.eye(6)[:, None]
+    by = np.array(_at_side(given, sizes[..., None]))
+    hessian = np.zeros((len(local), 6, 6))
+    hessian[:, 2:] = by.imag.swapaxes(0, 1) / _STEP
+    hessian[:, :2, 2:] = hessian[:, 2:, :2].swapaxes(1, 2)
+    np.add.at(g, local[:, 2:], by[..., 0].real.T)
+    np.add.at(k, (local[:, :, None], local[:, None, :]), hessian)
+    shifts, extents = layout.shifts(z), layout.extents(z)
+    g[layout.forces] += np.ravel([_apart(layout, *item, shifts) for item in zip(layout.parts, extents, strict=True)])  # fmt: skip
+
+
+def _at_side(given: Any, sizes: Array) -> tuple[Any, ...]:
+    """Gradient of ``c.(r - R)`` at an end of a part by displacement (2), s and phi, at complex values."""
+    (c_x, c_y, _, _, s, phi), (sign, x, y, k0, turn, offset, slope) = given, sizes
+    n_x, n_y, cos, sin = x * c_x - y * c_y, y * c_x + x * c_y, np.cos(phi), np.sin(phi)
+    along = c_x * np.cos(k0 * s - turn / 2.0) + c_y * np.sin(k0 * s - turn / 2.0)
+    by_s, by_phi = -along - slope * (n_y * cos - n_x * sin), (offset + slope * s) * (n_x * cos + n_y * sin)
+    return sign * n_x, sign * n_y, sign * by_s, sign * by_phi
+
+
+def _apart(layout: Layout, part: Part, extent: Array, shifts: Array) -> Array:
+    """Return ``r_b - r_a - R_b + R_a`` in the beam's frame; it is exactly zero for an undeformed beam."""
+    a, b = layout.stations[part.first], layout.stations[part.last]
+    apart = part.rod.axes.T @ (shifts[part.last] - shifts[part.first])
+    if a.touch is None and b.touch is None:
+        return np.asarray(apart)
+    rest = part.rod.axes.T @ (b.reference - a.reference)
+    return np.asarray(apart + rest - part.rod.between(*extent))
 
 
 def _add_springs_and_loads(layout: Layout, z: Array, g: Array, k: Array) -> float:
@@ -123,31 +133,6 @@ def _add_springs_and_loads(layout: Layout, z: Array, g: Array, k: Array) -> floa
         np.add.at(g, turns, stiffness * apart * np.array([1.0, -1.0]))
         np.add.at(k, (turns[:, None], turns), stiffness * np.array([[1.0, -1.0], [-1.0, 1.0]]))
     return energy
-
-
-def _add_offset(part: Part, touch: Touch, sign: float, z: Array, g: Array, k: Array) -> None:
-    """Add ``sign c.r`` of the axis point ``r = x - offset(s) nu(phi)`` by phi, and by s where the offset depends on s."""
-    own, axes, nu = slice(part.force, part.force + 2), part.rod.axes, normal(float(z[touch.angle]))
-    n, tau, offset = z[own], np.array([nu[1], -nu[0]]), touch.away(float(z[touch.arc]))
-    way, lean = offset * axes.T @ tau, -touch.slope * axes.T @ nu
-    for unknown, by in ((touch.angle, way), (touch.arc, lean)):
-        g[unknown] += sign * by @ n
-        k[own, unknown] += sign * by
-        k[unknown, own] += sign * by
-    k[touch.angle, touch.angle] += sign * offset * nu @ axes @ n
-    mixed = sign * touch.slope * (axes.T @ tau) @ n
-    k[touch.angle, touch.arc] += mixed
-    k[touch.arc, touch.angle] += mixed
-
-
-def _apart(layout: Layout, part: Part, shifts: Array, between: Array) -> Array:
-    """Return ``r_b - r_a - R_b + R_a`` in the beam's frame; it is exactly zero for an undeformed beam."""
-    a, b = layout.stations[part.first], layout.stations[part.last]
-    apart = np.asarray(part.rod.axes.T @ (shifts[part.last] - shifts[part.first]))
-    if a.touch is None and b.touch is None:
-        return apart
-    rest = part.rod.axes.T @ (b.reference - a.reference)
-    return np.asarray(apart + rest - between)
 
 
 def solved(system: System, held: Ints | None = None) -> Array | None:

@@ -1,7 +1,7 @@
 """The first guess of the exact equilibrium from the axes, forces and arc positions of an answer."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,6 +13,8 @@ from comparisons.response import ContactHistory, Response
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 
 Array = NDArray[np.float64]
+Rotations = tuple[Array, Array]
+"""Arc positions from one end of a beam to the other, and rotations of its sections there, linear in between; in units of `Layout`."""
 
 PULL = 1e-9
 """Largest contact force that is round-off, over EI/L^2 of the touched beam, for the models' contacts at a release."""
@@ -51,11 +53,6 @@ class AnswerState:
     reactions: Mapping[str, Sequence[float] | Array] = field(default_factory=dict)
     grips: dict[str, Grip] = field(default_factory=dict)
 
-    def end(self, node: str) -> Array:
-        """Return the position of a beam's end such as ``upper.end``."""
-        beam, end = node.split(".")
-        return np.asarray(self.axes[beam][1][0 if end == "start" else -1])
-
 
 def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
     """Return the state at load parameter number k; a contact whose force is round-off is open at an end of its beam, but its force counts."""
@@ -76,6 +73,12 @@ def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
     )
 
 
+def end_of(node: str, axis_line: Callable[[str], tuple[Array, Array]]) -> Array:
+    """Return the position of a beam's end such as ``upper.end`` on the beams' axes."""
+    beam, _, end = node.partition(".")
+    return np.asarray(axis_line(beam)[1][0 if end == "start" else -1])
+
+
 def pull_allowed(beam: BeamSpec) -> float:
     """Largest tensile contact force on a beam that is round-off."""
     return PULL * beam.EI / beam.length**2
@@ -88,42 +91,48 @@ def idle_at_an_end(contact: ContactHistory, scene: Scene, spec: ContactSpec, k: 
     return abs(float(contact.force[k])) <= pull_allowed(beam) and abs(inside) <= SHORTEST
 
 
-@dataclass(frozen=True, eq=False)
-class Rotations:
-    """Rotation of a beam's sections along the arc length, in units of `Layout`."""
-
-    arc: Array
-    theta: Array
-
-    def angle(self, arc: Array | float) -> Array:
-        """Return the rotation at an arc length by linear interpolation and extrapolation."""
-        inside = np.interp(arc, self.arc, self.theta)
-        if len(self.arc) < 2:
-            return np.asarray(inside)
-        slope = np.diff(self.theta) / np.diff(self.arc)
-        before, beyond = np.minimum(arc - self.arc[0], 0.0), np.maximum(arc - self.arc[-1], 0.0)
-        return np.asarray(inside + before * slope[0] + beyond * slope[-1])
-
-
 def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotations]]:
     """Return the unknowns of the layout and the beams' rotations from an answer."""
-    scene, z = layout.scene, np.zeros(layout.unknowns)
-    turns = _aligned(layout, [_rotations(layout, answer, number) for number in range(len(scene.beams))])
+    z = np.zeros(layout.unknowns)
     for touch in layout.touches:
         z[touch.arc] = answer.arcs[touch.spec.pair] / layout.length
+    turns = _rotations(layout, answer)
     _set_displacements(layout, answer, turns, z)
     _balance(layout, answer, turns, z)
-    turns = _aligned(layout, [_rotations(layout, answer, number, z) for number in range(len(scene.beams))])
+    turns = _rotations(layout, answer, z)
     for part, arcs in zip(layout.parts, layout.extents(z), strict=True):
         for number, arc in zip((part.first, part.last), arcs, strict=True):
             unknown = layout.stations[number].numbers[2]
             if unknown >= 0:
-                z[unknown] = turns[part.beam].angle(arc)
+                z[unknown] = np.interp(arc, *turns[part.beam])
     return z, turns
 
 
-def _rotations(layout: Layout, answer: AnswerState, number: int, z: Array | None = None) -> Rotations:
-    """Angles of the axis' chords from the undeformed direction, less the shear of the forces in z.
+def _rotations(layout: Layout, answer: AnswerState, z: Array | None = None) -> list[Rotations]:
+    """Rotations of all beams, with multiples of 2 pi, so that beams agree with prescribed rotations and, at joints, with each other."""
+    turns = [_rotation(layout, answer, number, z) for number in range(len(layout.scene.beams))]
+    known: dict[int, float] = {
+        k: float(layout.given[item.numbers[2]])
+        for k, item in enumerate(layout.stations)
+        if item.numbers[2] < 0
+    }
+    own = [[part for part in layout.parts if part.beam == number] for number in range(len(turns))]
+    ends = [(parts[0].first, parts[-1].last) for parts in own]
+    left = list(range(len(turns)))
+    while left:
+        number = next((b for b in left if any(k in known for k in ends[b])), left[0])
+        left.remove(number)
+        arc, theta = turns[number]
+        both = dict(zip(ends[number], (theta[0], theta[-1]), strict=True))
+        shift = next((known[k] - turn for k, turn in both.items() if k in known), 0.0)
+        whole = 2.0 * math.pi * round(shift / (2.0 * math.pi))
+        turns[number] = arc, theta + whole
+        known = {k: float(turn + whole) for k, turn in both.items()} | known
+    return turns
+
+
+def _rotation(layout: Layout, answer: AnswerState, number: int, z: Array | None) -> Rotations:
+    """Angles of the axis' chords from the undeformed direction, less the shear of the forces in z, extrapolated to the ends.
 
     ``r' = d1 + (N/EA) d1 + (Q/GA) d2`` gives ``r' - n/GA = (1 + N/EA - N/GA) d1``. In strong shear the factor of d1 is negative; its
     sign is the one that agrees with N.
@@ -133,14 +142,12 @@ def _rotations(layout: Layout, answer: AnswerState, number: int, z: Array | None
     pieces, extents = np.diff(line, axis=0) @ (1.0, 1.0j) / complex(*beam.direction), np.diff(arc)
     long = (np.abs(pieces) > 0.0) & (extents > 0.0)
     if not long.any():
-        return Rotations(np.zeros(1), np.zeros(1))
+        return np.array([0.0, rod.length]), np.zeros(2)
     s, way = (arc[:-1] + arc[1:])[long] / (2.0 * layout.length), pieces[long] / extents[long]
     way = way * np.exp(-1.0j * rod.angle(s)) if rod.turn else way
     theta = np.angle(way)
-    if z is None or not np.any(rod.greatest.shear):
-        return Rotations(s, np.unwrap(theta))
-    for part, (first, last) in zip(layout.parts, layout.extents(z), strict=True):
-        if part.beam == number:
+    for part, (first, last) in () if z is None else zip(layout.parts, layout.extents(z), strict=True):
+        if z is not None and part.beam == number and np.any(rod.greatest.shear):
             _, stretch, shear = rod.flexibility(s)
             x, y = rod.force(part.piece, part.constant(z), s)
             force = (x + 1.0j * y) * np.exp(-1.0j * rod.angle(s))
@@ -150,29 +157,10 @@ def _rotations(layout: Layout, answer: AnswerState, number: int, z: Array | None
             factor = (stretch - shear) * (d1 * force.conjugate()).real
             d1 = np.where(np.abs(1.0 + factor - size) <= np.abs(1.0 - factor + size), d1, -d1)
             theta = np.where((s >= first) & (s <= last) & (size > 0.0), np.angle(d1), theta)
-    return Rotations(s, np.unwrap(theta))
-
-
-def _aligned(layout: Layout, turns: list[Rotations]) -> list[Rotations]:
-    """Add multiples of 2 pi, so that beams agree with prescribed rotations and, at joints, with each other."""
-    known: dict[int, float] = {
-        k: float(layout.given[item.numbers[2]])
-        for k, item in enumerate(layout.stations)
-        if item.numbers[2] < 0
-    }
-    own = [[part for part in layout.parts if part.beam == number] for number in range(len(turns))]
-    ends = [((parts[0].first, 0.0), (parts[-1].last, parts[-1].rod.length)) for parts in own]
-    left, aligned = list(range(len(turns))), list(turns)
-    while left:
-        number = next((b for b in left if any(k in known for k, _ in ends[b])), left[0])
-        left.remove(number)
-        arc, theta = turns[number].arc, turns[number].theta
-        shifts = (known[k] - float(turns[number].angle(s)) for k, s in ends[number] if k in known)
-        turn = Rotations(arc, theta + 2.0 * math.pi * round(next(shifts, 0.0) / (2.0 * math.pi)))
-        aligned[number] = turn
-        for k, s in ends[number]:
-            known.setdefault(k, float(turn.angle(s)))
-    return aligned
+    theta = np.unwrap(theta)
+    slope = np.append(np.diff(theta) / np.diff(s), 0.0)[[0, max(len(s) - 2, 0)]]
+    ends = theta[[0, -1]] + slope * ([0.0, rod.length] - s[[0, -1]])
+    return np.array([0.0, *s, rod.length]), np.array([ends[0], *theta, ends[1]])
 
 
 def _set_displacements(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Array) -> None:
@@ -182,7 +170,7 @@ def _set_displacements(layout: Layout, answer: AnswerState, turns: list[Rotation
         touch, unknown = station.touch, station.numbers[:2]
         if touch is None:
             if station.arc is None:
-                seen = answer.end((station.joint or station.ends)[0])
+                seen = end_of((station.joint or station.ends)[0], answer.axes.__getitem__)
             else:
                 part = next(item for item in layout.parts if item.first == number)
                 arcs, line = answer.axes[beams[part.beam].name]
@@ -190,31 +178,28 @@ def _set_displacements(layout: Layout, answer: AnswerState, turns: list[Rotation
             moved = (seen - beams[0].start) / layout.length - station.reference
             z[unknown[unknown >= 0]] = moved[unknown >= 0]
         elif touch.angle != NONE:
-            beam, arc = [item.name for item in beams].index(touch.spec.beam), float(z[touch.arc])
-            x, y = beams[beam].direction
-            undeformed = math.atan2(y, x) + layout.rod(beam).angle(arc)
-            z[touch.angle] = undeformed + float(turns[beam].angle(arc)) + math.asin(touch.slope)
+            before, arc = layout.beside(touch)[0], float(z[touch.arc])
+            x, y = before.rod.axes[:, 0]
+            undeformed = math.atan2(y, x) + before.rod.angle(arc)
+            z[touch.angle] = undeformed + np.interp(arc, *turns[before.beam]) + math.asin(touch.slope)
 
 
 def _balance(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Array) -> None:
     """Set the forces of the parts by a least-squares balance with the answer's contact forces, reactions and loads."""
     acting, known = _acting(layout, answer, z)
-    joined = {hinge.end: hinge.joint for hinge in layout.hinges}
-    balance = np.zeros((len(layout.stations), 2, len(layout.parts), 2))
+    joined, count = {hinge.end: hinge.joint for hinge in layout.hinges}, len(layout.parts)
+    balance = np.zeros((len(layout.stations), 2, count, 2))
+    moments, values = np.zeros((count, count, 2)), np.zeros(count)
     for n, part in enumerate(layout.parts):
         for number, sign in ((part.first, -1.0), (part.last, 1.0)):
             balance[joined.get(number, number), :, n] += sign * part.rod.axes
-    stated = [
+        moments[n, n], values[n] = _moments(layout, n, answer, turns, z)
+    stated = np.array([
         [k not in joined and (k in known or item.touch is not None or free >= 0) for free in item.numbers[:2]]
         for k, item in enumerate(layout.stations)
-    ]
-    moments, values = np.zeros((len(layout.parts), len(layout.parts), 2)), np.zeros(len(layout.parts))
-    for n in range(len(layout.parts)):
-        moments[n, n], values[n] = _moments(layout, n, answer, turns, z)
-    rows = np.concatenate([balance[np.array(stated)], _CLOSED_LOOP * moments]).reshape(
-        -1, 2 * len(layout.parts)
-    )
-    right = np.concatenate([acting[np.array(stated)], _CLOSED_LOOP * values])
+    ])  # fmt: skip
+    rows = np.concatenate([balance[stated], _CLOSED_LOOP * moments]).reshape(-1, 2 * count)
+    right = np.concatenate([acting[stated], _CLOSED_LOOP * values])
     z[layout.forces] = np.linalg.lstsq(rows, right, rcond=None)[0]
 
 
@@ -227,14 +212,11 @@ def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[i
     where = {end: k for k, item in enumerate(layout.stations) for end in item.joint}
     for end, (x, y, _) in answer.reactions.items():
         acting[where[end]] += np.array([x, y]) / layout.force
-    for k, item in enumerate(layout.stations):
-        if item.touch is None:
-            continue
-        spec = item.touch.spec
-        force = np.nan_to_num(np.array(answer.forces[spec.pair])) / layout.force
+    for k, touch in layout.touched:
+        force = np.nan_to_num(np.array(answer.forces[touch.spec.pair])) / layout.force
         acting[k] += force
-        if "." in spec.node:
-            acting[where[spec.node]] -= force
+        if "." in touch.spec.node:
+            acting[where[touch.spec.node]] -= force
     return acting, {where[end] for end in answer.reactions}
 
 
@@ -243,13 +225,11 @@ def _moments(
 ) -> tuple[Array, float]:
     """Coefficients and right side of ``(r_b - r_a) x c = m_a - m_b + int r' x W ds`` in the beam's frame."""
     part, (a, b) = layout.parts[n], layout.extents(z)[n]
-    chord = part.rod.axes.T @ (layout.position(z, part.last) - layout.position(z, part.first))
-    turn, step = turns[part.beam], (b - a) / 8.0
-    m_a, m_b = (
-        part.rod.flexibility(x).EI * float(turn.angle(x + step) - turn.angle(x)) / step if step > 0.0 else 0.0
-        for x in (a, b - step)
-    )
-    lever = np.array([-chord[1], chord[0]])
+    x, y = part.rod.axes.T @ (layout.position(z, part.last) - layout.position(z, part.first))
+    lever, step = np.array([-y, x]), (b - a) / 8.0
+    ends = np.array([a, b - step])
+    bent = np.diff([np.interp(ends + more, *turns[part.beam]) for more in (0.0, step)], axis=0)[0]
+    m_a, m_b = part.rod.flexibility(ends).EI * bent / step if step > 0.0 else (0.0, 0.0)
     if not part.rod.loaded:
         return lever, m_a - m_b
     arc, line = answer.axes[layout.scene.beams[part.beam].name]

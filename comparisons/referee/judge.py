@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,67 +36,67 @@ INSIDE = 1e-9
 """Largest accepted penetration over the beam's length, for the round-off of the models' contacts."""
 _POINTS = 201
 """Points of an axis between which the least gaps are sought."""
-_BESIDE = 1e-12
-"""Relative distance of two arc positions on either side of a contact."""
+_ROUNDS = 8
+"""Number of times that an interval of arc positions shrinks to a fifth."""
 
 
-def judged(
-    response: Response,
-    scene: Scene,
-    k: int,
-    allowed: float,
-    history: "History | None",
-    before: Equilibrium | None,
-) -> Judgement:
-    """Judge one load parameter; the equilibrium near it is sought first from the one `before`."""
+class Trial(NamedTuple):
+    """An answer to a scene, the largest difference allowed, and its friction; None without friction."""
+
+    response: Response
+    scene: Scene
+    allowed: float
+    history: "History | None"
+
+
+def judged(trial: Trial, k: int, before: Equilibrium | None) -> Judgement:
+    """Judge load parameter number k; the equilibrium near it is sought first from the one `before`."""
+    response, scene, allowed, history = trial
     t = float(response.load_parameter[k])
+
+    def refused(verdict: Verdict, reason: str) -> Judgement:
+        return Judgement(load_parameter=t, verdict=verdict, reason=reason)
+
     contradiction = next(impossible(response, scene, k), "") or next(_not_finite(response, scene, k), "")
     if contradiction:
-        return Judgement(load_parameter=t, verdict=Verdict.NOT_AN_EQUILIBRIUM, reason=contradiction)
+        return refused(Verdict.NOT_AN_EQUILIBRIUM, contradiction)
     answer = answer_state(response, scene, k)
     if history is not None:
         from comparisons.referee.friction import unlawful
 
         misstated = next(unlawful(history, k, allowed), "")
         if misstated:
-            return Judgement(load_parameter=t, verdict=Verdict.INADMISSIBLE, reason=misstated)
+            return refused(Verdict.INADMISSIBLE, misstated)
         try:
             answer = replace(answer, grips=history.grips(k))
         except UnknownFrictionError as error:
-            verdict = Verdict.INADMISSIBLE if error.wrong else Verdict.NOT_JUDGED
-            return Judgement(load_parameter=t, verdict=verdict, reason=str(error))
+            return refused(Verdict.INADMISSIBLE if error.wrong else Verdict.NOT_JUDGED, str(error))
     if before is not None and not answer.grips and before.contacts.keys() == answer.arcs.keys():
         # it is the nearest one if it is close, though it was not sought from the answer
         found = reach(before, t, {}, halvings=0)
-        item = compared(response, k, found, allowed, history) if found.found else None
+        item = compared(trial, k, found) if found.found else None
         off = item.distance if item else None
         if item and off and max(off.largest[1], off.sizes["place"]) <= min(allowed, CLOSE):
             return item
     exact = equilibrium(scene, answer)
-    if not exact.found:
-        not_judged = exact.status in (SearchStatus.NOT_JUDGED, SearchStatus.NOT_RESOLVED)
-        verdict = Verdict.NOT_JUDGED if not_judged else Verdict.NOT_AN_EQUILIBRIUM
-        return Judgement(load_parameter=t, verdict=verdict, reason=exact.message)
-    return compared(response, k, exact, allowed, history)
+    if exact.found:
+        return compared(trial, k, exact)
+    not_judged = exact.status in (SearchStatus.NOT_JUDGED, SearchStatus.NOT_RESOLVED)
+    return refused(Verdict.NOT_JUDGED if not_judged else Verdict.NOT_AN_EQUILIBRIUM, exact.message)
 
 
-def compared(
-    response: Response,
-    k: int,
-    exact: Equilibrium,
-    allowed: float,
-    history: "History | None",
-    largest: Scales = (0.0, 0.0, 0.0),
-) -> Judgement:
+def compared(trial: Trial, k: int, exact: Equilibrium, largest: Scales = (0.0, 0.0, 0.0)) -> Judgement:
     """Judge an answer beside an equilibrium, by differences relative to the largest force, moment and displacement, here or in `largest`."""
+    response, _, allowed, history = trial
     differences = distance(response, k, exact, largest)
     stated = -1 if response.index is None else int(response.index[k])
     verdict, reason = _verdict(stated, exact, differences, allowed)
     if verdict is Verdict.CERTIFIED and history is not None:
         from comparisons.referee.friction import rubs_wrongly
 
-        violation = next(rubs_wrongly(history, k, exact, allowed), "")
-        verdict, reason = (Verdict.INADMISSIBLE, violation) if violation else (verdict, reason)
+        for violation in rubs_wrongly(history, k, exact, allowed):
+            verdict, reason = Verdict.INADMISSIBLE, violation
+            break
     return Judgement(
         load_parameter=exact.load_parameter, verdict=verdict, reason=reason, distance=differences, exact=exact
     )
@@ -125,8 +125,8 @@ def _verdict(stated: int, exact: Equilibrium, differences: Distance, allowed: fl
 def _not_finite(response: Response, scene: Scene, k: int) -> Iterator[str]:
     """Yield beams whose positions are not finite."""
     for beam in scene.beams:
-        _, line = response.axis_line(beam.name, k)
-        if not np.all(np.isfinite(line)) or not np.all(np.isfinite(response.tips[beam.name][k])):
+        places = [*response.axis_line(beam.name, k)[1], response.tips[beam.name][k]]
+        if not np.all(np.isfinite(places)):
             yield f"the position of {beam.name} is not finite"
 
 
@@ -150,12 +150,12 @@ def _impossible_contact(contact: ContactHistory, scene: Scene, spec: ContactSpec
         yield f"the force of {spec.pair} is not finite"
     elif force < -pull_allowed(scene.beam(spec.beam)):
         yield f"the contact force of {spec.pair} pulls"
-    elif force != 0.0 and idle_at_an_end(contact, scene, spec, k):
+    elif force == 0.0 or idle_at_an_end(contact, scene, spec, k):
         return
-    elif force != 0.0 and not 0.0 <= arc <= scene.beam(spec.beam).length:
+    elif not 0.0 <= arc <= scene.beam(spec.beam).length:
         yield f"the arc position of {spec.pair} is not on its beam"
-    elif force != 0.0 and contact.vector is not None:
-        size = float(np.hypot(*contact.vector[k]))
+    elif contact.vector is not None:
+        size = math.hypot(*contact.vector[k])
         if not abs(size - abs(force)) <= LAST_PLACES * size:
             yield f"the force of {spec.pair} and its components differ"
 
@@ -206,12 +206,18 @@ def least_gap(exact: Equilibrium, spec: ContactSpec) -> tuple[float, float]:
     arcs, contact, half = np.linspace(0.0, beam.length, _POINTS), exact.contacts.get(spec.pair), 0.0
     if contact is not None:
         arcs = np.sort(np.append(arcs, contact.arc_position))
-        half = _kink(exact, spec.beam, contact.arc_position) / 2.0
+        half = angle(*exact.tangents(exact.layout.touch(spec.pair))) / 2.0
     away = np.hypot(*(exact.shape(spec.beam, arcs).position - node).T) - steep * arcs
     least = np.flatnonzero((away[1:-1] <= away[:-2]) & (away[1:-1] <= away[2:])) + 1
     best, place = np.inf, np.nan
     for k in least[away[least] < offset + 2.0 * beam.length / _POINTS]:
-        arc = _foot(exact, spec.beam, node, steep, (float(arcs[k - 1]), float(arcs[k + 1])))
+        low, high = arcs[k - 1], arcs[k + 1]
+        for _ in range(_ROUNDS):
+            own = np.linspace(low, high, 11)
+            away = np.hypot(*(exact.shape(spec.beam, own).position - node).T) - steep * own
+            nearest = int(np.argmin(away))
+            low, high = own[max(nearest - 1, 0)], own[min(nearest + 1, 10)]
+        arc = float(low + high) / 2.0
         there = exact.shape(spec.beam, np.array([arc]))
         out = node - there.position[0]
         gap = math.hypot(*out) - offset - steep * arc
@@ -220,19 +226,3 @@ def least_gap(exact: Equilibrium, spec: ContactSpec) -> tuple[float, float]:
         if (contact is None or side * cross(there.tangent[0], out) > 0.0) and gap < best:
             best, place = gap, arc
     return best, place
-
-
-def _kink(exact: Equilibrium, beam: str, arc: float) -> float:
-    """Angle between the directions of the axis before and behind a contact."""
-    return angle(*exact.shape(beam, arc * np.array([1.0 - _BESIDE, 1.0 + _BESIDE])).tangent)
-
-
-def _foot(exact: Equilibrium, beam: str, node: Array, steep: float, between: tuple[float, float]) -> float:
-    """Arc position of the least gap between two arc positions, to 1e-6 of their distance."""
-    low, high = between
-    for _ in range(8):
-        arcs = np.linspace(low, high, 11)
-        away = np.hypot(*(exact.shape(beam, arcs).position - node).T) - steep * arcs
-        k = int(np.argmin(away))
-        low, high = float(arcs[max(k - 1, 0)]), float(arcs[min(k + 1, 10)])
-    return (low + high) / 2.0

@@ -137,9 +137,14 @@ class Layout:
     """Number of unknowns without the rotations inside the parts."""
 
     @cached_property
+    def touched(self) -> list[tuple[int, Touch]]:
+        """The closed contacts with the numbers of their stations."""
+        return [(k, item.touch) for k, item in enumerate(self.stations) if item.touch is not None]
+
+    @property
     def touches(self) -> tuple[Touch, ...]:
         """The closed contacts."""
-        return tuple(item.touch for item in self.stations if item.touch is not None)
+        return tuple(touch for _, touch in self.touched)
 
     @cached_property
     def arcs(self) -> Ints:
@@ -204,8 +209,9 @@ class Layout:
     def shifts(self, z: Array) -> Array:
         """Ways (stations, 2) of the axis from the references."""
         ways = self.motions(z)[:, :2]
-        for k, touch in self._offset:
-            ways[k] -= touch.away(float(z[touch.arc])) * normal(float(z[touch.angle]))
+        for k, touch in self.touched:
+            if touch.angle != NONE:
+                ways[k] -= touch.away(float(z[touch.arc])) * normal(float(z[touch.angle]))
         return ways
 
     def position(self, z: Array, station: int) -> Array:
@@ -217,18 +223,40 @@ class Layout:
         return self.full(z)[self._ends]
 
     @cached_property
-    def _offset(self) -> list[tuple[int, Touch]]:
-        touched = [(k, item.touch) for k, item in enumerate(self.stations) if item.touch is not None]
-        return [(k, touch) for k, touch in touched if touch.angle != NONE]
-
-    @cached_property
     def _ends(self) -> Ints:
         return np.array([part.arcs for part in self.parts])
+
+    @cached_property
+    def sides(self) -> tuple[Ints, Array]:
+        """Numbers (2 parts, 6) of c, displacement, arc position and phi at both ends of the parts; and sign, chord, kappa0, turn, offset."""
+        numbers, sizes = [], []
+        for part in self.parts:
+            for end, sign in enumerate((-1.0, 1.0)):
+                there, rod = self.stations[(part.first, part.last)[end]], part.rod
+                phi, offset, slope = (NONE, 0.0, 0.0) if (touch := there.touch) is None else (touch.angle, touch.offset, touch.slope)  # fmt: skip
+                numbers.append((part.force, part.force + 1, *there.numbers[:2], part.arcs[end], phi))
+                sizes.append((sign, *rod.axes[:, 0], rod.curvature, rod.turn, offset, slope))
+        return np.array(numbers), np.array(sizes).T
 
 
 def normal(angle: float) -> Array:
     """Left normal of a direction."""
     return np.array([-math.sin(angle), math.cos(angle)])
+
+
+class _Numbers:
+    """Numbers of the unknowns so far, and the prescribed quantities, which are added in front of each other."""
+
+    def __init__(self) -> None:
+        self.unknowns, self.given = 0, [0.0]
+
+    def free(self, count: int) -> list[int]:
+        self.unknowns += count
+        return list(range(self.unknowns - count, self.unknowns))
+
+    def fixed(self, value: float) -> int:
+        self.given.append(value)
+        return -len(self.given)
 
 
 def lay_out(
@@ -238,59 +266,48 @@ def lay_out(
     length, force = units_of(scene)
     unit = np.array([force, force, force * length])
     rods = [rod_of(scene, beam, load_parameter, (length, force)) for beam in scene.beams]
-    given = [0.0]
-    stations, hinges = _joints(scene, load_parameter, rods, length, unit, given)
-    count = 1 + max(NONE, *(int(item.numbers.max()) for item in stations))
+    numbers = _Numbers()
+    stations, hinges = _joints(scene, load_parameter, rods, length, unit, numbers)
     at = {end: station for station in stations for end in station.joint}
     on_beam: dict[str, list[tuple[float, int, int]]] = {beam.name: [] for beam in scene.beams}
     for spec in scene.contacts:
         if spec.pair not in closed:
             continue
         face = face_of(scene, spec)
+        turn, arc, *angle = numbers.free(3 if face.start else 2)
         touch = Touch(
-            spec=spec, arc=count + 1, angle=count + 2 if face.start else NONE, offset=face.left * face.start / length,
+            spec=spec, arc=arc, angle=angle[0] if angle else NONE, offset=face.left * face.start / length,
             slope=face.left * face.slope, roll=-face.left * face.radius / length, grip=grips.get(spec.pair),
         )  # fmt: skip
         node = at.get(spec.node) or Station(
             reference=_place(scene, scene.pin(spec.node).position(load_parameter), length),
             numbers=np.full(3, NONE),
         )
-        on_beam[spec.beam].append((closed[spec.pair], len(stations), touch.arc))
-        stations.append(node.turning(count, touch=touch))
-        count += 2 + (touch.angle != NONE)
+        on_beam[spec.beam].append((closed[spec.pair], len(stations), arc))
+        stations.append(node.turning(turn, touch=touch))
     for beam, rod in zip(scene.beams, rods, strict=True):
         inside = [item for item in scene.load_histories if item.load.beam == beam.name and item.load.at]
-        for arc in map(float, rod.breaks[1:-1]):
+        for s in map(float, rod.breaks[1:-1]):
             loads = _total(
-                item.at(load_parameter) for item in inside if (item.load.at or 0.0) * rod.length == arc
+                item.at(load_parameter) for item in inside if (item.load.at or 0.0) * rod.length == s
             )
-            on_beam[beam.name].append((arc * length, len(stations), _fixed(given, arc)))
+            on_beam[beam.name].append((s * length, len(stations), numbers.fixed(s)))
+            place = _place(scene, beam.place(s / rod.length), length)
             stations.append(
-                Station(
-                    reference=_place(scene, beam.place(arc / rod.length), length),
-                    numbers=np.arange(count, count + 3),
-                    load=loads / unit,
-                    arc=arc,
-                )
+                Station(reference=place, numbers=np.array(numbers.free(3)), load=loads / unit, arc=s)
             )
-            count += 3
     ends = {end: number for number, station in enumerate(stations) for end in station.ends}
     parts: list[Part] = []
     for number, (beam, rod) in enumerate(zip(scene.beams, rods, strict=True)):
-        first, last = ends[f"{beam.name}.start"], ends[f"{beam.name}.end"]
-        chain = [
-            (0.0, first, NONE),
-            *sorted(on_beam[beam.name]),
-            (beam.length, last, _fixed(given, rod.length)),
-        ]
+        begin, end = (0.0, ends[f"{beam.name}.start"], NONE), ends[f"{beam.name}.end"]
+        chain = [begin, *sorted(on_beam[beam.name]), (beam.length, end, numbers.fixed(rod.length))]
         piece = 0
         for (_, first, arc), (_, last, arc_after) in pairwise(chain):
             piece += stations[first].arc is not None
-            parts.append(Part(number, first, last, (arc, arc_after), count, rod, piece))
-            count += 2
+            parts.append(Part(number, first, last, (arc, arc_after), numbers.free(2)[0], rod, piece))
     return Layout(
         scene=scene, load_parameter=load_parameter, length=length, force=force, stations=tuple(stations),
-        parts=tuple(parts), hinges=tuple(hinges), given=np.array(given[::-1]), unknowns=count,
+        parts=tuple(parts), hinges=tuple(hinges), given=np.array(numbers.given[::-1]), unknowns=numbers.unknowns,
     )  # fmt: skip
 
 
@@ -299,19 +316,13 @@ def _place(scene: Scene, point: tuple[float, float], length: float) -> Array:
     return np.asarray((np.array(point) - scene.beams[0].start) / length)
 
 
-def _fixed(given: list[float], value: float) -> int:
-    """Return the number of a prescribed quantity, which is added in front of the others."""
-    given.append(value)
-    return -len(given)
-
-
 def _total(amounts: Iterable[Any]) -> Array:
     """Sum of triples."""
     return np.asarray(np.sum([_NOTHING, *amounts], axis=0))
 
 
 def _joints(
-    scene: Scene, t: float, rods: list[Rod], length: float, unit: Array, given: list[float]
+    scene: Scene, t: float, rods: list[Rod], length: float, unit: Array, numbers: _Numbers
 ) -> tuple[list[Station], list[Hinge]]:
     """Return the stations of joints and ends with the numbers of their free components, those behind hinges last, and the hinges."""
     names: dict[tuple[float, float], list[str]] = {}
@@ -324,7 +335,6 @@ def _joints(
             resultants[f"{beam.name}.end"] = np.append(-rod.axes @ W, 0.0)
     hinged = {hinge.node: hinge.stiffness / unit[2] for hinge in scene.hinges}
     stations: list[Station] = []
-    count = 0
     for point, ends in names.items():
         own = tuple(end for end in ends if end not in hinged)
         motion: tuple[float | None, ...] = (None, None, None)
@@ -333,7 +343,6 @@ def _joints(
                 motion = scene.prescribed_motions[support.node].at(t)
         springs = _total((*item.stiffness, item.rotation) for item in scene.springs if item.node in ends)
         turns = bool(own or springs[2] or any(hinged.get(end) for end in ends))
-        free = [motion[k] is None and (k < 2 or turns) for k in range(3)]
         loads = _total(item.at(t) for item in scene.load_histories if item.load.node in ends)
         along = _total(resultants[end] for end in own if end in resultants)
         stations.append(
@@ -341,8 +350,8 @@ def _joints(
                 reference=_place(scene, point, length),
                 numbers=np.array(
                     [
-                        count + sum(free[:k]) if free[k] else _fixed(given, (motion[k] or 0.0) / size)
-                        for k, size in enumerate((length, length, 1.0))
+                        numbers.free(1)[0] if way is None and free else numbers.fixed((way or 0.0) / size)
+                        for way, size, free in zip(motion, (length, length, 1.0), (1, 1, turns), strict=True)
                     ]
                 ),
                 load=loads / unit + along,
@@ -351,11 +360,10 @@ def _joints(
                 joint=tuple(ends),
             )
         )
-        count += sum(free)
     hinges: list[Hinge] = []
     for node, stiffness in hinged.items():
         joint = next(k for k, item in enumerate(stations) if node in item.joint)
         hinges.append(Hinge(len(stations), joint, stiffness))
-        stations.append(stations[joint].turning(count, ends=(node,), load=resultants.get(node, _NOTHING)))
-        count += 1
+        (turn,) = numbers.free(1)
+        stations.append(stations[joint].turning(turn, ends=(node,), load=resultants.get(node, _NOTHING)))
     return stations, hinges

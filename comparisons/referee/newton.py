@@ -9,7 +9,8 @@ from comparisons.referee.elements import AMPLITUDE, DEGREE, GAUSS, VALUES, Mesh,
 from comparisons.referee.equations import solved
 from comparisons.referee.guess import SHORTEST, AnswerState, first_guess
 from comparisons.referee.layout import Layout, lay_out
-from comparisons.referee.state import Change, Equilibrium, SearchStatus, rotation_at, tails
+from comparisons.referee.rod import largest
+from comparisons.referee.state import Change, Equilibrium, SearchStatus, located, tails
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
@@ -35,8 +36,6 @@ _FIT = np.asarray(np.linalg.pinv(VALUES[:, 2:]), dtype=np.float64)
 _FIT_LOW = np.zeros_like(_FIT)
 _FIT_LOW[:4] = np.linalg.pinv(VALUES[:, 2:6])
 """From values at the Gauss points to all bubbles, and to the lowest ones, since an answer's rotations are inaccurate."""
-_INSIDE = 1.0 - 1e-9
-"""Fraction of a part up to which points lie before its end."""
 _PLACES = np.append((GAUSS + 1.0) / 2.0, [0.0, 1.0])
 
 
@@ -61,14 +60,11 @@ def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
     z, turns = first_guess(layout, answer)
     reason = _reason_not_to_judge(layout, z)
     if reason:
-        mesh, status = mesh_of(layout, [np.array([0.0, 1.0])] * len(layout.parts)), SearchStatus.NOT_JUDGED
-        return Equilibrium(
-            layout=layout, mesh=mesh, z=z, bubbles=np.zeros((0, DEGREE - 1)), status=status, message=reason
-        )
+        return replace(undeformed(layout, 1), z=z, status=SearchStatus.NOT_JUDGED, message=reason)
     mesh = mesh_of(layout, _first_grids(layout, z))
     places = _places(mesh)
     seen = [
-        turns[part.beam].angle(a + (b - a) * places[mesh.part == k])
+        np.interp(a + (b - a) * places[mesh.part == k], *turns[part.beam])
         for k, (part, (a, b)) in enumerate(zip(layout.parts, layout.extents(z), strict=True))
     ]
     start = _fitted(layout, mesh, z, np.concatenate(seen), _FIT_LOW)
@@ -83,10 +79,17 @@ def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
     return best
 
 
+def undeformed(layout: Layout, elements: int) -> Equilibrium:
+    """Return the guess that nothing moves, with a number of elements of every part."""
+    mesh = mesh_of(layout, [np.linspace(0.0, 1.0, elements + 1)] * len(layout.parts))
+    bubbles = np.zeros((len(mesh.part), DEGREE - 1))
+    return Equilibrium(layout=layout, mesh=mesh, z=np.zeros(mesh.unknowns), bubbles=bubbles)
+
+
 def _is_near(z: Array, found: Equilibrium) -> bool:
     """Whether an equilibrium was found with nearly the forces and arc positions of the answer."""
     arcs, forces = found.layout.arcs, found.layout.forces
-    size = float(np.abs(z[forces]).max(initial=0.0))
+    size = largest(z[forces])
     apart = np.abs(found.z[: len(z)] - z)
     close = apart[forces].max(initial=0.0) <= _NEAR * size and apart[arcs].max(initial=0.0) <= _NEAR
     return found.found and bool(close)
@@ -101,11 +104,14 @@ def correct(guess: Equilibrium, iterations: int) -> Equilibrium:
         coarse = tails(found.bubbles) > _RESOLVED
         if not found.found or not coarse.any():
             return replace(found, iterations=spent)
-        grids = _refined(found.mesh, coarse)
+        grids = [
+            np.sort(np.append(grid, ((grid[:-1] + grid[1:]) / 2.0)[coarse[found.mesh.part == k]]))
+            for k, grid in enumerate(found.mesh.grids)
+        ]
         if max(map(len, grids)) > _MOST_ELEMENTS:
             break
         finer = mesh_of(layout, grids)
-        seen = rotation_at(found, finer.part[:, None], _places(finer))
+        seen = located(found, finer.part[:, None], _places(finer))[2]
         guess = _fitted(layout, finer, found.z[: layout.unknowns], seen, _FIT)
     status = SearchStatus.NOT_RESOLVED
     return replace(found, status=status, message=status.value, iterations=spent)
@@ -119,20 +125,20 @@ def _rotations_corrected(guess: Equilibrium, held: Ints) -> Equilibrium:
         if change is None:
             break
         turns = change[0][guess.layout.unknowns :]
-        turn = max(float(np.abs(turns).max(initial=0.0)), float(np.abs(change[1]).max()))
+        turn = max(largest(turns), largest(change[1]))
         guess = guess.plus(change, min(1.0, _LARGEST_ROTATION / max(turn, 1e-300)))
     return guess
 
 
 def _reason_not_to_judge(layout: Layout, z: Array) -> str:
     """Return the reason why the first guess cannot be corrected; empty if it can."""
+    stiffness = [beam.EI / beam.length**2 for beam in layout.scene.beams]
     if not np.all(np.isfinite(z)):
         return "the answer is not finite"
-    stiffness = [beam.EI / beam.length**2 for beam in layout.scene.beams]
     if max(stiffness) > _STIFFNESS_RATIO * min(stiffness):
         return f"the stiffest beam is {max(stiffness) / min(stiffness):.1g} times as stiff as the most flexible one"
-    for part, (begin, end) in zip(layout.parts, layout.extents(z), strict=True):
-        if end - begin <= SHORTEST:
+    for part, extent in zip(layout.parts, np.diff(layout.extents(z)), strict=True):
+        if extent <= SHORTEST:
             beam = layout.scene.beams[part.beam].name
             return (
                 f'two contacts on beam "{beam}", or a contact and an end, are at one place or beyond the end'
@@ -142,14 +148,11 @@ def _reason_not_to_judge(layout: Layout, z: Array) -> str:
 
 def _first_grids(layout: Layout, z: Array) -> list[Array]:
     """About one element for 1.5 of the length sqrt(EI/n) over which the deflection varies, at most 50."""
-    grids = []
-    for part, extent in zip(layout.parts, np.diff(layout.extents(z))[:, 0], strict=True):
-        n = float(np.hypot(*part.constant(z)))
-        EI, stretch, shear = part.rod.greatest
-        rate = np.sqrt(n * (1.0 + n * abs(stretch - shear)) / EI)
-        count = int(np.clip(np.ceil(extent * rate / 1.5), 1, 50))
-        grids.append(np.linspace(0.0, 1.0, count + 1))
-    return grids
+    EI, stretch, shear = np.array([part.rod.greatest for part in layout.parts]).T
+    n = np.hypot(*z[layout.forces].reshape(-1, 2).T)
+    rate = np.sqrt(n * (1.0 + n * np.abs(stretch - shear)) / EI)
+    counts = np.clip(np.ceil(np.diff(layout.extents(z))[:, 0] * rate / 1.5), 1, 50)
+    return [np.linspace(0.0, 1.0, int(count) + 1) for count in counts]
 
 
 def _places(mesh: Mesh) -> Array:
@@ -183,9 +186,9 @@ def _newton(now: Equilibrium, iterations: int) -> Equilibrium:
             message = "the equations are singular"
             break
         change, inside = step
-        turn = max(float(np.abs(change[turning]).max(initial=0.0)), float((np.abs(inside) * AMPLITUDE).max()))
-        moved = float(np.abs(change[layout.moving]).max(initial=0.0))
-        scale, forced = (float(np.abs(x[layout.forces]).max()) for x in (now.z, change))
+        turn = max(largest(change[turning]), float((np.abs(inside) * AMPLITUDE).max()))
+        moved = largest(change[layout.moving])
+        scale, forced = (largest(x[layout.forces]) for x in (now.z, change))
         size = max(turn, moved, forced / (scale + 1e-6 + least))
         error = max(turn, moved, forced / (scale + 1e-6))
         part = min(1.0, _LARGEST_ROTATION / max(turn, 1e-300), _damping(layout, now.z, change))
@@ -214,13 +217,3 @@ def _damping(layout: Layout, z: Array, change: Array) -> float:
     before = np.diff(layout.extents(z))
     less = before - np.diff(layout.extents(z + change))
     return float(np.min(2.0 / 3.0 * before / np.maximum(less, 2.0 / 3.0 * before)))
-
-
-def _refined(mesh: Mesh, coarse: NDArray[np.bool_]) -> list[Array]:
-    """Grids of the parts with the coarse elements halved."""
-    grids = []
-    for number in range(int(mesh.part.max()) + 1):
-        inside = mesh.part == number
-        start, share, split = mesh.start[inside], mesh.share[inside], coarse[inside]
-        grids.append(np.sort(np.concatenate([start, (start + share / 2.0)[split], [1.0]])))
-    return grids

@@ -1,7 +1,7 @@
 """Checks between the load parameters of an answer: no node passes through a beam, contacts change at events only, and these are true."""
 
+import math
 from collections.abc import Iterator, Mapping
-from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.distance import gap_off, largest_force
-from comparisons.referee.guess import answer_state
+from comparisons.referee.guess import answer_state, end_of
 from comparisons.referee.newton import equilibrium
 from comparisons.referee.path import PASSES, at_rest, changes_of, events_between, on_the_way, reach
-from comparisons.referee.rod import Face, axis_at_rest, cross, face_of
+from comparisons.referee.rod import axis_at_rest, cross, face_of
 from comparisons.referee.state import Equilibrium
 from comparisons.response import ContactEvent, Response
 from comparisons.scene import ContactSpec, Scene
@@ -75,12 +75,7 @@ class _Pair:
 
     def __init__(self, response: Response, scene: Scene, spec: ContactSpec) -> None:
         self.response, self.scene, self.spec = response, scene, spec
-        self.near = 1e-6 * scene.beam(spec.beam).length
-
-    @cached_property
-    def face(self) -> Face:
-        """Where the node touches."""
-        return face_of(self.scene, self.spec)
+        self.near, self.face = 1e-6 * scene.beam(spec.beam).length, face_of(scene, spec)
 
     def passed_through(self) -> float | None:
         """Load parameter by which the open node has passed through; None if it has not, and after a slip-off."""
@@ -108,21 +103,17 @@ class _Pair:
 
     def followed(self, k: int) -> list[_Moment]:
         """States on the path to load parameter k from the one before; none if it rubs, jumps, or leads elsewhere."""
-        begin, end = self.moment(k - 1), self.moment(k)
-        now = (
-            at_rest(self.scene)
-            if k == 0
-            else equilibrium(self.scene, answer_state(self.response, self.scene, k - 1))
-        )
+        begin, end, scene, beam = self.moment(k - 1), self.moment(k), self.scene, self.spec.beam
+        now = equilibrium(scene, answer_state(self.response, scene, k - 1)) if k else at_rest(scene)
         if not now.found:
             return []
-        way, beam = [begin], self.spec.beam
+        way, arcs = [begin], self.response.axis_line(beam, k)[0]
         stops = np.linspace(begin.t, end.t, _STEPS + 1)[1:].tolist()
         for exact in on_the_way(now, events_between(self.response, begin.t, end.t), stops):
-            line = exact.shape(beam, self.response.axis_line(beam, k)[0]).position
+            line = exact.shape(beam, arcs).position
             way.append(_Moment(exact.load_parameter, line, exact.place(self.spec.node)))
         apart = np.hypot(*(way[-1].line - end.line).T).max()
-        return way if len(way) > 1 and apart <= _SAME * self.scene.beam(beam).length else []
+        return way if len(way) > 1 and apart <= _SAME * scene.beam(beam).length else []
 
     def goes_through(self, begin: _Moment, end: _Moment, where: str) -> bool:
         """Whether the node, first at the side `where`, passes between two moments and does not return from a contact in between."""
@@ -150,19 +141,21 @@ class _Pair:
 
     def moment(self, k: int) -> _Moment:
         """The beam and the node at load parameter k; undeformed for k = -1."""
-        t, node = float(self.response.load_parameter[k]) if k >= 0 else 0.0, self.spec.node
-        line = self.line(self.spec.beam, k)
-        if "." not in node:
-            return _Moment(t, line, np.array(self.scene.pin(node).position(t)))
-        beam, end = node.split(".")
-        if k >= 0 and end == self.scene.tip(beam):
-            return _Moment(t, line, np.asarray(self.response.tips[beam][k]))
-        return _Moment(t, line, self.line(beam, k)[0 if end == "start" else -1])
 
-    def line(self, beam: str, k: int) -> Array:
-        """Axis of a beam at load parameter k; undeformed for k = -1."""
-        arc, line = self.response.axis_line(beam, max(k, 0))
-        return line if k >= 0 else axis_at_rest(self.scene.beam(beam), arc)
+        def axis(beam: str) -> tuple[Array, Array]:
+            arc, line = self.response.axis_line(beam, max(k, 0))
+            return arc, line if k >= 0 else axis_at_rest(self.scene.beam(beam), arc)
+
+        t, (beam, _, end) = (
+            float(self.response.load_parameter[k]) if k >= 0 else 0.0,
+            self.spec.node.partition("."),
+        )
+        if not end:
+            node = np.array(self.scene.pin(beam).position(t))
+        else:
+            tip = k >= 0 and end == self.scene.tip(beam)
+            node = self.response.tips[beam][k] if tip else end_of(self.spec.node, axis)
+        return _Moment(t, axis(self.spec.beam)[1], np.asarray(node))
 
     def cuts(self, now: _Moment, start: Array) -> bool:
         """Whether the way of the node from `start` crosses the curve of touching nodes from the pair's side."""
@@ -251,16 +244,13 @@ def _disorder(response: Response, spec: ContactSpec) -> Iterator[str]:
 
 def _wrong(spec: ContactSpec, event: ContactEvent, there: Equilibrium, allowed: float) -> str:
     """Return what an event states otherwise than the equilibrium there; empty if it states the same."""
-    length = there.scene.beam(spec.beam).length
-    contact = there.contacts.get(spec.pair)
-    if contact is None and event.kind not in CLOSES:
-        return ""
+    length, contact = there.scene.beam(spec.beam).length, there.contacts.get(spec.pair)
     if contact is None:
-        off = gap_off(there, spec, 0.0) / length
+        off = gap_off(there, spec, 0.0) / length if event.kind in CLOSES else 0.0
         return "" if off <= allowed else f"the node is {off:.2g} L away"
     off = abs(contact.arc_position - event.arc_position) / length
     if not off <= allowed:
         return f"arc position off by {off:.2g}"
-    force = 0.0 if event.kind in CLOSES else float(np.hypot(*contact.force))
+    force = 0.0 if event.kind in CLOSES else math.hypot(*contact.force)
     off = abs(force - event.force) / largest_force(there)
     return "" if off <= allowed else f"contact force off by {off:.2g}"

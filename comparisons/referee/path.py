@@ -7,13 +7,14 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.elements import DEGREE, mesh_for, mesh_of
+from comparisons.referee.elements import mesh_of
 from comparisons.referee.equations import orientation_of
 from comparisons.referee.grip import Grip
 from comparisons.referee.guess import AnswerState
 from comparisons.referee.layout import lay_out
-from comparisons.referee.newton import correct, equilibrium, newton_step
-from comparisons.referee.state import Change, Equilibrium, rotation_at
+from comparisons.referee.newton import correct, equilibrium, newton_step, undeformed
+from comparisons.referee.rod import largest
+from comparisons.referee.state import Change, Equilibrium, located
 from comparisons.response import ContactEvent, Response
 from comparisons.scene import Scene
 
@@ -66,14 +67,14 @@ def corners(scene: Scene) -> tuple[float, ...]:
 def moved(now: Equilibrium, t: float, grips: Mapping[str, Grip]) -> Equilibrium:
     """Return the guess at load parameter t with the contacts of an equilibrium and its unknowns."""
     layout = lay_out(now.layout.scene, t, now.closed, grips)
-    return Equilibrium(layout=layout, mesh=mesh_for(layout, now.mesh), z=now.z, bubbles=now.bubbles)
+    return Equilibrium(layout=layout, mesh=mesh_of(layout, now.mesh.grids), z=now.z, bubbles=now.bubbles)
 
 
 def reach(near: Equilibrium, t: float, grips: Mapping[str, Grip], halvings: int = _HALVINGS) -> Equilibrium:
     """Return the equilibrium at load parameter t with the same contacts, held by `grips`, by steps from `near`."""
     there = correct(moved(near, t, grips), _ITERATIONS)
     turning = [k for k in (item.numbers[2] for item in there.layout.stations) if k >= 0]
-    turned = float(np.abs(there.z[turning] - near.z[turning]).max(initial=0.0))
+    turned = largest(there.z[turning] - near.z[turning])
     if (there.found and turned < _TURN) or not halvings or near.load_parameter == t:
         return there
     middle = reach(near, (near.load_parameter + t) / 2.0, grips, halvings - 1)
@@ -163,10 +164,7 @@ def _alike(one: Equilibrium, other: Equilibrium) -> bool:
 
 def at_rest(scene: Scene) -> Equilibrium:
     """Return the undeformed state of a scene with all contacts open."""
-    layout = lay_out(scene, 0.0, {})
-    mesh = mesh_of(layout, [np.linspace(0.0, 1.0, 4) for _ in layout.parts])
-    bubbles = np.zeros((len(mesh.part), DEGREE - 1))
-    return correct(Equilibrium(layout=layout, mesh=mesh, z=np.zeros(mesh.unknowns), bubbles=bubbles), 6)
+    return correct(undeformed(lay_out(scene, 0.0, {}), 3), 6)
 
 
 def departs(first: Equilibrium, last: Equilibrium) -> str:
@@ -238,13 +236,13 @@ def _kind(now: Equilibrium) -> int:
 
 def _off(now: Equilibrium, rate: Change, there: Equilibrium) -> float:
     """Error of a prediction along a tangent over the change from one state to another; infinite for a large error."""
-    guess = replace(now, layout=there.layout, mesh=mesh_for(there.layout, now.mesh))
+    guess = replace(now, layout=there.layout, mesh=mesh_of(there.layout, now.mesh.grids))
     off = _apart(guess.plus(rate, there.load_parameter - now.load_parameter), there)
     return off / (_apart(now, there) + _ROUND_OFF) if off < _SHORT else np.inf
 
 
 def _apart(one: Equilibrium, other: Equilibrium) -> float:
-    return float(np.abs(_state(one) - _state(other)).max())
+    return largest(_state(one) - _state(other))
 
 
 @lru_cache(maxsize=3)
@@ -252,4 +250,4 @@ def _state(now: Equilibrium) -> Array:
     """Displacements, arc positions and directions of the stations, and the rotations along all parts."""
     layout = now.layout
     rest = np.delete(now.z[: layout.unknowns], layout.forces)
-    return np.append(rest, rotation_at(now, np.arange(len(layout.parts))[:, None], _PLACES))
+    return np.append(rest, located(now, np.arange(len(layout.parts))[:, None], _PLACES)[2])

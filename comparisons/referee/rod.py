@@ -219,3 +219,8 @@ def cross(a: Array, b: Array) -> Any:
 def angle(a: Array, b: Array) -> float:
     """Angle between two vectors."""
     return abs(math.atan2(cross(a, b), a @ b))
+
+
+def largest(values: Any) -> float:
+    """Return the largest absolute value of an array, zero without values."""
+    return float(np.abs(values).max(initial=0.0))

@@ -14,6 +14,7 @@ from comparisons.referee.elements import (
     WEIGHTS,
     Mesh,
     fields,
+    pairs,
     places,
     rotations,
     shapes,
@@ -21,6 +22,7 @@ from comparisons.referee.elements import (
 )
 from comparisons.referee.equations import System, assemble, index_of
 from comparisons.referee.layout import NONE, Layout, Touch
+from comparisons.referee.rod import cross
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
@@ -139,7 +141,19 @@ class Equilibrium:
     @cached_property
     def contacts(self) -> dict[str, Contact]:
         """Closed contacts, by pair."""
-        return {touch.spec.pair: _contact(self, touch) for touch in self.layout.touches}
+        found, layout = dict[str, Contact](), self.layout
+        for touch in layout.touches:
+            before, behind = layout.beside(touch)
+            force = layout.force * before.rod.axes @ (before.constant(self.z) - behind.constant(self.z))
+            mean = np.sum(self.tangents(touch), axis=0)
+            size = np.hypot(*mean)
+            found[touch.spec.pair] = Contact(
+                force=force,
+                push=float(touch.right * cross(mean, force) / size),
+                drag=float(mean @ force / size),
+                arc_position=self.closed[touch.spec.pair],
+            )
+        return found
 
     @cached_property
     def reactions(self) -> dict[str, Array]:
@@ -179,7 +193,43 @@ class Equilibrium:
 
     def shape(self, beam: str, arc: Array) -> Shape:
         """Return the shape of a beam at arc lengths (m,)."""
-        return _shape(self, beam, np.asarray(arc, dtype=np.float64))
+        layout, z, mesh, s = self.layout, self.z, self.mesh, np.asarray(arc) / self.layout.length
+        parts = [k for k, part in enumerate(layout.parts) if layout.scene.beams[part.beam].name == beam]
+        rod, extents = layout.parts[parts[0]].rod, layout.extents(z)
+        part = np.array(parts)[np.searchsorted(extents[parts[1:], 0], s, side="right")]
+        first, last = extents[part].T
+        e, xi, theta, bent = located(self, part, (s - first) / (last - first))
+        # integrals of the strained tangent over the elements before
+        mine = slice(*np.searchsorted(mesh.part, [parts[0], parts[-1] + 1]).tolist())
+        of, e = mesh.part[mine], e - mine.start
+        extent = np.diff(extents)[of, 0]
+        half = mesh.share[mine] * extent / 2.0
+        points = (extents[of, 0] + extent * mesh.start[mine] + half)[:, None] + half[:, None] * GAUSS
+        within = places(layout, of, points, z[mesh.local[mine, 2:4]])
+        rotation = rotations(layout, mesh, z, self.bubbles)[mine]
+        inner = within.frame * fields(rotation @ VALUES.T, within)[2]
+        before = np.append(0.0, np.cumsum(half * (inner @ WEIGHTS)))
+        along = before[e] - before[np.searchsorted(of, part)] + half[e] * (up_to(xi) * inner[e]).sum(axis=1)
+        there = places(layout, part, s[:, None], z[mesh.local[mine, 2:4]][e])
+        N, Q, tangent = fields(theta[:, None], there)
+        begins = np.array([layout.position(z, layout.parts[k].first) for k in parts])[part - parts[0]]
+        position = begins + (pairs(along) + rod.between(first, s)) @ rod.axes.T
+        direction = pairs(there.frame * tangent)[:, 0] + rod.direction(s)
+        return Shape(
+            position=np.array(layout.scene.beams[0].start) + layout.length * position,
+            tangent=direction @ rod.axes.T,
+            rotation=theta,
+            moment=layout.force * layout.length * there.EI[:, 0] * bent / half[e],
+            N=layout.force * N[:, 0],
+            Q=layout.force * Q[:, 0],
+        )
+
+    def tangents(self, touch: Touch) -> tuple[Array, Array]:
+        """Return ``r'_-`` and ``r'_+`` at a contact."""
+        parts, z = self.layout.beside(touch), self.z
+        s, theta = float(z[touch.arc]), float(self.layout.motions(z)[parts[0].last, 2])
+        before, behind = (part.rod.tangent(part.piece, part.constant(z), s, theta) for part in parts)
+        return np.asarray(before), np.asarray(behind)
 
     def place(self, node: str) -> Array:
         """Return the position of a beam's end such as ``upper.end``, or of a pin."""
@@ -187,85 +237,17 @@ class Equilibrium:
             return self.ends[node]
         return np.array(self.scene.pin(node).position(self.load_parameter))
 
-    def joint_rotation(self, end: str) -> float:
-        """Return the rotation of the joint to which a beam's end belongs, which differs from the end's behind a hinge."""
-        return float(self.layout.motions(self.z)[self.layout.joint(end), 2])
 
-
-def rotation_at(exact: Equilibrium, part: Ints, x: Array) -> Array:
-    """Return the rotations at fractions x (...) of the parts `part` (...)."""
-    mesh, inside = exact.mesh, np.minimum(x, _INSIDE)
-    e = np.searchsorted(mesh.part + mesh.start, part + inside, side="right") - 1
-    values = shapes(2.0 * (x - mesh.start[e]) / mesh.share[e] - 1.0)[0]
-    return np.asarray((values * rotations(exact.layout, mesh, exact.z, exact.bubbles)[e]).sum(axis=-1))
+def located(exact: Equilibrium, part: Ints, x: Array) -> tuple[Ints, Array, Array, Array]:
+    """Return elements, xi, rotations and their derivatives by xi at fractions x (...) of the parts `part` (...)."""
+    mesh = exact.mesh
+    e = np.searchsorted(mesh.part + mesh.start, part + np.clip(x, 0.0, _INSIDE), side="right") - 1
+    xi = 2.0 * (x - mesh.start[e]) / mesh.share[e] - 1.0
+    rotation = rotations(exact.layout, mesh, exact.z, exact.bubbles)[e]
+    theta, bent = ((item * rotation).sum(axis=-1) for item in shapes(xi))
+    return e, xi, theta, bent
 
 
 def tails(bubbles: Array) -> Array:
     """Largest amplitude of the last two bubbles of every element."""
     return np.asarray((np.abs(bubbles) * AMPLITUDE)[:, -2:].max(axis=1))
-
-
-def _tangents(exact: Equilibrium, touch: Touch) -> tuple[Array, Array]:
-    """Return ``r'_-`` and ``r'_+`` at a contact."""
-    parts, z = exact.layout.beside(touch), exact.z
-    s, theta = float(z[touch.arc]), float(exact.layout.motions(z)[parts[0].last, 2])
-    before, behind = (np.asarray(part.rod.tangent(part.piece, part.constant(z), s, theta)) for part in parts)
-    return before, behind
-
-
-def _contact(exact: Equilibrium, touch: Touch) -> Contact:
-    """Return a contact in the units of the scene."""
-    layout, z = exact.layout, exact.z
-    before, behind = layout.beside(touch)
-    force = layout.force * before.rod.axes @ (before.constant(z) - behind.constant(z))
-    x, y = np.sum(_tangents(exact, touch), axis=0)
-    size = np.hypot(x, y)
-    return Contact(
-        force=force,
-        push=float(touch.right * (x * force[1] - y * force[0]) / size),
-        drag=float((x * force[0] + y * force[1]) / size),
-        arc_position=exact.closed[touch.spec.pair],
-    )
-
-
-def _shape(exact: Equilibrium, beam: str, arc: Array) -> Shape:
-    """Evaluate the shape of a beam at arc lengths (m,)."""
-    layout, z, mesh = exact.layout, exact.z, exact.mesh
-    coefficients, s = rotations(layout, mesh, z, exact.bubbles), arc / layout.length
-    number = [item.name for item in layout.scene.beams].index(beam)
-    numbers = np.array([k for k, part in enumerate(layout.parts) if part.beam == number])
-    begins = layout.extents(z)[numbers, 0]
-    own = numbers[np.searchsorted(begins[1:], s, side="right")]
-    table = np.empty((len(s), 8))
-    for k in np.unique(own):
-        part, inside, here = layout.parts[k], own == k, mesh.part == k
-        first, extent = layout.extents(z)[k, 0], np.diff(layout.extents(z)[k])[0]
-        start, half, rotation = mesh.start[here], mesh.share[here] * extent / 2.0, coefficients[here]
-        points = first + extent * start[:, None] + half[:, None] * (1.0 + GAUSS)
-        within = places(layout, mesh.part[here], points, z[mesh.local[here, 2:4]])
-        inner = within.in_chord(fields(rotation @ VALUES.T, within)[2])
-        starts = np.zeros((len(start) + 1, 2))
-        np.cumsum(half[:, None] * (WEIGHTS @ inner), axis=0, out=starts[1:])
-        share = (s[inside] - first) / extent
-        e = np.clip(np.searchsorted(start, share, side="right") - 1, 0, len(start) - 1)
-        xi = 2.0 * (share - start[e]) / mesh.share[here][e] - 1.0
-        values, slopes = shapes(xi)
-        theta, bent = (np.einsum("mi,mi->m", item, rotation[e]) for item in (values, slopes))
-        there = places(layout, np.array([k]), s[None, inside], part.constant(z)[None])
-        N, Q, tangent = (item[0] for item in fields(theta[None], there))
-        along = starts[e] + half[e][:, None] * np.einsum("mq,mqk->mk", up_to(xi), inner[e])
-        along = (
-            layout.position(z, part.first) + (along + part.rod.between(first, s[inside])) @ part.rod.axes.T
-        )
-        tangent = there.in_chord(tangent[None])[0] + part.rod.direction(s[inside])
-        moment = there.EI[0] * bent / half[e]
-        table[inside] = np.column_stack([along, tangent @ part.rod.axes.T, theta, moment, N, Q])
-    unit = layout.force * layout.length
-    return Shape(
-        position=np.array(layout.scene.beams[0].start) + layout.length * table[:, :2],
-        tangent=table[:, 2:4],
-        rotation=table[:, 4],
-        moment=unit * table[:, 5],
-        N=layout.force * table[:, 6],
-        Q=layout.force * table[:, 7],
-    )

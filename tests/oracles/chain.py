@@ -8,13 +8,11 @@ Scene files are read by the second reader: nothing of the three packages is used
 
 import math
 import tomllib
-import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 
 from tests.second_reader import Numbers, read
 
@@ -78,21 +76,19 @@ class Chain:
                 for key, value in item.items():
                     if key not in GIVEN.get(kind, ()) and key not in MESH and PLAIN.get(key, MESH) != value:
                         raise NotStatedError(f"{kind}.{key} = {value}")
-        beams = data["beam"]
+        beams, self.places, self.lines = data["beam"], list[list[float]](), list[Array]()
         corners: dict[tuple[float, float], int] = {}
         self.names = [beam["name"] for beam in beams]
-        self.places: list[list[float]] = []
-        self.lines: list[Array] = []
         for beam in beams:
             line = []
-            for k in range(count + 1):
-                point = np.array(beam["start"]) + k / count * np.subtract(beam["end"], beam["start"])
-                key = tuple(beam["start"] if k == 0 else beam["end"])
-                if 0 < k < count or key not in corners:
-                    self.places.append(list(point))
-                    if k in (0, count):
-                        corners[key] = len(self.places) - 1
-                line.append(len(self.places) - 1 if 0 < k < count else corners[key])
+            for k, x in enumerate(np.linspace(0.0, 1.0, count + 1)):
+                known = corners.get(tuple(beam["start" if k == 0 else "end"])) if k in (0, count) else None
+                if known is None:
+                    self.places.append(
+                        list(np.array(beam["start"]) + x * np.subtract(beam["end"], beam["start"]))
+                    )
+                line.append(len(self.places) - 1 if known is None else known)
+            corners |= {tuple(beam["start"]): line[0], tuple(beam["end"]): line[-1]}
             self.lines.append(np.array(line))
         self.left = np.concatenate([line[:-1] for line in self.lines])
         self.right = np.concatenate([line[1:] for line in self.lines])
@@ -115,18 +111,16 @@ class Chain:
 
     def _conditions(self, numbers: Numbers) -> None:
         """Collect what is held, what it is moved by, and the loads, at the end of the path."""
-        size = 3 * len(self.places)
-        self.moved, self.load = np.full(size, np.nan), np.zeros(size)
+        self.moved, self.load = np.full(3 * len(self.places), np.nan), np.zeros(3 * len(self.places))
         for name, values in numbers.items():
             place, _, what = name.rpartition(" ")
-            if what == "motion":
-                node = 3 * self._node(place)
-                self.moved[node : node + 3] = np.where(
-                    np.isnan(values[-3:]), self.moved[node : node + 3], values[-3:]
-                )
-            elif what == "load":
-                node = 3 * self._node(place.replace(" ", "."))
-                self.load[node : node + 3] += values[-3:]
+            if what in ("motion", "load"):
+                node, ends = 3 * self._node(place.replace(" ", ".")), np.array(values[-3:])
+                own = self.moved[node : node + 3]
+                if what == "motion":
+                    own[:] = np.where(np.isnan(ends), own, ends)
+                else:
+                    self.load[node : node + 3] += ends
         self.held = np.flatnonzero(~np.isnan(self.moved))
 
     def _contact(self, item: dict[str, Any], numbers: Numbers) -> Contact:
@@ -248,11 +242,11 @@ class Chain:
             if not np.all(np.isfinite(K)):
                 return None
             unit = np.sqrt(np.maximum(np.abs(K).max(axis=1), 1e-300))
-            with warnings.catch_warnings(action="ignore", category=LinAlgWarning):
-                factors = lu_factor(K / np.outer(unit, unit), check_finite=False)
-            if not np.diag(factors[0]).all():
+            scaled = K / np.outer(unit, unit)
+            sign = float(np.linalg.slogdet(scaled)[0])
+            if not sign:
                 return None
-            dx = -lu_solve(factors, r / unit, check_finite=False) / unit
+            dx = -np.linalg.solve(scaled, r / unit) / unit
             x += dx[:n]
             for i, contact in enumerate(closed):
                 contact.arc += dx[n + 3 * i]
@@ -263,8 +257,7 @@ class Chain:
             if np.abs(dx[:n]).max() < 1e-11 * max(self.lengths):
                 if any(self.through(contact, x, t) for contact in closed):
                     return None
-                sign = np.prod(np.sign(np.diag(factors[0]))) * (-1) ** np.sum(factors[1] != np.arange(len(factors[1])))  # fmt: skip
-                return x, float(sign * (-1) ** sum(c.radius > 0.0 for c in closed))
+                return x, sign * (-1) ** sum(c.radius > 0.0 for c in closed)
         return None
 
     def through(self, contact: Contact, x: Array, t: float) -> bool:
@@ -315,13 +308,18 @@ class Chain:
         stops = [(k + 1) / number for k in range(number)]
         x, t, closed = np.array([[*p, 0.0] for p in self.places]).ravel(), 0.0, list[Contact]()
         found = Path([], [], 0.0, "")
+
+        def ended(t: float, reason: str) -> Path:
+            found.end, found.reason = t, reason
+            return found
+
         before, step = self.margins(x, t, closed), longest
         at = [(*self.gap(contact, x, t), self.lengths[contact.beam]) for contact in self.contacts]
         if (
             any(gap < BEHIND * L and min(arc, L - arc) < NEAR_END * L for gap, arc, L in at)
             or math.inf in before.values()
         ):
-            return self._ended(found, 0.0, "starts beside an end")
+            return ended(0.0, "starts beside an end")
         while len(found.states) < number:
             goal = min(t + step, stops[len(found.states)])
             kept = [(c.arc, c.force) for c in closed]
@@ -339,36 +337,31 @@ class Chain:
                     part = before[key] / (before[key] - now[key]) if before[key] > 0.0 else 0.0
                     step = (goal - t) * min(max(part if len(crossed) == 1 else 0.5, 0.02), 0.98)
                 elif step < SMALLEST:
-                    return self._ended(found, t, "no next step")
+                    return ended(t, "no next step")
                 continue
             x, t = tried[0], goal
             if tried[1] < 0.0 or not self.resolved(x, t, closed):
-                return self._ended(found, t, "unstable" if tried[1] < 0.0 else "not resolved")
+                return ended(t, "unstable" if tried[1] < 0.0 else "not resolved")
             for kind, pair in crossed[:1]:
                 contact = next(c for c in self.contacts if c.pair == pair)
                 if kind == "touch":
                     if now[kind, pair] < -BEHIND:
-                        return self._ended(found, t, "comes from beyond an end to behind the beam")
+                        return ended(t, "comes from beyond an end to behind the beam")
                     contact.arc, contact.force = self.gap(contact, x, t)[1], np.zeros(2)
                     L = self.lengths[contact.beam]
                     if min(contact.arc, L - contact.arc) < NEAR_END * L:
-                        return self._ended(found, t, "touches at an end")
+                        return ended(t, "touches at an end")
                     closed.append(contact)
                 found.events.append((kind, pair, t))
                 if kind == "slip-off":
-                    return self._ended(found, t, "slip-off")
+                    return ended(t, "slip-off")
                 if kind == "release":
                     closed.remove(contact)
                 if len(found.events) > 40:
-                    return self._ended(found, t, "too many events")
+                    return ended(t, "too many events")
                 now = self.margins(x, t, closed)
             before = {key: max(value, 0.0) for key, value in now.items()}
             if not crossed and math.isclose(t, stops[len(found.states)]):
                 found.states.append({c.pair: (self.push(c, x), c.arc) for c in closed})
             step = longest if crossed else min(1.7 * step, longest)
-        return self._ended(found, 1.0, "")
-
-    @staticmethod
-    def _ended(found: Path, t: float, reason: str) -> Path:
-        found.end, found.reason = t, reason
-        return found
+        return ended(1.0, "")

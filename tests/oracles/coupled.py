@@ -20,9 +20,7 @@ from comparisons.exact import RodPath, rod_under_pin
 # the equations of one rod, which the exact answers of the product share
 from comparisons.exact.section import Array, Flexibility, Section, integrate, tangent
 from comparisons.scene import Scene
-from tests.oracles.newton import newton
-
-SMALLEST_STEP = 1e-9
+from tests.oracles.newton import advanced
 
 
 class Coupled(NamedTuple):
@@ -78,11 +76,6 @@ class Pair:
         gap = tip.x - under.x, tip.y - under.y
         return np.stack([pin.x - self.pin_x, pin.y - depth, tip.moment, under.moment, *slides, *gap])
 
-    def solve(self, z: Array, depth: float) -> Array | None:
-        """Unknowns from nearby ones, see `newton`."""
-        found = newton(lambda z: self.residual(z, depth), z)
-        return None if found is None else found[0]
-
     def touch(self) -> tuple[float, Array]:
         """Depth at which the first rod's tip touches the second, and the unknowns there."""
         depth = brentq(
@@ -92,35 +85,18 @@ class Pair:
         moment, force = -one.clamp_moment[1] / self.EI, one.force[1] / self.EI
         return float(depth), np.array([moment, *force, one.arc_position[1], 0.0, 0.0, 0.0, one.tip[1, 0]])
 
-    def advance(self, z: Array, depth: float, target: float) -> tuple[Array, float]:
-        """Unknowns at a target; or the last ones before, and the depth at which the pin has come to the tip."""
-        step = target - depth
-        while depth < target:
-            following = target if depth + step >= target else depth + step
-            trial = self.solve(z, following)
-            if trial is None:
-                step /= 2.0
-                assert step > SMALLEST_STEP, f"no equilibrium beyond {depth}"
-                continue
-            if trial[3] > 1.0:
-                beyond = lambda d, z=z: self.solve(z, d)[3] - 1.0  # noqa: E731
-                return z, float(brentq(beyond, depth, following, xtol=1e-14))
-            z, depth = trial, following
-        return z, depth
-
     def stage(self, depths: ArrayLike) -> Coupled:
         """Coupled stage at increasing depths."""
         touch, z = self.touch()
-        depth, end, rows = touch, np.inf, []
-        for target in np.asarray(depths, dtype=np.float64):
-            if touch <= target < end:
-                z, depth = self.advance(z, depth, float(target))
-                end = depth if depth < target else end
-            rows.append(z if touch <= target < end else np.full(8, np.nan))
-        while end == np.inf:
-            target = depth + 0.05
-            z, depth = self.advance(z, depth, target)
-            end = depth if depth < target else end
+        path = [(touch, z, np.zeros(8))]
+        while path[-1][1][3] <= 1.0:
+            path.append(advanced(self.residual, path[-1], path[-1][0] + 0.05))
+
+        def at(depth: float) -> Array:
+            return advanced(self.residual, [state for state in path if state[0] <= depth][-1], depth)[1]
+
+        end = float(brentq(lambda depth: at(depth)[3] - 1.0, path[-2][0], path[-1][0] - 1e-9, xtol=1e-14))
+        rows = [at(float(d)) if touch <= d < end else np.full(8, np.nan) for d in np.asarray(depths)]
         moment, nx, ny, s, other, Tx, Ty, S = np.array(rows).reshape(-1, 8).T
         under = integrate(Section(0 * S, self.spacing + 0 * S, 0 * S, other), (Tx, Ty), S, self.flexibility)
         tip_force = self.EI * np.stack([Tx, Ty], axis=1)

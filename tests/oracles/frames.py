@@ -20,10 +20,7 @@ from scipy.optimize import brentq
 # the equations of one rod, which the exact answers of the product share
 from comparisons.exact.section import Array, Flexibility, Section, integrate
 from comparisons.scene import Scene, load_scene
-from tests.oracles.newton import newton
-
-State = tuple[float, Array, Array]
-"""A deflection, unknowns and their rates, in the units of the equations."""
+from tests.oracles.newton import State, advanced
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,20 +64,11 @@ class Frame:
         last = section.theta if self.clamped else section.moment
         return np.stack([section.x - joints[-1, 0], section.y - joints[-1, 1], last, excess])
 
-    def advanced(self, last: State, deflection: float) -> State:
-        """State at a deflection over `size`, by Newton's method from another one, in halves where it is far."""
-        before, unknowns, rates = last
-        found = newton(lambda z: self.residual(z, deflection), unknowns + (deflection - before) * rates)
-        if found is None:
-            assert abs(deflection - before) > 1e-6, f"no equilibrium beyond {before * self.size:g}"
-            return self.advanced(self.advanced(last, (before + deflection) / 2.0), deflection)
-        return deflection, found[0], np.linalg.solve(found[1], [0.0, 0.0, 0.0, 1.0])
-
     def follow(self, deflections: Sequence[float]) -> list[State]:
         """States at increasing deflections."""
-        path = [self.advanced((0.0, np.zeros(4), np.zeros(4)), 0.0)]
+        path = [advanced(self.residual, (0.0, np.zeros(4), np.zeros(4)), 0.0)]
         for deflection in deflections:
-            path.append(self.advanced(path[-1], float(deflection) / self.size))
+            path.append(advanced(self.residual, path[-1], float(deflection) / self.size))
         return path[1:]
 
     def load(self, deflections: Sequence[float]) -> Array:
@@ -94,9 +82,9 @@ class Frame:
         found = []
         for one, other in pairwise(self.follow(deflections)):
             if value(*one[1:]) * value(*other[1:]) < 0.0:
-                at = lambda d, one=one: value(*self.advanced(one, d)[1:])  # noqa: E731
+                at = lambda d, one=one: value(*advanced(self.residual, one, d)[1:])  # noqa: E731
                 d = float(brentq(at, one[0], other[0], xtol=1e-13))
-                found.append((d * self.size, float(self.advanced(one, d)[1][3]) * self.unit))
+                found.append((d * self.size, float(advanced(self.residual, one, d)[1][3]) * self.unit))
         return found
 
     def limits(self, deflections: Sequence[float]) -> list[float]:

@@ -1,10 +1,13 @@
-"""Newton's method with derivatives by complex steps, which the oracles share."""
+"""Newton's method with derivatives by complex steps, and the path of equilibria along a parameter, which the oracles share."""
 
 from collections.abc import Callable
 
 import numpy as np
 
 from comparisons.exact.section import COMPLEX_STEP, Array
+
+State = tuple[float, Array, Array]
+"""A parameter, unknowns (n,) and their rates."""
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
@@ -26,3 +29,15 @@ def newton(residual: Callable[[Array], Array], z: Array, allowed: float = 1.0) -
         if size < 1e-10:  # the toggle's slender bars leave 1e-11 by round-off
             return z, matrix
     return None
+
+
+def advanced(residual: Callable[[Array, float], Array], last: State, t: float) -> State:
+    """Return the state at a parameter by Newton's method from another one, in halves where it is far."""
+    before, z, rates = last
+    found = newton(lambda z: residual(z, t), z + (t - before) * rates)
+    if found is None:
+        assert abs(t - before) > 1e-9, f"no equilibrium beyond {before:g}"
+        return advanced(residual, advanced(residual, last, (before + t) / 2.0), t)
+    z, matrix = found
+    moves = residual(z[:, None] + 0j, t + 1j * COMPLEX_STEP)[:, 0].imag / COMPLEX_STEP
+    return t, z, np.linalg.solve(matrix, -moves)

@@ -1,23 +1,26 @@
-"""Checks of Coulomb's law: in the numbers that an answer states, in the exact equilibrium, and along the path."""
+"""Checks of Coulomb's law: in the numbers that an answer states, in the exact equilibrium, and along the path with what it dissipates."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss, legvander
+from numpy.typing import NDArray
 
-from comparisons.referee.certificate import Judgement
-from comparisons.referee.friction.dissipation import dissipated
 from comparisons.referee.friction.history import History, at_rest
 from comparisons.referee.friction.phases import OPEN, UNKNOWN
-from comparisons.referee.friction.slip import place, relative_slip_rate
+from comparisons.referee.friction.slip import place, relative_slip_rate, slip_rate
 from comparisons.referee.grip import Hold, UnknownFrictionError
 from comparisons.referee.layout import Touch
-from comparisons.referee.path import corners
+from comparisons.referee.path import corners, reach
+from comparisons.referee.rod import largest
 from comparisons.referee.state import Equilibrium
-from comparisons.response import FrictionHistory, Response
+from comparisons.response import Response
 from comparisons.response.round_off import LEAST, least_force
 from comparisons.scene import ContactSpec, Scene
+
+Array = NDArray[np.float64]
 
 LAW = 1e-6
 """Largest violation of Coulomb's law by the numbers of an answer, over the contact force; the models' tolerances are far smaller."""
@@ -29,6 +32,15 @@ _SPREAD = 10.0
 """Largest relative error of an energy over the largest difference of the answer, since energies are sums over the path."""
 _MOST = 6
 """Number of changes between slip and stick, the latest ones, that are compared with the referee's own."""
+_POINTS, _WEIGHTS = leggauss(6)
+_LEGENDRE = np.linalg.inv(legvander(_POINTS, len(_POINTS) - 1))
+"""From values at the Gauss points to the coefficients of Legendre's polynomials."""
+_SMOOTH = 1e-5
+"""Largest sum of the last two coefficients over the first; the error of the integral is about its square."""
+_DEPTH = 8
+"""Number of times that an interval is halved at most."""
+_SHORTEST = 1e-12
+"""Smallest interval of load parameters that is integrated."""
 
 
 def unlawful(history: History, k: int, allowed: float) -> Iterator[str]:
@@ -37,14 +49,9 @@ def unlawful(history: History, k: int, allowed: float) -> Iterator[str]:
     rubbing = [spec for spec in scene.contacts if spec.friction]
     for earlier in range(k, -1, -1):
         where = "" if earlier == k else f" at load parameter {response.load_parameter[earlier]:.6g}"
-        for spec in rubbing:
-            contact = response.contacts[spec.pair]
-            force = abs(float(contact.force[earlier]))
-            if contact.friction is not None and force:
-                for sentence in _unlawful(
-                    spec, contact.friction, force, earlier, law, least_force(scene) / LEAST
-                ):
-                    yield sentence + where
+        yield from (
+            sentence + where for spec in rubbing for sentence in _unlawful(history, spec, earlier, law)
+        )
     for spec in rubbing:
         if history.phase(spec.pair, k).slip == 0:
             length, moved = scene.beam(spec.beam).length, _moved(history, spec, k)
@@ -52,15 +59,17 @@ def unlawful(history: History, k: int, allowed: float) -> Iterator[str]:
                 yield f"{spec.pair} sticks and moves by {moved / length:.2g} L"
 
 
-def _unlawful(
-    spec: ContactSpec, friction: FrictionHistory, force: float, k: int, law: float, least: float
-) -> Iterator[str]:
+def _unlawful(history: History, spec: ContactSpec, k: int, law: float) -> Iterator[str]:
     """Yield the violations of one contact at one load parameter."""
+    contact = history.response.contacts[spec.pair]
+    force, friction = abs(float(contact.force[k])), contact.friction
+    if friction is None or not force:
+        return
     drag, push, slip = (float(x[k]) for x in (friction.tangential, friction.normal, friction.slip))
     if not abs(np.hypot(drag, push) - force) <= law * force:
         yield f"the force of {spec.pair} and its tangential and normal components differ"
     beyond = abs(drag) - spec.friction * push if slip == 0.0 else abs(drag - slip * spec.friction * push)
-    if beyond > law * max(force, least):
+    if beyond > law * max(force, least_force(history.scene) / LEAST):
         does = "sticks with a force outside its cone," if slip == 0.0 else "slips with"
         end = "" if slip == 0.0 else f", not {slip * spec.friction:.6g} F_n"
         yield f"{spec.pair} {does} F_t = {drag / push:.6g} F_n{end}"
@@ -73,7 +82,7 @@ def rubs_wrongly(history: History, k: int, exact: Equilibrium, allowed: float) -
             continue
         contact, pair = exact.contacts[touch.spec.pair], touch.spec.pair
         outside = abs(contact.drag) - touch.grip.friction * contact.push
-        size = max(float(np.hypot(*contact.force)), least_force(history.scene))
+        size = max(math.hypot(*contact.force), least_force(history.scene))
         if touch.grip.hold is None:
             if _backwards(exact, touch) > allowed:
                 yield f"{pair} slips against the stated direction"
@@ -123,7 +132,7 @@ def _spent(history: History, k: int, exact: Equilibrium) -> tuple[float, float]:
     """Return the stated dissipation, and the largest energy up to a load parameter, to which the error of a sum over the path is relative."""
     response = history.response
     spent = sum(float(item.friction.dissipated[k]) for item in response.contacts.values() if item.friction)
-    work = 0.0 if response.work is None else float(np.abs(response.work[: k + 1]).max())
+    work = 0.0 if response.work is None else largest(response.work[: k + 1])
     return spent, max(work, exact.strain_energy, spent, _least_energy(history.scene))
 
 
@@ -153,21 +162,19 @@ def _misspent(history: History, k: int, exact: Equilibrium, tolerance: float) ->
 
 
 def rubs_wrongly_on_the_way(
-    history: History, numbers: Sequence[int], states: Sequence[Judgement], allowed: float
+    history: History, found: Mapping[int, Equilibrium], apart: float, allowed: float
 ) -> Iterator[str]:
-    """Yield changes of slip and stick that are unstated or elsewhere, and work and dissipation up to judged load parameters that are not exact."""
-    response = history.response
+    """Yield changes of slip and stick that are unstated or elsewhere, and work and dissipation up to the equilibria `found` that are not exact.
+
+    `apart` is the largest difference of the answer from them.
+    """
     for spec in history.scene.contacts:
-        friction = response.contacts[spec.pair].friction
-        if spec.friction and friction is not None:
-            yield from _falls(spec, friction, response, _least_energy(history.scene))
         if spec.friction:
+            yield from _falls(history, spec)
             yield from _elsewhere(history, spec, allowed)
-    apart = max((item.distance.largest[1] for item in states if item.distance is not None), default=0.0)
-    found = [(k, item.exact) for k, item in zip(numbers, states, strict=True) if item.exact is not None]
-    for k, exact in found:
+    for k, exact in found.items():
         yield from _unpaid(history, k, exact, ENERGY + _SPREAD * apart)
-    for k, exact in found[-_MOST:]:
+    for k, exact in [*found.items()][-_MOST:]:
         yield from _misspent(history, k, exact, ENERGY + _SPREAD * apart)
 
 
@@ -176,11 +183,12 @@ def _least_energy(scene: Scene) -> float:
     return LEAST * least_force(scene) * min(beam.length for beam in scene.beams)
 
 
-def _falls(spec: ContactSpec, friction: FrictionHistory, response: Response, least: float) -> Iterator[str]:
+def _falls(history: History, spec: ContactSpec) -> Iterator[str]:
     """Yield the first load parameter at which the dissipation of a contact is smaller than before."""
-    spent = np.concatenate([[0.0], friction.dissipated])
-    work = friction.dissipated if response.work is None else response.work
-    falls = np.diff(spent) < -FALL * np.abs(np.concatenate([work, friction.dissipated])).max(initial=least)
+    response, friction = history.response, history.response.contacts[spec.pair].friction
+    spent = np.zeros(1) if friction is None else np.append(0.0, friction.dissipated)
+    largest = np.abs(np.append(spent, () if response.work is None else response.work)).max()
+    falls = np.diff(spent) < -FALL * max(largest, _least_energy(history.scene))
     if falls.any():
         yield f"the dissipation of {spec.pair} falls up to load parameter {response.load_parameter[np.argmax(falls)]:.6g}"
 
@@ -209,3 +217,61 @@ def _elsewhere(history: History, spec: ContactSpec, allowed: float) -> Iterator[
         width = phase.high - phase.low if phase.event is None else 0.0
         if abs(begin - phase.begin) > max(allowed, width):
             yield f"{spec.pair} {phase.does} from load parameter {phase.begin:.6g}, exactly from {begin:.6g}"
+
+
+def dissipated(history: History, k: int, exact: Equilibrium) -> dict[str, float]:
+    """Return what every contact with friction dissipates since the load parameter before number k; nan where a change is not found."""
+    times = history.response.load_parameter
+    begin, end = (float(times[k - 1]) if k else 0.0), float(times[k])
+    spent: dict[str, float] = {spec.pair: 0.0 for spec in history.scene.contacts if spec.friction}
+    cuts: dict[float, Equilibrium | None] = dict.fromkeys(
+        t for t in corners(history.scene) if begin < t < end
+    )
+    try:
+        for pair, own in history.phases.items():
+            before = history.numbers[pair][k - 1] if k else 0
+            for phase in own[before + 1 : history.numbers[pair][k] + 1]:
+                if phase.before is not None and phase.slip != phase.before.slip:
+                    change = history.begin(phase)
+                    cuts[change.load_parameter] = change
+        cuts |= {begin: None, end: exact}
+        there: Equilibrium | None = None
+        for first, last in reversed(list(pairwise(sorted(cuts)))):
+            there = cuts[last] or there
+            if last - first > _SHORTEST:
+                there = _between(history, first, last, there, spent)
+    except UnknownFrictionError:
+        return dict.fromkeys(spent, math.nan)
+    return spent
+
+
+def _between(
+    history: History, first: float, last: float, there: Equilibrium | None, spent: dict[str, float]
+) -> Equilibrium | None:
+    """Add the dissipation between two load parameters without a change; `there` is an equilibrium next to them, as is the returned one."""
+    middle = (first + last) / 2.0
+    grips, closed = history.around(middle), history.closed(middle)
+    slipping = [pair for pair, grip in grips.items() if grip.slip]
+    if not slipping:
+        return None
+    now = history.near(middle, closed, grips) if there is None or closed != there.closed.keys() else there
+
+    def power(t: float) -> Array:
+        nonlocal now
+        now = reach(now, t, grips)
+        if not now.found:
+            raise UnknownFrictionError(f"no equilibrium was found at load parameter {t:.6g}")
+        rates = [slip_rate(now, now.layout.touch(pair)) * now.layout.length for pair in slipping]
+        return np.array([now.contacts[pair].drag for pair in slipping]) * rates
+
+    def energy(low: float, high: float, depth: int) -> Array:
+        places = (low + high) / 2.0 + _POINTS * (high - low) / 2.0
+        powers = np.array([power(float(t)) for t in places[::-1]])[::-1]
+        terms, half = np.abs(_LEGENDRE @ powers), (low + high) / 2.0
+        if depth and np.any(terms[-2:].sum(axis=0) > _SMOOTH * terms[0]):
+            return energy(half, high, depth - 1) + energy(low, half, depth - 1)
+        return np.asarray(_WEIGHTS @ powers * (high - low) / 2.0)
+
+    for pair, lost in zip(slipping, energy(first, last, _DEPTH).tolist(), strict=True):
+        spent[pair] += lost
+    return now

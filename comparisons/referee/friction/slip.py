@@ -20,6 +20,7 @@ from comparisons.referee.equations import element_before
 from comparisons.referee.grip import Grip, Hold, rows
 from comparisons.referee.layout import NONE, Touch
 from comparisons.referee.path import corners, reach, tangent
+from comparisons.referee.rod import largest
 from comparisons.referee.state import Equilibrium
 
 Array = NDArray[np.float64]
@@ -66,7 +67,7 @@ def relative_slip_rate(now: Equilibrium, touch: Touch, *, behind: bool = False) 
     assert touch.grip is not None, "only a contact with friction slips"
     rate = _rates(now, behind)[now.layout.moving]
     pins = (np.hypot(*np.diff(pin.points, axis=0).T).sum() for pin in now.layout.scene.pins)
-    speed = max([float(np.abs(rate).max(initial=0.0)), *(float(x) / now.layout.length for x in pins), 1e-300])
+    speed = max([largest(rate), *(float(x) / now.layout.length for x in pins), 1e-300])
     return touch.grip.slip * slip_rate(now, touch, behind=behind) / speed
 
 

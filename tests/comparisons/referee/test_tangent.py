@@ -12,7 +12,6 @@ from comparisons.referee.equations import System, assemble, directions
 from comparisons.referee.grip import Grip, Hold
 from comparisons.referee.layout import Layout, lay_out
 from comparisons.referee.path import tangent
-from comparisons.referee.state import _tangents
 from comparisons.scene import ContactSpec, HingeSpec, LoadSpec, PinSpec, Scene, StageSpec
 from tests.comparisons.referee.forged import seen
 from tests.comparisons.referee.test_specimens import (
@@ -94,7 +93,7 @@ def test_the_direction_of_a_face_follows_the_variations_of_the_axis():
     layout, z, touch = exact.layout, exact.z, exact.layout.touches[0]
 
     def phi(z: np.ndarray) -> float:
-        x, y = sum(_tangents(replace(exact, z=z), touch)) / 2.0
+        x, y = sum(replace(exact, z=z).tangents(touch)) / 2.0
         return math.atan2(y, x) + math.asin(touch.slope / math.hypot(x, y))
 
     assert phi(z) == pytest.approx(z[touch.angle], abs=1e-12)
