@@ -84,7 +84,7 @@ def _as_registered(response: Response, model: Model | None) -> Response:
 
 def restored(response: Response, scene: Scene) -> Response:
     """Return a response from a file with the kind that its model is registered with, and checked as when it was solved."""
-    from comparisons.models.outside.answer import penetrating
+    from comparisons.models.outside.exchange import penetrating
     from comparisons.models.outside.programs import ADAPTERS
     from comparisons.models.verify import CHECK_FAILED, verified
 

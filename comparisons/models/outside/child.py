@@ -6,13 +6,13 @@ import shutil
 import signal
 import sys
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from contextlib import suppress
 from enum import Enum
 from os import getpid, kill, waitpid
 from pathlib import Path
 from time import perf_counter, sleep
-from typing import Any, NamedTuple
+from typing import Any
 
 from comparisons.files import one_line, printable
 
@@ -118,7 +118,7 @@ def _finished(
     """Return the exit status of a command that keeps its limits."""
     import subprocess
 
-    others = {pid for pid, one in _processes().items() if one.parent == getpid()}
+    others = set(_family())
     _adopt(1)
     try:
         process = subprocess.Popen(command, start_new_session=True, **how)  # noqa: S603 the program that the user names
@@ -132,9 +132,8 @@ def _finished(
             with suppress(subprocess.TimeoutExpired):
                 return int(process.wait(timeout=look))
             look = min(2.0 * look, LAST_LOOK)
-            memory = sum(one.memory for one in _started(others).values())
             size = sum(path.stat().st_size for path in written)
-            used = perf_counter() - began, memory / MB, size / MB
+            used = perf_counter() - began, sum(_family(others).values()) / MB, size / MB
             for value, most, (status, words) in zip(used, limits, LIMITS.items(), strict=True):
                 if value > most:
                     raise ProgramError(status, words.format(most))
@@ -149,55 +148,40 @@ def _adopt(adopts: int) -> None:
         ctypes.CDLL(None).prctl(ADOPT, adopts, 0, 0, 0)
 
 
-class _Process(NamedTuple):
-    """Parent, session and resident memory [byte] of a process."""
+def _family(others: Container[int] = ()) -> dict[int, int]:
+    """Return the resident memory [byte] of what programs have started, by process; none where the system has no ``/proc``.
 
-    parent: int
-    session: int
-    memory: int
-
-
-def _processes() -> dict[int, _Process]:
-    """Return all processes by their identifiers; none where the system has no ``/proc``."""
-    found = {}
+    A program is a child in another session than this process, and none of `others`, which are from before; it may be adopted.
+    """
+    every = {}
     for file in Path("/proc").glob("[0-9]*/stat") if LINUX else ():
         with suppress(OSError):
-            values = file.read_text(errors="replace").rpartition(") ")[2].split()
-            memory = int(values[21]) * os.sysconf("SC_PAGE_SIZE")
-            found[int(file.parent.name)] = _Process(int(values[1]), int(values[3]), memory)
-    return found
-
-
-def _started(others: set[int]) -> dict[int, _Process]:
-    """Return what descends from the children of this process in other sessions: what a program starts, adopted or not.
-
-    The sessions are other ones for programs alone; `others` are children from before.
-    """
-    every = _processes()
+            parent, _, session, *values = file.read_text(errors="replace").rpartition(") ")[2].split()[1:]
+            every[int(file.parent.name)] = int(parent), int(session), int(values[17])
     found = {
         pid
-        for pid, one in every.items()
-        if one.parent == getpid() and one.session != every[getpid()].session and pid not in others
+        for pid, (parent, session, _) in every.items()
+        if parent == getpid() and session != every[parent][1] and pid not in others
     }
-    while more := {pid for pid, one in every.items() if one.parent in found} - found:
+    while more := {pid for pid, (parent, *_) in every.items() if parent in found} - found:
         found |= more
-    return {pid: every[pid] for pid in found}
+    return {pid: every[pid][2] * os.sysconf("SC_PAGE_SIZE") for pid in found}
 
 
-def _end(process: Any, others: set[int]) -> None:
+def _end(process: Any, others: Container[int]) -> None:
     """End whatever a program has started, and wait for its end; an ended process leaves its children to this one."""
     if LINUX:
         process.kill()
         for _ in range(ROUNDS):
             process.poll()
-            family = _started(others)
+            family = _family(others)
             for pid in family:
                 with suppress(ProcessLookupError, PermissionError):
                     kill(pid, KILL)
                 if pid != process.pid:
                     with suppress(ChildProcessError):
                         waitpid(pid, os.WNOHANG)
-            if not family and not _started(others):  # not while a parent ended during the look
+            if not family and not _family(others):  # not while a parent ended during the look
                 return
             sleep(FIRST_LOOK)
     elif os.name == "nt":

@@ -80,9 +80,9 @@ def serve(refusal: Refusal, states: States, *, continuum: bool = False) -> None:
         json.dump(answered(scene, refusal, states) | {"continuum": continuum}, answer)
 
 
-def answered(scene: Table, refusal: Refusal, states: States) -> Table:
+def answered(scene: Table, refusal: Refusal | None, states: States) -> Table:
     """Return the tables of the response to a scene, see `serve`."""
-    reason = refusal(scene)
+    reason = refusal and refusal(scene)
     if reason is not None:
         return {"status": "REFUSED", "message": reason}
     histories, began = Histories(scene), perf_counter()
