@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import ceil
 from typing import TYPE_CHECKING, Any
 
-from comparisons.models.base import Model, Style
+from comparisons.models.base import Model, Style, refused
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Reached, Watch
 from comparisons.models.shared import history, joints, kept, line_loads, of_result, result_of
@@ -47,11 +47,7 @@ class Solid(Model):
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why the solid cannot state `scene`; None if it can."""
-        try:
-            to_solid(scene)
-        except ValueError as error:
-            return str(error)
-        return None
+        return refused(to_solid, scene)
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked."""
