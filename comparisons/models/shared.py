@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from comparisons.models.base import Model
     from comparisons.models.options import Options
     from comparisons.response import Array, ContactHistory, Response
-    from comparisons.scene import BeamSpec, Scene
+    from comparisons.scene import BeamSpec, PinSpec, Scene
 
 ENDS = ("start", "end")
 POINTS = 401
@@ -49,6 +49,12 @@ def line_loads(scene: Scene) -> Iterator[tuple[BeamSpec, int, tuple[Force, ...],
 def kept(record: object, names: str) -> dict[str, Any]:
     """Return what a record has under some names, which are the same where it goes."""
     return {name: getattr(record, name) for name in names.split()}
+
+
+def ways(pin: PinSpec) -> dict[str, Any]:
+    """Return the path of a pin in the first stage and the points of its way onward in each of the others."""
+    path, *onward = pin.stage_points
+    return {"path": path, "onward": tuple(points[1:] for points in onward)}
 
 
 def rows(found: Any, width: int) -> Array:
