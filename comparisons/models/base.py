@@ -54,6 +54,7 @@ class Model(ABC):
     reference: ClassVar[Options | None] = None
     #: The keys of `comparisons.scene.SPECIAL` that the model states; a scene with another one is refused.
     keys: ClassVar[frozenset[str]] = frozenset()
+    style: Style | None = None  #: How figures draw its answers, where they are drawn alike; else `styles`.
 
     def unstated(self, scene: Scene) -> str | None:
         """Return the line that refuses a special key which the model does not state; None if it states all that `scene` uses."""
@@ -83,9 +84,10 @@ class Model(ABC):
             If the model cannot state the scene.
         """
 
-    @abstractmethod
     def styles(self) -> dict[str, Style]:
         """Return how figures draw the model's answers, by the words that `run_label` and `family` begin with."""
+        assert self.style is not None, "a model has one style, or states them"
+        return {self.label: self.style}
 
     @property
     def colour(self) -> str:

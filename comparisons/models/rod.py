@@ -26,6 +26,7 @@ class Rod(Model):
     meshed = False
     keys = RODS
     reference = Options()
+    style = Style(colour="#000000", width=1.2, unbroken=True)
 
     def by_referee(self, scene: Scene) -> bool:
         """Whether the scene is not one rod under one pin."""
@@ -58,10 +59,6 @@ class Rod(Model):
             self.name, local, lambda: rod_under_pin(local.path, **section, **pin), unknowns=4
         )
 
-    def styles(self) -> dict[str, Style]:
-        """Return one style."""
-        return {self.label: Style(colour="#000000", width=1.2, unbroken=True)}
-
 
 class Elastica(Model):
     """The elastica, which neither stretches nor shears, under one pin on its axis, in closed form."""
@@ -72,6 +69,7 @@ class Elastica(Model):
     meshed = False
     rod = False
     keys = ONE_ROD
+    style = Style(colour="#444444", width=1.2)
 
     def apart(self, scene: Scene) -> float:
         """Return the part of a cantilever's deflection under a force at its tip that is shear, and as much of stretch."""
@@ -89,10 +87,6 @@ class Elastica(Model):
         local = _on_axis(scene)
         sizes = {"EI": local.beam.EI, "length": local.beam.length}
         return local_response(self.name, local, lambda: elastica_under_pin(local.path, **sizes), unknowns=1)
-
-    def styles(self) -> dict[str, Style]:
-        """Return one style."""
-        return {self.label: Style(colour="#444444", width=1.2)}
 
     def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:  # noqa: ARG002 - as above
         """Return the errors from missing stretch and shear."""

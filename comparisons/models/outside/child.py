@@ -64,14 +64,6 @@ class ProgramError(Exception):
         self.status, self.reported_success = status, reported_success
 
 
-class CalculixError(RuntimeError):
-    """CalculiX is not installed, took too long or stopped early: the reason in one line, and whether CalculiX ran."""
-
-    def __init__(self, reason: str, *, started: bool = False) -> None:
-        super().__init__(f"CalculiX {reason}")
-        self.reason, self.started = reason, started
-
-
 def found(program: str, folder: Path) -> str | None:
     """Return the path of a program: a name on the path, or a path relative to `folder`; None if there is none."""
     own = folder / program

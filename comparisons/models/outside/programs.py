@@ -137,6 +137,7 @@ class Program(Model):
         self.name, self.label = source.name, source.label or source.name
         self.continuum = source.continuum
         self.options = ("elements",) if source.elements else ()
+        self.style = Style(colour=source.colour, marker="D")
         self.missing = source.missing
 
     @property
@@ -160,10 +161,6 @@ class Program(Model):
             return answer(output, scene, self.name, seconds)
         except ProgramError as error:
             return silent(scene, self.name, error.status.name, error, success=error.reported_success)
-
-    def styles(self) -> dict[str, Style]:
-        """Return one style."""
-        return {self.label: Style(colour=self.source.colour, marker="D")}
 
     def setting(self, scene: Scene, options: Options) -> str:
         """Return the numbers of elements; empty if the program chooses its resolution itself."""

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from comparisons.models.outside.adapters.exchange import Histories, StoppedError, Table, refined, serve
 from comparisons.models.outside.adapters.strip import axes, foot, one_strip, way
-from comparisons.models.outside.child import CalculixError, environment
+from comparisons.models.outside.child import ProgramError, ProgramStatus, environment
 
 if TYPE_CHECKING:
     from fem_reference import Strip
@@ -98,8 +98,8 @@ def states(scene: Table, histories: Histories) -> Iterator[float]:
         deck = slab.pin(tuple(start), tuple(end - start), steps, penalty)
     try:
         found = slab.answer(deck, seconds=1e5)
-    except CalculixError as error:
-        raise StoppedError(error.reason) from error
+    except ProgramError as error:
+        raise StoppedError(str(error)) from error
     for number, t in enumerate(times):
         k = len(increments[0]) * (number + 1) - 1
         if k >= len(found.load_parameter):
@@ -135,11 +135,11 @@ class Answer:
 
 
 def tip_load(strip: "Strip", force: float) -> Answer:
-    """Return the answer to a transverse dead load [N] at the free end; raise `CalculixError` unless the whole load is reached."""
+    """Return the answer to a transverse dead load [N] at the free end; raise `ProgramError` unless the whole load is reached."""
     slab = Slab(strip)
     answer = slab.answer(slab.tip_load(force, LOAD_STEPS))
     if answer.stopped:
-        raise CalculixError(answer.stopped, started=True)
+        raise ProgramError(ProgramStatus.CRASHED, f"CalculiX {answer.stopped}")
     return answer
 
 
@@ -205,7 +205,7 @@ class Slab:
         return self._deck(contact, steps, ["*BOUNDARY", *moved])
 
     def answer(self, deck: str, seconds: float = 300.0) -> Answer:
-        """Return the answer to a deck, up to the last increment that was printed completely; raise `CalculixError` if there is none."""
+        """Return the answer to a deck, up to the last increment that was printed completely; raise `ProgramError` if there is none."""
         times, tables, stopped = run(deck, seconds)
         ny, held = self.strip.mesh[1], len(self.clamp)
         wanted = {
@@ -219,7 +219,7 @@ class Slab:
         ]
         count = min(map(len, whole))
         if count == 0:
-            raise CalculixError(stopped or "printed no result", started=True)
+            raise ProgramError(ProgramStatus.CRASHED, f"CalculiX {stopped or 'printed no result'}")
         tip, bent, moved, forces = (np.array(table[:count])[:, :, :2] for table in whole)
         forces = forces * self.unit
         x, y = (self.clamp + moved).transpose(2, 0, 1)
@@ -265,7 +265,8 @@ def run(deck: str, seconds: float = 300.0) -> tuple[list[float], Tables, str]:
     """Run ``ccx`` on a deck, on one thread, for at most `seconds`; return what `parse` reads, and why it did not finish, empty if it did."""
     program, reason = shutil.which("ccx"), ""
     if program is None:
-        raise CalculixError("is needed: there is no program ccx on the path (Debian: calculix-ccx)")
+        needed = "CalculiX is needed: there is no program ccx on the path (Debian: calculix-ccx)"
+        raise ProgramError(ProgramStatus.NOT_STARTED, needed)
     with tempfile.TemporaryDirectory(prefix="calculix-") as folder:
         (Path(folder) / "job.inp").write_text(deck, encoding="ascii")
         try:
