@@ -231,11 +231,9 @@ def event_differences(response: Response, reference: Response) -> list[EventDiff
         first, second = own.get(key, []), true.get(key, [])
         rows, columns = linear_sum_assignment(np.abs(np.subtract.outer(first, second)))
         pairs = [(first[i], second[j]) for i, j in zip(rows, columns, strict=True)]
-        pairs += [(t, np.nan) for i, t in enumerate(first) if i not in rows]
-        pairs += [(np.nan, t) for j, t in enumerate(second) if j not in columns]
-        found += [
-            EventDifference(*key, *pair) for pair in sorted(pairs, key=lambda pair: float(np.fmin(*pair)))
-        ]
+        pairs += [(t, np.nan) for t in np.delete(first, rows)]
+        pairs += [(np.nan, t) for t in np.delete(second, columns)]
+        found += [EventDifference(*key, *pair) for pair in sorted(pairs, key=lambda pair: np.fmin(*pair))]
     return found
 
 
@@ -271,11 +269,8 @@ def _worst_event(response: Response, reference: Response) -> str:
 
 def _no_events(response: Response, reference: Response) -> str:
     silent = [one.model for one in (reference, response) if one.events is None]
-    return (
-        f"{silent[0]} states no events of this scene; compare two models that do, --against tsm"
-        if silent
-        else ""
-    )
+    words = "states no events of this scene; compare two models that do, --against tsm"
+    return f"{silent[0]} {words}" if silent else ""
 
 
 QUANTITIES |= {
