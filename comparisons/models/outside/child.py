@@ -77,8 +77,8 @@ def environment(more: Iterable[str] = ()) -> dict[str, str]:
 
 def run(
     command: Sequence[str], folder: Path, text: str, seconds: float, memory: float, more: Iterable[str] = ()
-) -> tuple[bytes, float]:
-    """Run a command in `folder` with `text` as its standard input; return its standard output and the wall time [s].
+) -> bytes:
+    """Run a command in `folder` with `text` as its standard input; return its standard output.
 
     Its limits are wall time [s] and, on Linux, resident memory [MB] with all its child processes, which have ended on return; it gets
     `more` variables of the environment. `ProgramError` names what failed.
@@ -89,19 +89,20 @@ def run(
     with tempfile.TemporaryDirectory(prefix="crossval-") as place:
         given, out, err = (Path(place) / name for name in ("stdin", "stdout", "stderr"))
         given.write_text(text, encoding="utf-8")
-        began = perf_counter()
         with given.open("rb") as stdin, out.open("wb") as stdout, err.open("wb") as stderr:
             streams = {"stdin": stdin, "stdout": stdout, "stderr": stderr}
             how = {"cwd": folder, "env": environment(more), **streams}
             code = _finished([program, *command[1:]], how, (out, err), (seconds, memory, LARGEST_OUTPUT))
-        took = perf_counter() - began
         if code:
-            ended = f"ended with exit status {code}"
-            if code < 0 and os.name != "nt":
-                ended = f"was ended by {signal.Signals(-code).name}"
+            signalled = code < 0 and os.name != "nt"
+            ended = (
+                f"was ended by {signal.Signals(-code).name}"
+                if signalled
+                else f"ended with exit status {code}"
+            )
             words = _tail(err) or _tail(out) or "no message"
             raise ProgramError(ProgramStatus.CRASHED, f"{ended}: {words}")
-        return out.read_bytes(), took
+        return out.read_bytes()
 
 
 def _finished(

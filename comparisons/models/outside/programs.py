@@ -63,8 +63,8 @@ class Source(ABC):
         return None
 
     @abstractmethod
-    def ask(self, text: str) -> tuple[bytes, float]:
-        """Return the answer to a scene and the wall time [s]; raise `ProgramError` if there is none."""
+    def ask(self, text: str) -> bytes:
+        """Return the answer to a scene; raise `ProgramError` if there is none."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,7 +93,7 @@ class Command(Source):
         there = found(program, self.folder) or (self.requires and find_spec(program))
         return None if there else self.needs or f"there is no program {program}"
 
-    def ask(self, text: str) -> tuple[bytes, float]:
+    def ask(self, text: str) -> bytes:
         """Run the command."""
         return run(self.command, self.folder, text, self.seconds, self.memory, self.environment)
 
@@ -109,17 +109,15 @@ class Functions(Source):
         """Return a digest of the file that defines the states."""
         return _digest(Path(self.states.__code__.co_filename))
 
-    def ask(self, text: str) -> tuple[bytes, float]:
+    def ask(self, text: str) -> bytes:
         """Call the functions. If one raises, the status of the response names the exception. What they print goes to standard error."""
         from comparisons.models.outside.adapters.exchange import answered
 
-        began = perf_counter()
         try:
             with redirect_stdout(sys.stderr):
-                output = json.dumps(answered(json.loads(text), self.refusal, self.states)).encode()
+                return json.dumps(answered(json.loads(text), self.refusal, self.states)).encode()
         except Exception as error:
             raise ProgramError(ProgramStatus.CRASHED, f"{type(error).__name__}: {error}") from error
-        return output, perf_counter() - began
 
 
 def _digest(file: Path) -> str:
@@ -156,9 +154,10 @@ class Program(Model):
         missing = self.missing()
         if missing is not None:
             raise ModelError(missing)
+        given, began = request(scene, options, scene.times), perf_counter()
         try:
-            output, seconds = self.source.ask(request(scene, options, scene.times))
-            return answer(output, scene, self.name, seconds)
+            output = self.source.ask(given)
+            return answer(output, scene, self.name, perf_counter() - began)
         except ProgramError as error:
             return silent(scene, self.name, error.status.name, error, success=error.reported_success)
 
@@ -182,7 +181,7 @@ def _refusal(source: Source, scene: Scene) -> str | None:
     if source.refusal is not None:
         return source.refusal(json.loads(text))
     try:
-        return refusal(source.ask(text)[0])
+        return refusal(source.ask(text))
     except ProgramError:
         return None
 
