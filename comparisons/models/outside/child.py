@@ -48,14 +48,6 @@ class ProgramStatus(Enum):
     NOT_FINITE = "a number of the response is missing or not finite"
 
 
-LIMITS = {
-    ProgramStatus.TIMED_OUT: "ran longer than {:g} s",
-    ProgramStatus.OUT_OF_MEMORY: "took more than {:g} MB of memory",
-    ProgramStatus.TOO_MUCH_OUTPUT: "wrote more than {:g} MB",
-}
-"""What is said of a program that exceeds a limit."""
-
-
 class ProgramError(Exception):
     """The run of another program gave no answer: what failed, and whether the program stated success all the same."""
 
@@ -92,7 +84,7 @@ def run(
         with given.open("rb") as stdin, out.open("wb") as stdout, err.open("wb") as stderr:
             streams = {"stdin": stdin, "stdout": stdout, "stderr": stderr}
             how = {"cwd": folder, "env": environment(more), **streams}
-            code = _finished([program, *command[1:]], how, (out, err), (seconds, memory, LARGEST_OUTPUT))
+            code = _finished([program, *command[1:]], how, (out, err), seconds, memory)
         if code:
             signalled = code < 0 and os.name != "nt"
             ended = (
@@ -106,7 +98,7 @@ def run(
 
 
 def _finished(
-    command: list[str], how: dict[str, Any], written: tuple[Path, ...], limits: tuple[float, ...]
+    command: list[str], how: dict[str, Any], written: tuple[Path, ...], seconds: float, memory: float
 ) -> int:
     """Return the exit status of a command that keeps its limits."""
     import subprocess
@@ -125,10 +117,14 @@ def _finished(
             with suppress(subprocess.TimeoutExpired):
                 return int(process.wait(timeout=look))
             look = min(2.0 * look, LAST_LOOK)
-            size = sum(path.stat().st_size for path in written)
-            used = perf_counter() - began, sum(_family(others).values()) / MB, size / MB
-            for value, most, (status, words) in zip(used, limits, LIMITS.items(), strict=True):
-                if value > most:
+            taken = sum(_family(others).values()) / MB
+            size = sum(path.stat().st_size for path in written) / MB
+            for status, used, most, words in (
+                (ProgramStatus.TIMED_OUT, perf_counter() - began, seconds, "ran longer than {:g} s"),
+                (ProgramStatus.OUT_OF_MEMORY, taken, memory, "took more than {:g} MB of memory"),
+                (ProgramStatus.TOO_MUCH_OUTPUT, size, LARGEST_OUTPUT, "wrote more than {:g} MB"),
+            ):
+                if used > most:
                     raise ProgramError(status, words.format(most))
     finally:
         _end(process, others)
