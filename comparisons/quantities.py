@@ -92,10 +92,6 @@ class Quantity:
         return f"the largest {self.unit}" if self.over == "largest" else f"the {self.over}"
 
 
-QUANTITIES: dict[str, Quantity] = {}
-"""The quantities by name. `crossval compare --max-error` can bound each, `crossval solve --accuracy` takes those that are not of the path."""
-
-
 def scales(reference: Response, steps: Steps | slice = slice(None)) -> Scales:
     """Return the scales of a reference over all its load parameters, or over the given ones."""
     found = {}
@@ -273,7 +269,7 @@ def _no_events(response: Response, reference: Response) -> str:
     return f"{silent[0]} {words}" if silent else ""
 
 
-QUANTITIES |= {
+QUANTITIES: dict[str, Quantity] = {
     "force": Quantity(
         meaning="contact forces, of a scene without contact the support forces, over the largest",
         words="force", unit="force", over="largest", column=1, read=forces, drawn=lambda response, _: forces(response),
@@ -319,5 +315,6 @@ QUANTITIES |= {
         words="event", unit="number", over="", kind="path", compare=_event, absent=_no_events, place=_worst_event,
     ),
 }  # fmt: skip
+"""The quantities by name. `crossval compare --max-error` can bound each, `crossval solve --accuracy` takes those that are not of the path."""
 KEPT = names(path=False, mesh=False)
 """The quantities that every model states and that a stored response keeps."""

@@ -221,12 +221,6 @@ CHECKS: dict[str, Check] = {
     ),
     "motion of pins": _motionless,
 }
-"""The checks of a response, in their order. Each yields a sentence for what is wrong, nothing for a right answer.
-
-All load parameters of the scene are reached, and all numbers are finite. Contact forces push, closed contacts have no gap, and those that
-must persist stay closed. Round pins are outside the beam along the whole axis, nodes and pins are clear of its ends, and open nodes are on
-the stated side unless they slipped off. Forces and moments of supports, pins and loads balance, for a model of this package. No element
-bends or strains beyond what it approximates, and no pin moves by less than numbers resolve.
-"""
+"""The checks of a response, in their order. Each yields a sentence for what is wrong, nothing for a right answer."""
 UNRESOLVED = ("bend of elements", "strain of elements", "motion of pins")
 """The checks of a response that stopped."""

@@ -68,12 +68,18 @@ def environment(more: Iterable[str] = ()) -> dict[str, str]:
 
 
 def run(
-    command: Sequence[str], folder: Path, text: str, seconds: float, memory: float, more: Iterable[str] = ()
+    command: Sequence[str],
+    folder: Path,
+    text: str,
+    seconds: float,
+    memory: float,
+    more: Iterable[str] = (),
+    **set_to: str,
 ) -> bytes:
     """Run a command in `folder` with `text` as its standard input; return its standard output.
 
-    Its limits are wall time [s] and, on Linux, resident memory [MB] with all its child processes, which have ended on return; it gets
-    `more` variables of the environment. `ProgramError` names what failed.
+    Its limits are wall time [s] and, on Linux, resident memory [MB] with all its child processes, which have ended on return. It gets
+    `more` variables of the environment, and those that are `set_to` a value. `ProgramError` names what failed.
     """
     program = found(command[0], folder)
     if program is None:
@@ -83,7 +89,7 @@ def run(
         given.write_text(text, encoding="utf-8")
         with given.open("rb") as stdin, out.open("wb") as stdout, err.open("wb") as stderr:
             streams = {"stdin": stdin, "stdout": stdout, "stderr": stderr}
-            how = {"cwd": folder, "env": environment(more), **streams}
+            how = {"cwd": folder, "env": environment(more) | set_to, **streams}
             code = _finished([program, *command[1:]], how, (out, err), seconds, memory)
         if code:
             signalled = code < 0 and os.name != "nt"

@@ -135,7 +135,7 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
 
 def silent(scene: Scene, model: str, status: str, message: object, *, success: bool = False) -> Response:
     """Return a response without any load parameter, which states why there is none."""
-    none = Histories(json.loads(request(scene, Options(), ()))).tables()
+    none = vars(Histories(json.loads(request(scene, Options(), ()))))
     said = {"status": status, "message": message, "reported_success": success, "wall_seconds": 0.0}
     return _read(scene, model, {**none, **said})
 

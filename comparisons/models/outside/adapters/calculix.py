@@ -14,8 +14,6 @@ of width b.
 """
 
 import re
-import shutil
-import subprocess
 import tempfile
 from collections import defaultdict
 from collections.abc import Iterator
@@ -25,9 +23,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.models.outside import child
 from comparisons.models.outside.adapters.exchange import Histories, StoppedError, Table, refined, serve
 from comparisons.models.outside.adapters.strip import axes, foot, one_strip, way
-from comparisons.models.outside.child import ProgramError, ProgramStatus, environment
+from comparisons.models.outside.child import ProgramError, ProgramStatus
 
 if TYPE_CHECKING:
     from fem_reference import Strip
@@ -58,6 +57,8 @@ _HEADER = re.compile(r" (displacements|forces) \(.*\) for set (\S+) and time\s+(
 _SHORT = re.compile(r"(?<=\d)(?=[+-]\d{3}$)")
 """Place of the E that Fortran leaves out before an exponent of three digits."""
 _TAIL = 300
+MEMORY = 1e5
+"""Limit on the memory of CalculiX [MB]."""
 
 
 def refusal(scene: Table) -> str | None:
@@ -250,32 +251,22 @@ class Slab:
 
 def run(deck: str, seconds: float = 300.0) -> tuple[list[float], Tables, str]:
     """Run ``ccx`` on a deck, on one thread, for at most `seconds`; return what `parse` reads, and why it did not finish, empty if it did."""
-    program, reason = shutil.which("ccx"), ""
-    if program is None:
-        needed = "CalculiX is needed: there is no program ccx on the path (Debian: calculix-ccx)"
-        raise ProgramError(ProgramStatus.NOT_STARTED, needed)
+    words = reason = ""
     with tempfile.TemporaryDirectory(prefix="calculix-") as folder:
         (Path(folder) / "job.inp").write_text(deck, encoding="ascii")
         try:
-            done = subprocess.run(  # noqa: S603 the program found on the path, our own deck
-                [program, "-i", "job"],
-                cwd=folder,
-                env={**environment(), "OMP_NUM_THREADS": "1"},
-                capture_output=True,
-                text=True,
-                errors="replace",
-                timeout=seconds,
-                check=False,
-            )
-        except subprocess.TimeoutExpired:
-            reason = f"did not finish within {seconds:g} s"
-        except OSError as error:
-            reason = f"did not start: {error.strerror}"
-        else:
-            if done.returncode or "Job finished" not in done.stdout:
-                words = " ".join((done.stdout + done.stderr).split())
-                where = words.find("*ERROR")
-                reason = f"stopped: {words[where : where + _TAIL] if where >= 0 else words[-_TAIL:]}"
+            output = child.run(("ccx", "-i", "job"), Path(folder), "", seconds, MEMORY, OMP_NUM_THREADS="1")
+            words = " ".join(output.decode(errors="replace").split())
+        except ProgramError as error:
+            if error.status is ProgramStatus.NOT_STARTED:
+                needed = "CalculiX is needed: there is no program ccx on the path (Debian: calculix-ccx)"
+                raise ProgramError(error.status, needed) from None
+            words = str(error)
+            if error.status is ProgramStatus.TIMED_OUT:
+                reason = f"did not finish within {seconds:g} s"
+        if not reason and "Job finished" not in words:
+            where = words.find("*ERROR")
+            reason = f"stopped: {words[where : where + _TAIL] if where >= 0 else words[-_TAIL:]}"
         found = Path(folder) / "job.dat"
         return *parse(found.read_text(encoding="ascii", errors="replace") if found.exists() else ""), reason
 
