@@ -6,7 +6,6 @@ from dataclasses import replace
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal
 
-from comparisons.extras import EXTRAS, install
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Watch, unwatched
 
@@ -45,7 +44,7 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
     Raises
     ------
     ModelError
-        If the model cannot state the scene, an option does not belong to it, or the library of an extra is missing.
+        If the model cannot state the scene, or an option does not belong to it.
     """
     from comparisons.models.verify import verified
     from comparisons.response.material import material_forces
@@ -66,10 +65,6 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
         return verified(replace(response, **_kind(response, chosen), reported_success=success, **more), scene)
     except ValueError as error:
         raise ModelError(f"{chosen.name}: {error}") from error
-    except ImportError as error:
-        if error.name not in EXTRAS:
-            raise
-        raise ModelError(f"{chosen.name}: {error.name} is needed: {install(error.name)}") from error
 
 
 def _kind(response: Response, model: Model | None) -> dict[str, Any]:

@@ -40,7 +40,7 @@ class Rod(Model):
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why the rods cannot state `scene`; None if they can. Several rods are solved along the path of exact elements."""
-        return self.unstated(scene) or beams_refusal(scene)
+        return beams_refusal(scene)
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:  # noqa: ARG002 - the rod has no options
         """Return the response to `scene`, not yet checked."""

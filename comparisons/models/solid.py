@@ -10,7 +10,7 @@ from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Reached, Watch
 from comparisons.models.shared import history, joints, kept, line_loads, of_result, result_of, ways
 from comparisons.scene.conditions import COMPONENTS
-from comparisons.scene.keys import STRIPS, unstated
+from comparisons.scene.keys import STRIPS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -99,7 +99,7 @@ class Solid(Model):
             contacts[spec.name] = history(item, compliance=soft, **more)
         turn = 2 * np.max([half_turns(beam.name) for beam in scene.beams], axis=0)
         return of_result(
-            self,
+            self.name,
             scene,
             result,
             axis_line,
@@ -196,9 +196,6 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> SolidProbl
     """
     import fem_reference as fem
 
-    unknown = unstated(scene, "the solid", STRIPS)
-    if unknown is not None:
-        raise ModelError(unknown)
     joints = _Joints(scene)
     clamps = {spec.node for spec in scene.all_supports if _is_clamp(scene, spec, joints)}
     return fem.SolidProblem(

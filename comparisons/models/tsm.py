@@ -12,7 +12,7 @@ from comparisons.models.base import Model, Style
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Reached, Watch
 from comparisons.models.shared import history, kept, line_loads, of_result, result_of, rows, ways
-from comparisons.scene.keys import BEAMS, unstated
+from comparisons.scene.keys import BEAMS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -105,7 +105,7 @@ class Tsm(Model):
             for number, (pair, item) in enumerate(result.contacts.items())
         }
         return of_result(
-            self,
+            self.name,
             scene,
             result,
             cache(result.axis_line),
@@ -302,7 +302,7 @@ def beams_refusal(scene: Scene) -> str | None:
                 f"contact {contact.pair}: the tangent stiffness method does not state friction on the face of a beam whose height tapers; "
                 'use --model solid, surface = "axis" or one height'
             )
-    return unstated(scene, "the tangent stiffness method", BEAMS)
+    return None
 
 
 def _face_slope(scene: Scene, contact: ContactSpec) -> float:

@@ -287,4 +287,4 @@ def parse(text: str) -> tuple[list[float], Tables]:
 
 
 if __name__ == "__main__":
-    serve(refusal, states, continuum=True)
+    serve(refusal, states)

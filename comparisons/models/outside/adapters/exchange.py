@@ -55,19 +55,17 @@ Refusal = Callable[[Table], str | None]
 States = Callable[[Table, Histories], Iterator[float]]
 
 
-def serve(refusal: Refusal, states: States, *, continuum: bool = False) -> None:
+def serve(refusal: Refusal, states: States) -> None:
     """Answer the scene on standard input.
 
-    ``refusal``: ``refusal(scene)``: why the program cannot state the scene, None if it can. ``states``:
-    ``states(scene, histories)``: adds the states to `histories` and yields the load parameter of each. It
-    raises `StoppedError` where the program stops. ``continuum``: whether the program solves a two- or three-
-    dimensional body.
+    ``refusal(scene)`` says why the program cannot state the scene, None if it can. ``states(scene, histories)`` adds the states to
+    `histories` and yields the load parameter of each; it raises `StoppedError` where the program stops.
     """
     with os.fdopen(os.dup(1), "w", encoding="utf-8") as answer:
         sys.stdout.flush()
         os.dup2(2, 1)  # what the program prints goes to standard error
         scene = json.load(sys.stdin) | ({"steps": int(sys.argv[1])} if sys.argv[1:] else {})
-        json.dump(answered(scene, refusal, states) | {"continuum": continuum}, answer)
+        json.dump(answered(scene, refusal, states), answer)
 
 
 def answered(scene: Table, refusal: Refusal | None, states: States) -> Table:
