@@ -181,10 +181,6 @@ def _face_stress(response: Response, scene: Scene, k: int) -> Array:
     return np.concatenate(found)
 
 
-def _stress_refusal(scene: Scene, continuum: bool) -> str | None:
-    return None if continuum and len(scene.beams) == 1 else "is measured between two solids of a single beam"
-
-
 def _friction_title(scene: Scene) -> str:
     if rubbing(scene):
         return "friction found"
@@ -304,7 +300,8 @@ QUANTITIES: dict[str, Quantity] = {
     ),
     "stress": Quantity(
         meaning="stress at the faces over the largest, away from clamp, tip and contacts; of one beam, by the solid",
-        words="stress", unit="stress", over="largest", kind="mesh", compare=_stress, refusal=_stress_refusal,
+        words="stress", unit="stress", over="largest", kind="mesh", compare=_stress,
+        refusal=lambda scene, continuum: None if continuum and len(scene.beams) == 1 else "is measured between two solids of a single beam",
     ),
     "gap": Quantity(
         meaning="gaps of contacts that are open in one of the two, over the length",

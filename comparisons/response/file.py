@@ -199,7 +199,11 @@ def _numbers(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
     found = _array(value, len(shape))
     if found is not None and found.size == 0 and 0 in shape:
         found = np.zeros([size or 0 for size in shape])
-    if found is None or len(found.shape) != len(shape) or any(map(_differ, shape, found.shape)):
+    if (
+        found is None
+        or found.ndim != len(shape)
+        or any(size not in (None, own) for size, own in zip(shape, found.shape, strict=True))
+    ):
         has = f", has {_sizes(found.shape)}" if found is not None and found.ndim else ""
         raise FieldError(key, value, _rule(shape) + has)
     _check_finite(found, key, ~np.isnan(found) if "gaps" in field else np.True_)
@@ -232,10 +236,6 @@ def _array(value: object, depth: int) -> Array | None:
         return np.array(value, dtype=np.float64) if plain(value, depth) else None
     except (ValueError, OverflowError):
         return None
-
-
-def _differ(size: int | None, own: int) -> bool:
-    return size not in (None, own)
 
 
 def _check_finite(numbers: Array, key: str, needed: Any) -> None:

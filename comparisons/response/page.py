@@ -257,15 +257,11 @@ class _Page:
 
 
 def _lines(block: Block, scene: str) -> str:
-    """Return a table as lines: columns of numbers to the right, the others to the left."""
+    """Return a table as lines: columns of numbers, with or without units, and dashes to the right, the others to the left."""
     rows = [block.columns, *block.rows] if block.columns else block.rows
-    lines = aligned(rows, [_numeric(column) for column in zip(*block.rows, strict=True)])
-    return "\n".join([block.title or scene, *(f"  {line}" for line in lines)])
-
-
-def _numeric(cells: Sequence[str]) -> bool:
-    """Whether a column has nothing but numbers, with or without units, and dashes."""
-    return all(not cell or cell[0] in "-0123456789" for cell in cells)
+    columns = zip(*block.rows, strict=True)
+    right = [all(not cell or cell[0] in "-0123456789" for cell in column) for column in columns]
+    return "\n  ".join([block.title or scene, *aligned(rows, right)])
 
 
 def _markup(block: Block, scene: str) -> str:

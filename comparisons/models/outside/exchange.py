@@ -15,7 +15,7 @@ from comparisons.models.outside.child import ProgramError, ProgramStatus
 from comparisons.models.shared import joints, kept
 from comparisons.models.verify import CHECK_FAILED
 from comparisons.referee.certificate import Verdict
-from comparisons.response import Array, ContactHistory, Response
+from comparisons.response import ContactHistory, Response
 from comparisons.response.axis import axis_grid, sampled_axes
 from comparisons.response.file import SCHEMA, NotFiniteError, contradictions, parsed, restated
 from comparisons.scene import BeamSpec, Scene
@@ -143,18 +143,12 @@ def silent(scene: Scene, model: str, status: str, message: object, *, success: b
 def _read(scene: Scene, model: str, data: dict[str, Any]) -> Response:
     """Return the response that tables state, with the tips at the ends of the axes if they state none."""
     response = restated({"scene": scene.name, **data, "model": model})
-    return (
-        response if "tips" in data else replace(response, tips=_tips(scene, sampled_axes(response).position))
-    )
-
-
-def _tips(scene: Scene, lines: dict[str, Array]) -> dict[str, Array]:
+    if "tips" in data:
+        return response
     ends = {beam.name: -1 if scene.tip(beam.name) == "end" else 0 for beam in scene.beams}
-    return {
-        name: line[:, ends[name]] if line.size else np.empty((0, 2))
-        for name, line in lines.items()
-        if name in ends
-    }
+    lines = {name: line for name, line in sampled_axes(response).position.items() if name in ends}
+    tips = {name: line[:, ends[name]] if line.size else np.empty((0, 2)) for name, line in lines.items()}
+    return replace(response, tips=tips)
 
 
 def _parsed(output: bytes) -> dict[str, Any]:
