@@ -1,6 +1,5 @@
 """A program as a child process with a short environment and limits on time, memory and output, of which no process is left."""
 
-import ctypes
 import os
 import shutil
 import signal
@@ -140,6 +139,8 @@ def _finished(
 def _adopt(adopts: int) -> None:
     """Make this process the parent of descendants that lose theirs, where the system can (Linux); 0 ends it."""
     if LINUX:
+        import ctypes  # 2 ms that only a program needs
+
         ctypes.CDLL(None).prctl(ADOPT, adopts, 0, 0, 0)
 
 
