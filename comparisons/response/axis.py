@@ -2,11 +2,10 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from typing import NoReturn
 
 import numpy as np
 
-from comparisons.response.record import Array, Grid, Response
+from comparisons.response.record import Array, Grid, Response, not_kept
 from comparisons.scene import Scene
 
 STATIONS = np.linspace(0.0, 1.0, 101)
@@ -86,14 +85,9 @@ def storable(response: Response, *, axes: bool = True) -> Response:
         response,
         material_force=dict(response.material_force),
         axis_line=kept,
-        grid=no_grid,
+        grid=not_kept,
         sections=None,
         deformation=None,
         certificate=None,
         definition=None,
     )
-
-
-def no_grid(_: int) -> NoReturn:
-    """Raise: a stored response has no mesh. It is the `grid` of such a response."""
-    raise NotImplementedError("a stored response has no mesh")

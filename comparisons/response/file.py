@@ -14,7 +14,7 @@ import numpy as np
 from comparisons.files import one_line
 from comparisons.output import json_text
 from comparisons.response import record
-from comparisons.response.axis import SampledAxes, no_grid, sampled_axes
+from comparisons.response.axis import SampledAxes, sampled_axes
 from comparisons.response.material import clamped
 from comparisons.response.record import Array, Response
 from comparisons.scene import Scene, load_scene
@@ -134,7 +134,7 @@ def restated(data: Any) -> Response:
     if found["newton_iterations"] is None:
         found["newton_iterations"] = np.zeros(len(found["load_parameter"]), dtype=np.int64)
     arcs, places = ({beam: axis[key] for beam, axis in axes.items()} for key in ("arc_length", "position"))
-    return Response(**found, axis_line=SampledAxes(arc_length=arcs, position=places), grid=no_grid)
+    return Response(**found, axis_line=SampledAxes(arc_length=arcs, position=places))
 
 
 def resolved(field: Field) -> Field:

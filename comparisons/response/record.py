@@ -115,8 +115,9 @@ class Sections:
     M: Array  #: Bending moment on the part before the section, anticlockwise (m,).
 
 
-def _nothing(*_: object) -> NoReturn:
-    raise AssertionError("no load parameter was reached")
+def not_kept(*_: object) -> NoReturn:
+    """Raise: a stored response has no mesh, and one without a load parameter has no axis."""
+    raise NotImplementedError("a stored response has no mesh")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -143,8 +144,8 @@ class Response:
     wall_seconds: float = np.nan  #: Time of the solution alone [s].
     #: ``axis_line(beam, k)``: arc length (m,) and deformed positions (m, 2) of an axis at load parameter k. A stored response has
     #: `comparisons.response.axis.SampledAxes` here.
-    axis_line: Callable[[str, int], tuple[Array, Array]] = _nothing
-    grid: Callable[[int], Grid] = _nothing  #: ``grid(k)``: mesh and fields; not of a stored response.
+    axis_line: Callable[[str, int], tuple[Array, Array]] = not_kept
+    grid: Callable[[int], Grid] = not_kept  #: ``grid(k)``: mesh and fields; not of a stored response.
     sections: Callable[[str, int], Sections] | None = None  #: ``sections(beam, k)``; not stored.
     events: tuple[ContactEvent, ...] | None = None  #: Contact events in their order.
     continuum: bool = False  #: Whether the model is a two-dimensional body and not a rod.
