@@ -25,10 +25,8 @@ REFINED = ((25, 1), (50, 2), (100, 4), (200, 8))
 COARSE = ((8, 1), (12, 1), (16, 1), (25, 2))
 LEAST_RATIO = -0.999
 """Least Poisson's ratio. There the shear modulus is 500 times Young's modulus; a solid that is stiffer in shear locks."""
-CONTACT, STRIP = (
-    "node side surface penalty penetration keep friction",
-    "name start end turn youngs_modulus material",
-)
+CONTACT = "node side surface penalty penetration keep friction"
+STRIP = "name start end turn youngs_modulus material"
 """What the solid takes of a contact and of a beam as it is."""
 DEFAULT_PENALTY = 25.0
 """Default penalty stiffness of the solid, over E b."""

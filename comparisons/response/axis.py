@@ -33,8 +33,7 @@ def axes_at_stations(response: Response, beam: str, steps: Iterable[int]) -> Arr
         return np.empty((0, len(STATIONS), 2))
     first = lines[0][0]
     if all(np.array_equal(arc, first) for arc, _ in lines):
-        points = np.stack([line for _, line in lines], axis=1)
-        found = np.moveaxis(CubicSpline(first, points)(_stations(first)), 1, 0)
+        found = CubicSpline(first, np.stack([line for _, line in lines]), axis=1)(_stations(first))
     else:
         found = np.array([CubicSpline(arc, line)(_stations(arc)) for arc, line in lines])
     # a spline passes through its points up to round-off only; the ends keep the exact values of the model
