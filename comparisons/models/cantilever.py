@@ -209,11 +209,8 @@ def _end_contact(local: RodScene, found: RodPath) -> float:
     """Load parameter at which the pin meets the tip while the rod is straight, or rolls onto its corner; inf if it does not."""
     if not local.offset:
         return math.inf
-    radius, path, t = (
-        local.scene.radius(local.contact),
-        local.path - [local.beam.length, 0.0],
-        found.load_parameter,
-    )
+    radius, t = local.scene.radius(local.contact), found.load_parameter
+    path = local.path - [local.beam.length, 0.0]
     tip = BeamEnd("", (0.0, 0.0), (-1.0, 0.0), local.offset - radius, radius)
     corner = found.slip_off if radius and not np.isnan(found.slip_off) else math.inf
     for k, (start, end) in enumerate(pairwise(path)):

@@ -172,12 +172,12 @@ def _events(result: Any) -> tuple[ContactEvent, ...]:
     """Return the events of a scene with friction, whose load parameters are located; no element owns a contact."""
     from comparisons.response import ContactEvent
 
-    found = []
-    for pair, contact in result.contacts.items():
-        for event in contact.events:
-            own = kept(event, "kind load_parameter arc_position force")
-            stage = max(1, ceil(event.load_parameter))
-            found.append(ContactEvent(pair=pair, element=-1, released=0.0, stage=stage, **own))
+    found = [
+        ContactEvent(pair=pair, element=-1, released=0.0, stage=max(1, ceil(event.load_parameter)), **own)
+        for pair, contact in result.contacts.items()
+        for event in contact.events
+        for own in [kept(event, "kind load_parameter arc_position force")]
+    ]
     return tuple(sorted(found, key=lambda event: event.load_parameter))
 
 
@@ -199,14 +199,10 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> SolidProbl
     return fem.SolidProblem(
         strips=tuple(_strip(beam, clamps, mesh) for beam in scene.beams),
         supports=tuple(
-            fem.Support(
-                strip=spec.beam,
-                end=spec.end,
-                motion=joints.motion(spec),
-                onward=scene.prescribed_motions[spec.node].increments[1:],
-            )
+            fem.Support(strip=spec.beam, end=spec.end, motion=joints.motion(spec), onward=later[1:])
             for spec in scene.all_supports
             if spec.node not in clamps
+            for later in [scene.prescribed_motions[spec.node].increments]
         ),
         joints=tuple(fem.Joint(**joint) for joint in joints.stated()),
         springs=tuple(

@@ -123,16 +123,13 @@ class Tsm(Model):
         """Return one style for every type of element."""
         from tsm.elements import ELEMENTS
 
-        return {
-            f"{self.label} {kind.name}": Style(colour=kind.colour, marker=kind.marker)
-            for kind in ELEMENTS.values()
-        }
+        styles = {kind.name: Style(colour=kind.colour, marker=kind.marker) for kind in ELEMENTS.values()}
+        return {f"{self.label} {name}": style for name, style in styles.items()}
 
     def run_label(self, options: Options) -> str:
         """Return the label of one run, as ``TSM mixed, 20 elements``."""
-        return (
-            f"{self.label} {self.element(options).name}{super().run_label(options).removeprefix(self.label)}"
-        )
+        own = f"{self.label} {self.element(options).name}"
+        return super().run_label(options).replace(self.label, own, 1)
 
     def setting(self, scene: Scene, options: Options) -> str:
         """Return element type, numbers of elements and tolerance, as ``mixed 20``."""
@@ -256,18 +253,13 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
     if refused is not None:
         raise ModelError(refused)
     kind = TSM.element(Options(element=element))
-    moves = ((motion, *motion.support.motion) for motion in scene.prescribed_motions.values())
     return tsm.Structure(
         beams=tuple(_beam(scene, beam, elements, kind) for beam in scene.beams),
         supports=tuple(
-            tsm.Support(
-                ux=ux,
-                uy=uy,
-                rotation=rotation,
-                onward=motion.increments[1:],
-                **kept(motion.support, "beam end"),
-            )
-            for motion, ux, uy, rotation in moves
+            tsm.Support(ux=ux, uy=uy, rotation=turn, onward=later[1:], **kept(own, "beam end"))
+            for motion in scene.prescribed_motions.values()
+            for own, later in [(motion.support, motion.increments)]
+            for ux, uy, turn in [own.motion]
         ),
         loads=tuple(
             tsm.Load(
@@ -296,13 +288,10 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
 
 def beams_refusal(scene: Scene) -> str | None:
     """Return why no element of the tangent stiffness method states `scene`; None if one does."""
-    for contact in scene.contacts:
-        if contact.friction and _face_slope(scene, contact):
-            return (
-                f"contact {contact.pair}: the tangent stiffness method does not state friction on the face of a beam whose height tapers; "
-                'use --model solid, surface = "axis" or one height'
-            )
-    return None
+    refused = (item.pair for item in scene.contacts if item.friction and _face_slope(scene, item))
+    words = "the tangent stiffness method does not state friction on the face of a beam whose height tapers"
+    use = 'use --model solid, surface = "axis" or one height'
+    return next((f"contact {pair}: {words}; {use}" for pair in refused), None)
 
 
 def _face_slope(scene: Scene, contact: ContactSpec) -> float:

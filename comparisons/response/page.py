@@ -236,12 +236,9 @@ class _Page:
 
     def events(self) -> Block:
         stage = ("stage",) * bool(self.response.stage[-1] > 1)
-        said = [(event, self._said(event)) for event in self.response.events or ()]
-        rows = [
-            (f"{one.load_parameter:.6g}", *(str(one.stage) for _ in stage), words)
-            for one, words in said
-            if words
-        ]
+        said = ((event, self._said(event)) for event in self.response.events or ())
+        told = ((f"{one.load_parameter:.6g}", str(one.stage), words) for one, words in said if words)
+        rows = [(t, number, words) if stage else (t, words) for t, number, words in told]
         return self.block("Events", dict.fromkeys(("load parameter", *stage, ""), ""), rows)
 
     def _said(self, event: ContactEvent) -> str:

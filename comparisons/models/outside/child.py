@@ -91,12 +91,9 @@ def run(
             how = {"cwd": folder, "env": environment(more) | set_to, **streams}
             code = _finished([program, *command[1:]], how, (out, err), seconds, memory)
         if code:
-            signalled = code < 0 and os.name != "nt"
-            ended = (
-                f"was ended by {signal.Signals(-code).name}"
-                if signalled
-                else f"ended with exit status {code}"
-            )
+            ended = f"ended with exit status {code}"
+            if code < 0 and os.name != "nt":
+                ended = f"was ended by {signal.Signals(-code).name}"
             words = _tail(err) or _tail(out) or "no message"
             raise ProgramError(ProgramStatus.CRASHED, f"{ended}: {words}")
         return out.read_bytes()
