@@ -70,7 +70,8 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
 def _kind(response: Response, model: Model | None) -> dict[str, Any]:
     """Return of what kind an answer is by its model, whatever it says of itself; another model's answer is that of a program."""
     continuum = model is not None and model.continuum
-    return {"continuum": continuum, "outside": response.model not in MODELS}
+    round_off = response.round_off if continuum else 0.0
+    return {"continuum": continuum, "outside": response.model not in MODELS, "round_off": round_off}
 
 
 def restored(response: Response, scene: Scene) -> Response:
