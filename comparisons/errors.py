@@ -45,15 +45,13 @@ def errors(
     quantities : iterable of str
         Keys of `comparisons.quantities.QUANTITIES`.
     """
-    names = tuple(quantities)
-    last = reference.load_parameter[-1:]
+    names, last = tuple(quantities), reference.load_parameter[-1:]
     if not len(last) or last[0] not in response.load_parameter:
         return {scope: dict.fromkeys(names, np.nan) for scope in SCOPES}
     shared, found = error_histories(response, reference, scene, scale=scale, quantities=names)
-    at_end = shared == (last[0] if end is None else end)
+    chosen = {"end": shared == (last[0] if end is None else end), "path": slice(None)}
     return {
-        "end": {name: largest(values[at_end]) for name, values in found.items()},
-        "path": {name: largest(values) for name, values in found.items()},
+        scope: {name: largest(values[at]) for name, values in found.items()} for scope, at in chosen.items()
     }
 
 
@@ -63,10 +61,10 @@ def difference(response: Response, reference: Response, scene: Scene, quantity: 
     Forces and moments are relative to the largest value of the reference at these load parameters. The error is infinite if the
     responses share no load parameter. It is nan if neither response has the quantity: a scene without contact has no arc position.
     """
-    shared, pair = _pair(response, reference, scene)
-    scale = scales(reference, pair.reference_steps)
+    steps = np.flatnonzero(np.isin(reference.load_parameter, response.load_parameter))
+    scale = scales(reference, steps)
     _, found = error_histories(response, reference, scene, scale=scale, quantities=[quantity])
-    return largest(found[quantity]) if len(shared) else np.inf
+    return largest(found[quantity]) if len(steps) else np.inf
 
 
 def worst_place(response: Response, reference: Response, scene: Scene, quantity: str) -> str:
@@ -79,7 +77,7 @@ def worst_place(response: Response, reference: Response, scene: Scene, quantity:
     name = max(worst, key=lambda name: np.nan_to_num(worst[name]), default="")
     if not name or not worst[name] > 0.0:
         return ""
-    shared, _ = _pair(response, reference, scene)
+    shared = np.intersect1d(response.load_parameter, reference.load_parameter)
     return f"{name} at load parameter {shared[int(np.nanargmax(columns[name]))]:.6g}"
 
 
@@ -92,26 +90,19 @@ def error_histories(
     quantities: Iterable[str] = KEPT,
 ) -> tuple[Array, dict[str, Array]]:
     """Return the n load parameters that both responses have, and the errors there, shape (n,) by quantity."""
-    shared, pair = _pair(response, reference, scene, scale)
+    shared = np.intersect1d(response.load_parameter, reference.load_parameter)
     none = np.full(len(shared), np.nan)
-    return shared, {
-        name: np.asarray(np.fmax.reduce([none, *QUANTITIES[name].columns(pair).values()]))
-        for name in quantities
-    }
+    columns = {name: error_columns(response, reference, scene, name, scale) for name in quantities}
+    return shared, {name: np.fmax.reduce([none, *found.values()]) for name, found in columns.items()}
 
 
-def error_columns(response: Response, reference: Response, scene: Scene, quantity: str) -> Columns:
+def error_columns(
+    response: Response, reference: Response, scene: Scene, quantity: str, scale: Scales | None = None
+) -> Columns:
     """Return the errors of every pair, support or beam, shape (n,), at the n load parameters that both responses have."""
-    _, pair = _pair(response, reference, scene)
+    _, own, true = np.intersect1d(response.load_parameter, reference.load_parameter, return_indices=True)
+    pair = Pair(response, reference, own, true, scene, scale or scales(reference))
     return QUANTITIES[quantity].columns(pair)
-
-
-def _pair(
-    response: Response, reference: Response, scene: Scene, scale: Scales | None = None
-) -> tuple[Array, Pair]:
-    """Return the load parameters that both responses have, and the responses there."""
-    shared, own, true = np.intersect1d(response.load_parameter, reference.load_parameter, return_indices=True)
-    return shared, Pair(response, reference, own, true, scene, scale or scales(reference))
 
 
 def largest(values: Array) -> float:

@@ -92,10 +92,6 @@ class Quantity:
         return f"the largest {self.unit}" if self.over == "largest" else f"the {self.over}"
 
 
-QUANTITIES: dict[str, Quantity] = {}
-"""The quantities by name. `crossval compare --max-error` can bound each, `crossval solve --accuracy` takes those that are not of the path."""
-
-
 def scales(reference: Response, steps: Steps | slice = slice(None)) -> Scales:
     """Return the scales of a reference over all its load parameters, or over the given ones."""
     found = {}
@@ -185,10 +181,6 @@ def _face_stress(response: Response, scene: Scene, k: int) -> Array:
     return np.concatenate(found)
 
 
-def _stress_refusal(scene: Scene, continuum: bool) -> str | None:
-    return None if continuum and len(scene.beams) == 1 else "is measured between two solids of a single beam"
-
-
 def _friction_title(scene: Scene) -> str:
     if rubbing(scene):
         return "friction found"
@@ -231,11 +223,9 @@ def event_differences(response: Response, reference: Response) -> list[EventDiff
         first, second = own.get(key, []), true.get(key, [])
         rows, columns = linear_sum_assignment(np.abs(np.subtract.outer(first, second)))
         pairs = [(first[i], second[j]) for i, j in zip(rows, columns, strict=True)]
-        pairs += [(t, np.nan) for i, t in enumerate(first) if i not in rows]
-        pairs += [(np.nan, t) for j, t in enumerate(second) if j not in columns]
-        found += [
-            EventDifference(*key, *pair) for pair in sorted(pairs, key=lambda pair: float(np.fmin(*pair)))
-        ]
+        pairs += [(t, np.nan) for t in np.delete(first, rows)]
+        pairs += [(np.nan, t) for t in np.delete(second, columns)]
+        found += [EventDifference(*key, *pair) for pair in sorted(pairs, key=lambda pair: np.fmin(*pair))]
     return found
 
 
@@ -271,14 +261,11 @@ def _worst_event(response: Response, reference: Response) -> str:
 
 def _no_events(response: Response, reference: Response) -> str:
     silent = [one.model for one in (reference, response) if one.events is None]
-    return (
-        f"{silent[0]} states no events of this scene; compare two models that do, --against tsm"
-        if silent
-        else ""
-    )
+    words = "states no events of this scene; compare two models that do, --against tsm"
+    return f"{silent[0]} {words}" if silent else ""
 
 
-QUANTITIES |= {
+QUANTITIES: dict[str, Quantity] = {
     "force": Quantity(
         meaning="contact forces, of a scene without contact the support forces, over the largest",
         words="force", unit="force", over="largest", column=1, read=forces, drawn=lambda response, _: forces(response),
@@ -313,7 +300,8 @@ QUANTITIES |= {
     ),
     "stress": Quantity(
         meaning="stress at the faces over the largest, away from clamp, tip and contacts; of one beam, by the solid",
-        words="stress", unit="stress", over="largest", kind="mesh", compare=_stress, refusal=_stress_refusal,
+        words="stress", unit="stress", over="largest", kind="mesh", compare=_stress,
+        refusal=lambda scene, continuum: None if continuum and len(scene.beams) == 1 else "is measured between two solids of a single beam",
     ),
     "gap": Quantity(
         meaning="gaps of contacts that are open in one of the two, over the length",
@@ -324,5 +312,6 @@ QUANTITIES |= {
         words="event", unit="number", over="", kind="path", compare=_event, absent=_no_events, place=_worst_event,
     ),
 }  # fmt: skip
+"""The quantities by name. `crossval compare --max-error` can bound each, `crossval solve --accuracy` takes those that are not of the path."""
 KEPT = names(path=False, mesh=False)
 """The quantities that every model states and that a stored response keeps."""

@@ -15,7 +15,7 @@ from comparisons.cli.outcome import BAD_INPUT, DONE, EPILOG, INTERRUPTED, STOPPE
 from comparisons.extras import install
 from comparisons.files import OutputError, printable
 from comparisons.models.options import ModelError
-from comparisons.models.outside.child import CalculixError
+from comparisons.models.outside.child import ProgramError, ProgramStatus
 from comparisons.scene import InputError
 
 COMMANDS = tuple(
@@ -87,8 +87,8 @@ def _run(arguments: list[str] | None) -> int:
             status = _told(line, BAD_INPUT)
     except (ModelError, OutputError) as error:
         status = _told(error, BAD_INPUT)
-    except CalculixError as error:
-        status = _told(error, STOPPED if error.started else BAD_INPUT)
+    except ProgramError as error:
+        status = _told(error, BAD_INPUT if error.status is ProgramStatus.NOT_STARTED else STOPPED)
     except BrokenPipeError:
         # whoever read the output has had enough
         _drop_output()

@@ -56,7 +56,7 @@ def run_check(given: Namespace) -> int:
     scene = load_scene(given.scene)
     files = outputs(given.out, ".json", ".png", ".svg")
     from comparisons.models.options import Options
-    from comparisons.models.outside.request import request
+    from comparisons.models.outside.exchange import request
     from comparisons.show.sketch import draw, stated
 
     printed = (".json", STANDARD) in files

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import nan
 from typing import TYPE_CHECKING, ClassVar
@@ -27,32 +27,34 @@ class Style:
     unbroken: bool = False
 
 
+def refused(state: Callable[[Scene], object], scene: Scene) -> str | None:
+    """Return the sentence with which `state` refuses a scene; None if it states it."""
+    try:
+        state(scene)
+    except ValueError as error:
+        return str(error)
+    return None
+
+
 class Model(ABC):
     """A way to solve scenes."""
 
-    name: str
-    """Key of `comparisons.models.MODELS`, used on the command line, in files and in tables."""
-    label: str
-    """Name in figures and texts."""
-    options: tuple[str, ...] = ()
-    """Fields of `Options` that belong to the model."""
+    name: str  #: Key of `comparisons.models.MODELS`, used on the command line, in files and in tables.
+    label: str  #: Name in figures and texts.
+    options: tuple[str, ...] = ()  #: Fields of `Options` that belong to the model.
+    #: Modules that a solution imports. They are loaded before a solution is timed.
     libraries: ClassVar[tuple[str, ...]] = ()
-    """Modules that a solution imports. They are loaded before a solution is timed."""
+    #: Whether a finer resolution makes it more accurate. A model without a mesh can be a reference.
     meshed: ClassVar[bool] = True
-    """Whether a finer resolution makes it more accurate. A model without a mesh can be a reference."""
+    #: Whether the model is a two-dimensional body, which converges to another limit than the rod.
     continuum: bool = False
-    """Whether the model is a two-dimensional body, which converges to another limit than the rod."""
-    refinable: ClassVar[bool] = False
-    """Whether `crossval solve --accuracy` can choose its resolution."""
-    rod: ClassVar[bool] = True
-    """Whether the model has the stretch and the shear of Reissner's rod."""
+    refinable: ClassVar[bool] = False  #: Whether `crossval solve --accuracy` can choose its resolution.
+    rod: ClassVar[bool] = True  #: Whether the model has the stretch and the shear of Reissner's rod.
+    #: Options at which the answer has no mesh error and can be a reference; None if there are none.
+    reference: ClassVar[Options | None] = None
+    #: The keys of `comparisons.scene.SPECIAL` that the model states; a scene with another one is refused.
     keys: ClassVar[frozenset[str]] = frozenset()
-    """The keys of `comparisons.scene.SPECIAL` that the model states; a scene with another one is refused."""
-
-    @property
-    def reference(self) -> Options | None:
-        """Options at which the answer has no mesh error and can be a reference; None if there are none."""
-        return None
+    style: Style | None = None  #: How figures draw its answers, where they are drawn alike; else `styles`.
 
     def unstated(self, scene: Scene) -> str | None:
         """Return the line that refuses a special key which the model does not state; None if it states all that `scene` uses."""
@@ -82,9 +84,10 @@ class Model(ABC):
             If the model cannot state the scene.
         """
 
-    @abstractmethod
     def styles(self) -> dict[str, Style]:
         """Return how figures draw the model's answers, by the words that `run_label` and `family` begin with."""
+        assert self.style is not None, "a model has one style, or states them"
+        return {self.label: self.style}
 
     @property
     def colour(self) -> str:

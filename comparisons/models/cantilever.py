@@ -11,9 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.exact import Outcome, RodPath, rod_under_pin
+from comparisons.exact import Outcome, RodPath
 from comparisons.models.options import ModelError
-from comparisons.models.rod import ROD
 from comparisons.models.shared import POINTS
 from comparisons.response import (
     Array,
@@ -24,7 +23,7 @@ from comparisons.response import (
     SupportHistory,
 )
 from comparisons.response.axis import axis_grid
-from comparisons.scene import BeamSpec, ContactSpec, Scene, SupportSpec
+from comparisons.scene import BeamSpec, ContactSpec, Scene
 from comparisons.scene.ends import BeamEnd
 from comparisons.scene.keys import ONE_ROD, unstated
 
@@ -41,42 +40,30 @@ _LOST = [state.name for state in Outcome if state.ends]
 
 @dataclass(frozen=True, kw_only=True)
 class RodScene:
-    """One cantilever under one pin in a local frame: the clamp at the origin, the beam along +x, the pin pushes towards +y.
-
-    `clamp` is the beam's clamped end. `path` (p, 2) has the pin at the start, at the load parameters, whose indices are `hits` (s,), and at
-    the corners of its path. `origin` (2,) is the place of the clamp, and `axes` (2, 2) has the local x and y axes as columns.
-    """
+    """One cantilever under one pin in a local frame: the clamp at the origin, the beam along +x, the pin pushes towards +y."""
 
     scene: Scene
     beam: BeamSpec
-    clamp: str
+    clamp: str  #: Clamped end of the beam.
     contact: ContactSpec
     offset: float
-    path: Array
-    hits: NDArray[np.int64]
-    origin: Array
-    axes: Array
+    path: Array  #: Places (p, 2) of the pin: at the start, at the load parameters and at the corners of its path.
+    hits: NDArray[np.int64]  #: Indices (s,) of the load parameters among them.
+    origin: Array  #: Place (2,) of the clamp.
+    axes: Array  #: The local x and y axes (2, 2) as columns.
 
     @property
-    def from_end(self) -> bool:
-        """Whether the clamp is at the beam's end, so that the local x runs from end to start."""
-        return self.clamp == "end"
+    def sense(self) -> int:
+        """1 where the local x runs from the beam's start to its end, -1 where it runs from end to start."""
+        return 1 if self.clamp == "start" else -1
 
     def position(self, local: Array) -> Array:
         """Return points (..., 2) of the local frame in the scene's."""
-        return self.vector(local) + self.origin
+        return local @ self.axes.T + self.origin
 
-    def vector(self, local: Array) -> Array:
-        """Return vectors (..., 2) of the local frame in the scene's."""
-        return np.asarray(local) @ self.axes.T
-
-    def moment(self, local: Array) -> Array:
-        """Return moments of the local frame, which may be a mirror image, in the scene's, anticlockwise positive."""
-        return float(np.round(np.linalg.det(self.axes))) * np.asarray(local)
-
-    def arc(self, local: Array) -> Array:
+    def arc(self, local: Any) -> Any:
         """Return distances from the clamp as distances from the beam's start."""
-        return self.beam.length - np.asarray(local) if self.from_end else np.asarray(local)
+        return local if self.sense > 0 else self.beam.length - local
 
 
 def to_rod(scene: Scene, who: str = "the exact rod") -> RodScene:
@@ -90,8 +77,19 @@ def to_rod(scene: Scene, who: str = "the exact rod") -> RodScene:
     unknown = unstated(scene, who, ONE_ROD)
     if unknown is not None:
         raise ModelError(unknown)
-    clamp = _clamp(scene)
-    beam, pin, contact = scene.beams[0], scene.pins[0], scene.contacts[0]
+    have, beam = "the exact models have", scene.beams[0]
+    if max(len(scene.beams), len(scene.pins), len(scene.contacts)) > 1:
+        raise ModelError(f"{have} one beam, one pin and one contact")
+    if scene.loads:
+        raise ModelError(f'{have} no dead loads, the scene loads "{scene.loads[0].node}"')
+    clamp, *others = scene.supports_of(beam.name)
+    if len(clamp.held) < 3:
+        raise ModelError(f'{have} one end clamped, none of beam "{beam.name}" is')
+    if scene.prescribed_motions[clamp.node].moves:
+        raise ModelError(f'{have} the clamp at rest, "{clamp.node}" moves')
+    if others:
+        raise ModelError(f'{have} one support, beam "{beam.name}" has two')
+    pin, contact = scene.pins[0], scene.contacts[0]
     along = np.array(beam.direction) * (1.0 if clamp.end == "start" else -1.0)
     left = np.array([-along[1], along[0]])
     mirrored = contact.side == ("left" if clamp.end == "start" else "right")
@@ -110,31 +108,6 @@ def to_rod(scene: Scene, who: str = "the exact rod") -> RodScene:
     )
 
 
-def _clamp(scene: Scene) -> SupportSpec:
-    """Return the clamp of the single beam that a single pin touches."""
-    have, beam = "the exact models have", scene.beams[0]
-    if max(len(scene.beams), len(scene.pins), len(scene.contacts)) > 1:
-        raise ModelError(f"{have} one beam, one pin and one contact")
-    if scene.loads:
-        raise ModelError(f'{have} no dead loads, the scene loads "{scene.loads[0].node}"')
-    clamp, *others = scene.supports_of(beam.name)
-    if len(clamp.held) < 3:
-        raise ModelError(f'{have} one end clamped, none of beam "{beam.name}" is')
-    if scene.prescribed_motions[clamp.node].moves:
-        raise ModelError(f'{have} the clamp at rest, "{clamp.node}" moves')
-    if others:
-        raise ModelError(f'{have} one support, beam "{beam.name}" has two')
-    return clamp
-
-
-def solve_rod(local: RodScene) -> Response:
-    """Solve a scene as a Reissner rod."""
-    beam, radius = local.beam, local.scene.radius(local.contact)
-    section = {"EA": beam.EA, "GA": beam.GA, "EI": beam.EI, "length": beam.length}
-    pin = {"friction": local.contact.friction, "offset": local.offset - radius, "radius": radius}
-    return local_response(ROD.name, local, lambda: rod_under_pin(local.path, **section, **pin), unknowns=4)
-
-
 def _events(path: RodPath, local: RodScene) -> Iterator[ContactEvent]:
     """Yield the located changes of state."""
     kinds = {Outcome.OPEN: "release", Outcome.SLIPPED: "slip-off", Outcome.STICK: "stick"}
@@ -147,7 +120,7 @@ def _events(path: RodPath, local: RodScene) -> Iterator[ContactEvent]:
             load_parameter=event.load_parameter,
             pair=local.contact.pair,
             element=0,
-            arc_position=float(local.arc(np.array(event.arc_position))),
+            arc_position=float(local.arc(event.arc_position)),
             force=event.magnitude,
             released=0.0,
         )
@@ -158,7 +131,7 @@ def local_response(model: str, local: RodScene, solve: Callable[[], RodPath], *,
     began = perf_counter()
     path = solve()
     seconds = perf_counter() - began
-    scene, name, length = local.scene, local.beam.name, local.beam.length
+    scene, name, sense = local.scene, local.beam.name, local.sense
     times = np.array(scene.times)
     stop, reached = _end(path, local, times)
     met = _end_contact(local, path)
@@ -166,16 +139,16 @@ def local_response(model: str, local: RodScene, solve: Callable[[], RodPath], *,
         stop, reached = "END_CONTACT", int(np.searchsorted(times, met))
     when = f" at load parameter {times[reached]:.6g}" if stop else ""
     if stop == "END_CONTACT":
-        end = "start" if local.from_end else "end"
+        end = "start" if sense < 0 else "end"
         when = f": {local.contact.node} meets the {end} of {name} at load parameter {met:.9g}"
 
     @cache
     def axis_line(_: str, k: int) -> tuple[Array, Array]:
         line = local.position(path.shape(int(local.hits[k]), POINTS)[:, :2])
-        return np.linspace(0.0, length, POINTS), line[::-1] if local.from_end else line
+        return np.linspace(0.0, local.beam.length, POINTS), line[::sense]
 
-    at, sense = local.hits[:reached], -1 if local.from_end else 1
-    force, outcome = local.vector(path.force[at]), [path.outcome[k] for k in at]
+    at = local.hits[:reached]
+    force, outcome = path.force[at] @ local.axes.T, [path.outcome[k] for k in at]
     closed = np.array([one.touches for one in outcome], dtype=bool)
     slipped = np.array([one is Outcome.SLIPPED for one in outcome], dtype=bool)
     more: dict[str, Any] = {}
@@ -196,7 +169,8 @@ def local_response(model: str, local: RodScene, solve: Callable[[], RodPath], *,
         vector=force,
         friction=friction,
     )
-    support = SupportHistory(force=-force, moment=local.moment(path.clamp_moment[at]))
+    # the local frame may be a mirror image, in which moments change their sign
+    moment = np.round(np.linalg.det(local.axes)) * path.clamp_moment[at]
     return Response(
         model=model,
         scene=scene.name,
@@ -204,10 +178,9 @@ def local_response(model: str, local: RodScene, solve: Callable[[], RodPath], *,
         message=f"{STOPS[stop]}{when}" if stop else "all load parameters were reached",
         load_parameter=times[:reached],
         contacts={local.contact.pair: contact},
-        supports={f"{name}.{local.clamp}": support},
+        supports={f"{name}.{local.clamp}": SupportHistory(force=-force, moment=moment)},
         tips={name: local.position(path.tip[at])},
         newton_iterations=np.diff(np.cumsum(path.iterations)[at], prepend=0),
-        cutbacks=0,
         unknowns=unknowns,
         wall_seconds=seconds,
         axis_line=axis_line,
@@ -236,11 +209,8 @@ def _end_contact(local: RodScene, found: RodPath) -> float:
     """Load parameter at which the pin meets the tip while the rod is straight, or rolls onto its corner; inf if it does not."""
     if not local.offset:
         return math.inf
-    radius, path, t = (
-        local.scene.radius(local.contact),
-        local.path - [local.beam.length, 0.0],
-        found.load_parameter,
-    )
+    radius, t = local.scene.radius(local.contact), found.load_parameter
+    path = local.path - [local.beam.length, 0.0]
     tip = BeamEnd("", (0.0, 0.0), (-1.0, 0.0), local.offset - radius, radius)
     corner = found.slip_off if radius and not np.isnan(found.slip_off) else math.inf
     for k, (start, end) in enumerate(pairwise(path)):

@@ -6,7 +6,6 @@ from dataclasses import replace
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal
 
-from comparisons.extras import EXTRAS, install
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Watch, unwatched
 
@@ -17,7 +16,7 @@ if TYPE_CHECKING:
 
 Certify = Literal["last", "all", "none"]
 """Load parameters to certify: the last one and the neighbours of events, all, or none."""
-FILES = ("tsm", "solid", "rod", "elastica")
+FILES = ("tsm", "solid", "rod")
 """The modules of this package with a tuple ``MODELS``; a new model adds its module here."""
 MODELS: dict[str, Model] = {
     model.name: model for file in FILES for model in import_module(f"comparisons.models.{file}").MODELS
@@ -45,7 +44,7 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
     Raises
     ------
     ModelError
-        If the model cannot state the scene, an option does not belong to it, or the library of an extra is missing.
+        If the model cannot state the scene, or an option does not belong to it.
     """
     from comparisons.models.verify import verified
     from comparisons.response.material import material_forces
@@ -58,44 +57,37 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
     if unknown is not None:
         raise ModelError(unknown)
     try:
-        response = _as_registered(chosen.solve(scene, given, watch), chosen)
+        response = chosen.solve(scene, given, watch)
         more: dict[str, Any] = {"setting": chosen.setting(scene, given), "definition": scene}
-        more["reported_success"] = response.completed or response.reported_success
-        if not response.continuum:
-            forces = material_forces(response, scene, strains=chosen.rod)
-            response = replace(response, material_force=forces)
-        return replace(verified(response, scene), **more)
+        if not chosen.continuum:
+            more["material_force"] = material_forces(response, scene, strains=chosen.rod)
+        success = response.completed or response.reported_success
+        return verified(replace(response, **_kind(response, chosen), reported_success=success, **more), scene)
     except ValueError as error:
         raise ModelError(f"{chosen.name}: {error}") from error
-    except ImportError as error:
-        if error.name not in EXTRAS:
-            raise
-        raise ModelError(f"{chosen.name}: {error.name} is needed: {install(error.name)}") from error
 
 
-def _as_registered(response: Response, model: Model | None) -> Response:
-    """Return `response` with the kind of its model, whatever it says of itself; another model's answer is that of a program."""
-    return replace(
-        response,
-        continuum=model is not None and model.continuum,
-        outside=response.model not in MODELS,
-    )
+def _kind(response: Response, model: Model | None) -> dict[str, Any]:
+    """Return of what kind an answer is by its model, whatever it says of itself; another model's answer is that of a program."""
+    continuum = model is not None and model.continuum
+    round_off = response.round_off if continuum else 0.0
+    return {"continuum": continuum, "outside": response.model not in MODELS, "round_off": round_off}
 
 
 def restored(response: Response, scene: Scene) -> Response:
     """Return a response from a file with the kind that its model is registered with, and checked as when it was solved."""
-    from comparisons.models.outside.answer import penetrating
+    from comparisons.models.outside.exchange import penetrating
     from comparisons.models.outside.programs import ADAPTERS
     from comparisons.models.verify import CHECK_FAILED, verified
 
-    response = _as_registered(response, MODELS.get(response.model) or ADAPTERS.get(response.model))
+    kind = _kind(response, MODELS.get(response.model) or ADAPTERS.get(response.model))
     if response.completed and not response.reported_success:
         contradiction = f"the status is {response.status}, and reported_success is false"
-        return replace(response, status=CHECK_FAILED, message=contradiction)
-    if response.outside or response.continuum:
-        contacts = {pair: penetrating(item) for pair, item in response.contacts.items()}
-        response = replace(response, contacts=contacts)
-    return verified(response, scene)
+        return replace(response, **kind, status=CHECK_FAILED, message=contradiction)
+    contacts = response.contacts
+    if kind["outside"] or kind["continuum"]:
+        contacts = {pair: penetrating(item) for pair, item in contacts.items()}
+    return verified(replace(response, **kind, contacts=contacts), scene)
 
 
 def certified(
@@ -134,13 +126,11 @@ def certified(
     else:
         found = certify(response, scene, at=every, allowance=allowed)
     if not response.completed and found.certified:
-        if response.status == CHECK_FAILED:
-            found = replace(found, verdict=Verdict.INADMISSIBLE, reason=response.message)
-        else:
-            reason = (
-                f"the answer stopped: {response.status}, {found.reason.partition(',')[0]} where it was judged"
-            )
-            found = replace(found, verdict=Verdict.NOT_JUDGED, reason=reason)
+        verdict, reason = Verdict.INADMISSIBLE, response.message
+        if response.status != CHECK_FAILED:
+            verdict, judged = Verdict.NOT_JUDGED, found.reason.partition(",")[0]
+            reason = f"the answer stopped: {response.status}, {judged} where it was judged"
+        found = replace(found, verdict=verdict, reason=reason)
     response = replace(response, certificate=found)
     if not response.completed or found.verdict in {Verdict.CERTIFIED, Verdict.NOT_JUDGED}:
         return response

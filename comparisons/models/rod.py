@@ -1,16 +1,18 @@
-"""Reissner's rods, which stretch and shear: one by collocation under one pin, any others by the referee."""
+"""The exact rods: Reissner's, which stretch and shear, by collocation under one pin and else by the referee, and the elastica."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from comparisons.models.base import Model, Style
+from comparisons.models.base import Model, Style, refused
 from comparisons.models.options import ModelError, Options
 from comparisons.models.tsm import beams_refusal
-from comparisons.scene.keys import RODS
+from comparisons.scene.keys import ONE_ROD, RODS
 
 if TYPE_CHECKING:
+    from comparisons.models.cantilever import RodScene
     from comparisons.models.progress import Watch
+    from comparisons.models.theory import Bending
     from comparisons.response import Response
     from comparisons.scene import Scene
 
@@ -23,43 +25,94 @@ class Rod(Model):
     libraries = ("comparisons.models.cantilever",)
     meshed = False
     keys = RODS
-
-    @property
-    def reference(self) -> Options | None:
-        """Default options: the rod has no settings."""
-        return Options()
+    reference = Options()
+    style = Style(colour="#000000", width=1.2, unbroken=True)
 
     def by_referee(self, scene: Scene) -> bool:
         """Whether the scene is not one rod under one pin."""
         from comparisons.models.cantilever import to_rod
 
-        try:
-            to_rod(scene)
-        except ModelError:
-            return True
-        return False
+        return refused(to_rod, scene) is not None
 
-    def setting(self, scene: Scene, options: Options) -> str:
+    def setting(self, scene: Scene, options: Options) -> str:  # noqa: ARG002 - the rod has no options
         """Return where the equilibria of several rods are from; empty for one rod."""
-        del options
         return "exact equilibria along TSM's path" if self.by_referee(scene) else ""
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why the rods cannot state `scene`; None if they can. Several rods are solved along the path of exact elements."""
-        return self.unstated(scene) or beams_refusal(scene)
+        return beams_refusal(scene)
 
-    def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
+    def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:  # noqa: ARG002 - the rod has no options
         """Return the response to `scene`, not yet checked."""
-        from comparisons.models.cantilever import solve_rod, to_rod
-        from comparisons.models.rods import solve_rods
+        if self.by_referee(scene):
+            from comparisons.models.rods import solve_rods
 
-        del options
-        return solve_rods(scene, watch) if self.by_referee(scene) else solve_rod(to_rod(scene))
+            return solve_rods(scene, watch)
+        from comparisons.exact import rod_under_pin
+        from comparisons.models.cantilever import local_response, to_rod
 
-    def styles(self) -> dict[str, Style]:
-        """Return one style."""
-        return {self.label: Style(colour="#000000", width=1.2, unbroken=True)}
+        local = to_rod(scene)
+        beam, radius = local.beam, scene.radius(local.contact)
+        section = {"EA": beam.EA, "GA": beam.GA, "EI": beam.EI, "length": beam.length}
+        pin = {"friction": local.contact.friction, "offset": local.offset - radius, "radius": radius}
+        return local_response(
+            self.name, local, lambda: rod_under_pin(local.path, **section, **pin), unknowns=4
+        )
 
 
-ROD = Rod()
-MODELS = (ROD,)
+class Elastica(Model):
+    """The elastica, which neither stretches nor shears, under one pin on its axis, in closed form."""
+
+    name = "elastica"
+    label = "elastica"
+    libraries = ("comparisons.models.cantilever",)
+    meshed = False
+    rod = False
+    keys = ONE_ROD
+    style = Style(colour="#444444", width=1.2)
+
+    def apart(self, scene: Scene) -> float:
+        """Return the part of a cantilever's deflection under a force at its tip that is shear, and as much of stretch."""
+        return max(3.0 * beam.EI / beam.length**2 * (1.0 / beam.EA + 1.0 / beam.GA) for beam in scene.beams)
+
+    def refusal(self, scene: Scene) -> str | None:
+        """Return why the elastica cannot state `scene`; None if it can."""
+        return refused(_on_axis, scene)
+
+    def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:  # noqa: ARG002 - the elastica has no options
+        """Return the response to `scene`, not yet checked."""
+        from comparisons.exact import elastica_under_pin
+        from comparisons.models.cantilever import local_response
+
+        local = _on_axis(scene)
+        sizes = {"EI": local.beam.EI, "length": local.beam.length}
+        return local_response(self.name, local, lambda: elastica_under_pin(local.path, **sizes), unknowns=1)
+
+    def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:  # noqa: ARG002 - as above
+        """Return the errors from missing stretch and shear."""
+        from comparisons.models.theory import CHANGE, ROUND_OFF
+
+        beam = scene.beams[0]
+        soft = beam.EI / beam.length**2 * (1 / beam.EA + 1 / beam.GA)
+        return {
+            "stretch and shear: EI/s^2 (1/EA + 1/GA) with the nearest s": CHANGE**2 * soft / bent.nearest**2,
+            "round-off": ROUND_OFF,
+        }
+
+
+def _on_axis(scene: Scene) -> RodScene:
+    """Return `scene` in the frame of the one cantilever that a pin on its axis pushes."""
+    from comparisons.models.cantilever import to_rod
+
+    local = to_rod(scene, "the elastica")
+    if local.contact.friction:
+        raise ModelError("the elastica has no friction here, the scene has some")
+    if local.offset:
+        raise ModelError(
+            "the elastica has a point in contact on its axis only, the scene has a face or a round pin"
+        )
+    return local
+
+
+ROD, ELASTICA = Rod(), Elastica()
+MODELS = (ROD, ELASTICA)

@@ -23,7 +23,7 @@ def solve_rods(scene: Scene, watch: Watch) -> Response:
     """Return the exact equilibria of a scene's rods along the path that exact TSM elements follow.
 
     The referee starts from the TSM answer at every load parameter, solves its own equations, and judges stability, admissibility
-    and the path in between. Load parameters, the gaps of open contacts and slip-offs are those of TSM; all other values are the
+    and the path in between. Load parameters, springs, the gaps of open contacts and slip-offs are those of TSM; all other values are the
     referee's. The response ends before the first load parameter at which the verdict is not `Verdict.CERTIFIED`. `watch` receives
     every accepted step of TSM.
     """
@@ -43,6 +43,8 @@ def solve_rods(scene: Scene, watch: Watch) -> Response:
     }
     ends = {beam.name: f"{beam.name}.{scene.tip(beam.name)}" for beam in scene.beams}
 
+    reached = slice(len(states))
+
     def axis_line(beam: str, k: int) -> Axis:
         arc = np.linspace(0.0, scene.beam(beam).length, POINTS)
         return arc, states[k].shape(beam, arc).position
@@ -52,7 +54,7 @@ def solve_rods(scene: Scene, watch: Watch) -> Response:
         model=ROD.name,
         status=followed.status if sound else found.verdict.name,
         message=followed.message if sound else found.reason,
-        load_parameter=followed.load_parameter[: len(states)],
+        load_parameter=followed.load_parameter[reached],
         contacts={
             pair: _contact(pair, history, states, spent.get(pair, np.zeros(0)))
             for pair, history in followed.contacts.items()
@@ -60,6 +62,10 @@ def solve_rods(scene: Scene, watch: Watch) -> Response:
         work=work if spent and np.all(np.isfinite(work)) else None,
         supports={
             node: SupportHistory(force=table[:, :2], moment=table[:, 2]) for node, table in held.items()
+        },
+        springs={
+            node: SupportHistory(force=one.force[reached], moment=one.moment[reached])
+            for node, one in followed.springs.items()
         },
         tips={beam: rows([state.ends[end] for state in states], 2) for beam, end in ends.items()},
         newton_iterations=np.array([state.iterations for state in states], dtype=np.int64),

@@ -8,12 +8,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from comparisons.models.base import Model
     from comparisons.models.options import Options
     from comparisons.response import Array, ContactHistory, Response
-    from comparisons.scene import BeamSpec, Scene
+    from comparisons.scene import BeamSpec, PinSpec, Scene
 
-ENDS = ("start", "end")
 POINTS = 401
 """Points of a deflected axis in pictures. The exact solutions do not depend on this number."""
 Axis = tuple[Any, Any]
@@ -25,7 +23,7 @@ def joints(scene: Scene) -> list[list[str]]:
     """Return the ends of beams that meet, as ``column.end``, one list for each joint."""
     meeting: dict[Force, list[str]] = defaultdict(list)
     for beam in scene.beams:
-        for end in ENDS:
+        for end in ("start", "end"):
             meeting[scene.place(f"{beam.name}.{end}")].append(f"{beam.name}.{end}")
     return [ends for ends in meeting.values() if len(ends) > 1]
 
@@ -38,17 +36,19 @@ def line_loads(scene: Scene) -> Iterator[tuple[BeamSpec, int, tuple[Force, ...],
     for beam in scene.beams:
         for stage, (gx, gy) in enumerate(scene.stage_gravities):
             if beam.density is not None and (gx or gy):
-                yield (
-                    beam,
-                    stage,
-                    tuple((gx * mass, gy * mass) for mass in beam.mass_coefficients()),
-                    (0.0, 1.0),
-                )
+                weight = tuple((gx * mass, gy * mass) for mass in beam.mass_coefficients())
+                yield beam, stage, weight, (0.0, 1.0)
 
 
 def kept(record: object, names: str) -> dict[str, Any]:
     """Return what a record has under some names, which are the same where it goes."""
     return {name: getattr(record, name) for name in names.split()}
+
+
+def ways(pin: PinSpec) -> dict[str, Any]:
+    """Return the path of a pin in the first stage and the points of its way onward in each of the others."""
+    path, *onward = pin.stage_points
+    return {"path": path, "onward": tuple(points[1:] for points in onward)}
 
 
 def rows(found: Any, width: int) -> Array:
@@ -79,7 +79,7 @@ def history(item: Any, **more: Any) -> ContactHistory:
 
 
 def of_result(
-    model: Model,
+    model: str,
     scene: Scene,
     result: Any,
     axis_line: Callable[[str, int], Axis],
@@ -98,8 +98,7 @@ def of_result(
     )
     return Response(
         **kept(result, "message load_parameter newton_iterations cutbacks unknowns wall_seconds index"),
-        model=model.name,
-        continuum=model.continuum,
+        model=model,
         scene=scene.name,
         status=result.status.name,
         supports=held,

@@ -5,31 +5,31 @@ from __future__ import annotations
 from math import ceil
 from typing import TYPE_CHECKING, Any
 
-from comparisons.models.base import Model, Style
+from comparisons.models.base import Model, Style, refused
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Reached, Watch
-from comparisons.models.shared import history, joints, kept, line_loads, of_result, result_of
+from comparisons.models.shared import history, joints, kept, line_loads, of_result, result_of, ways
 from comparisons.scene.conditions import COMPONENTS
-from comparisons.scene.keys import STRIPS, unstated
+from comparisons.scene.keys import STRIPS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from comparisons.models.theory import Bending
     from comparisons.response import Array, ContactEvent, Response
-    from comparisons.scene import BeamSpec, Scene, SupportSpec
-    from fem_reference import Joint, LineLoad, PointLoad, SolidProblem, Spring, Strip, Support
+    from comparisons.scene import BeamSpec, LoadSpec, Scene, SpringSpec, SupportSpec
+    from fem_reference import SolidProblem, Strip
 
 REFINED = ((25, 1), (50, 2), (100, 4), (200, 8))
 """Meshes refined alike in both directions, to which an order of convergence can be fitted."""
 COARSE = ((8, 1), (12, 1), (16, 1), (25, 2))
 LEAST_RATIO = -0.999
 """Least Poisson's ratio. There the shear modulus is 500 times Young's modulus; a solid that is stiffer in shear locks."""
-CONTACT, STRIP = (
-    "node side surface penalty penetration keep friction",
-    "name start end turn youngs_modulus material",
-)
+CONTACT = "node side surface penalty penetration keep friction"
+STRIP = "name start end turn youngs_modulus material"
 """What the solid takes of a contact and of a beam as it is."""
+DEFAULT_PENALTY = 25.0
+"""Default penalty stiffness of the solid, over E b."""
 SLENDER = 0.125
 """Largest height over length of the rectangle that replaces a section given by area and second moment."""
 
@@ -47,15 +47,71 @@ class Solid(Model):
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why the solid cannot state `scene`; None if it can."""
-        try:
-            to_solid(scene)
-        except ValueError as error:
-            return str(error)
-        return None
+        return refused(to_solid, scene)
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked."""
-        return _solved(scene, options, watch)
+        import numpy as np
+
+        import fem_reference
+        from comparisons.models.sections import j_integrals, section_forces
+        from comparisons.response import Deformation, FrictionHistory, Grid
+        from comparisons.response.material import Deferred
+
+        def report(step: Any) -> None:
+            touching = (
+                f"{touch.pair.name} at {touch.at.zeta:.4g}" for touch in step.state.closed
+            )
+            watch(Reached(step.load_parameter, step.iterations, tuple(touching)))
+
+        problem = to_solid(scene, mesh=options.mesh)
+        result = result_of(fem_reference, problem, scene, options, report)
+        beam = np.repeat(np.arange(len(scene.beams)), [len(body.mesh.nodes) for body in result.model.bodies])
+
+        def axis_line(beam: str, k: int) -> tuple[Array, Array]:
+            return fem_reference.axis_stations(result, beam), fem_reference.axis_line(result, beam, k)
+
+        def grid(k: int) -> Grid:
+            displacement, (xx, yy, xy) = result.displacement[k], fem_reference.nodal_stress(result, k).T
+            data = {
+                "displacement": displacement, "deformed": result.mesh_points + displacement, "beam": beam,
+                "stress_xx": xx, "stress_yy": yy, "stress_xy": xy, "von_mises": np.sqrt(xx**2 - xx * yy + yy**2 + 3.0 * xy**2),
+                "axial_stress": fem_reference.fibre_stress(result, k),
+            }  # fmt: skip
+            return Grid(points=result.mesh_points, cells=result.mesh_cells, point_data=data)
+
+        def half_turns(beam: str) -> Array:
+            """Largest angle between neighbouring chords of the axis; a quadratic element has two chords."""
+            lines = [axis_line(beam, k)[1] for k in range(len(result.load_parameter))]
+            chords = [np.diff(line, axis=0) @ (1, 1j) for line in lines]
+            return np.array([np.abs(np.angle(chord[1:] / chord[:-1])).max() for chord in chords])
+
+        contacts = {}
+        for spec in problem.contacts:
+            item, friction = result.contacts[spec.name], None
+            if spec.friction:
+                forces = {"tangential": item.tangential_force, "normal": item.normal_force}
+                friction = FrictionHistory(slip=item.direction, dissipated=item.dissipated, **forces)
+            soft = 1.0 / problem.penalty(spec) if spec.penetration is None else 0.0
+            more = {"slip_off": item.slip_off, "vector": item.vector, "friction": friction}
+            contacts[spec.name] = history(item, compliance=soft, **more)
+        turn = 2 * np.max([half_turns(beam.name) for beam in scene.beams], axis=0)
+        return of_result(
+            self.name,
+            scene,
+            result,
+            axis_line,
+            lambda beam, k: axis_line(beam, k)[1],
+            grid=grid,
+            contacts=contacts,
+            material_force=Deferred(lambda: j_integrals(scene, result)),
+            round_off=result.round_off,
+            events=_events(result) if any(contact.friction for contact in problem.contacts) else None,
+            deformation=Deformation(
+                load_parameter=result.load_parameter, turn=turn, strain=np.zeros_like(turn), bearable=1.0
+            ),
+            sections=lambda beam, k: section_forces(scene, result, beam, k),
+        )
 
     def styles(self) -> dict[str, Style]:
         """Return one style for every order of the elements."""
@@ -86,88 +142,42 @@ class Solid(Model):
 
     def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:
         """Return the parts of the difference between a strip and the rod."""
-        from comparisons.models.theory import solid_errors
+        from comparisons.models import theory
 
-        return solid_errors(scene, options, bent)
+        beam = scene.beams[0]
+        length = 1 / (options.mesh or beam.mesh)[0]
+        turn = min(bent.curvature * length, bent.turn)
+        width, height = rectangle(beam)
+        slender = height / beam.length
+        strain = slender * bent.curvature / 2
+        contraction = theory.CHANGE * (abs(beam.poissons_ratio or 0.0) * strain * slender / 4)
+        kink = bent.force * (length / 2) ** 2 / 12
+        penalty = DEFAULT_PENALTY * beam.youngs_modulus * width
+        return {
+            "a bent strip, softer by 4/5 of the square of its strain": strain**2,
+            "shear and dent of a strip of this height": 2 * slender**2,
+            "clamp at the middle of a section that contracts, nu kappa h^2/8 beside the fibre that keeps its length": contraction,
+            "square of the slope's error in a biquadratic element": theory.MESH * (turn**2 / 12) ** 2,
+            "kink of the curvature at the contact, F/EI, rounded by the axis's spline": kink,
+            "default penalty": theory.MESH * bent.force * beam.EI / beam.length**3 / penalty,
+            "tolerance of Newton's method": theory.FLOOR,
+        }
 
 
 def _order(scene: Scene) -> str:
     return "+".join(sorted({beam.solid_element for beam in scene.beams}))
 
 
-def _solved(scene: Scene, options: Options, watch: Watch) -> Response:
-    """Return the response of solid elements in contact."""
-    import numpy as np
-
-    import fem_reference
-    from comparisons.models.sections import j_integrals, section_forces
-    from comparisons.response import Deformation, FrictionHistory, Grid
-    from comparisons.response.material import Deferred
-
-    def report(step: Any) -> None:
-        touching = (f"{touch.pair.name} at {touch.at.zeta:.4g}" for touch in step.state.closed)
-        watch(Reached(step.load_parameter, step.iterations, tuple(touching)))
-
-    problem = to_solid(scene, mesh=options.mesh)
-    result = result_of(fem_reference, problem, scene, options, report)
-    beam = np.repeat(np.arange(len(scene.beams)), [len(body.mesh.nodes) for body in result.model.bodies])
-
-    def axis_line(beam: str, k: int) -> tuple[Array, Array]:
-        return fem_reference.axis_stations(result, beam), fem_reference.axis_line(result, beam, k)
-
-    def grid(k: int) -> Grid:
-        displacement, (xx, yy, xy) = result.displacement[k], fem_reference.nodal_stress(result, k).T
-        data = {
-            "displacement": displacement, "deformed": result.mesh_points + displacement, "beam": beam,
-            "stress_xx": xx, "stress_yy": yy, "stress_xy": xy, "von_mises": np.sqrt(xx**2 - xx * yy + yy**2 + 3.0 * xy**2),
-            "axial_stress": fem_reference.fibre_stress(result, k),
-        }  # fmt: skip
-        return Grid(points=result.mesh_points, cells=result.mesh_cells, point_data=data)
-
-    def half_turns(beam: str) -> Array:
-        """Largest angle between neighbouring chords of the axis; a quadratic element has two chords."""
-        lines = [axis_line(beam, k)[1] for k in range(len(result.load_parameter))]
-        chords = [np.diff(line, axis=0) @ (1, 1j) for line in lines]
-        return np.array([np.abs(np.angle(chord[1:] / chord[:-1])).max() for chord in chords])
-
-    contacts = {}
-    for spec in problem.contacts:
-        item, friction = result.contacts[spec.name], None
-        if spec.friction:
-            forces = {"tangential": item.tangential_force, "normal": item.normal_force}
-            friction = FrictionHistory(slip=item.direction, dissipated=item.dissipated, **forces)
-        soft = 1.0 / problem.penalty(spec) if spec.penetration is None else 0.0
-        more = {"slip_off": item.slip_off, "vector": item.vector, "friction": friction}
-        contacts[spec.name] = history(item, compliance=soft, **more)
-    turn = 2 * np.max([half_turns(beam.name) for beam in scene.beams], axis=0)
-    return of_result(
-        SOLID,
-        scene,
-        result,
-        axis_line,
-        lambda beam, k: axis_line(beam, k)[1],
-        grid=grid,
-        contacts=contacts,
-        material_force=Deferred(lambda: j_integrals(scene, result)),
-        round_off=result.round_off,
-        events=_events(result) if any(contact.friction for contact in problem.contacts) else None,
-        deformation=Deformation(
-            load_parameter=result.load_parameter, turn=turn, strain=np.zeros_like(turn), bearable=1.0
-        ),
-        sections=lambda beam, k: section_forces(scene, result, beam, k),
-    )
-
-
 def _events(result: Any) -> tuple[ContactEvent, ...]:
     """Return the events of a scene with friction, whose load parameters are located; no element owns a contact."""
     from comparisons.response import ContactEvent
 
-    found = []
-    for pair, contact in result.contacts.items():
-        for event in contact.events:
-            own = kept(event, "kind load_parameter arc_position force")
-            stage = max(1, ceil(event.load_parameter))
-            found.append(ContactEvent(pair=pair, element=-1, released=0.0, stage=stage, **own))
+    found = [
+        ContactEvent(pair=pair, element=-1, released=0.0, stage=max(1, ceil(event.load_parameter)), **own)
+        for pair, contact in result.contacts.items()
+        for event in contact.events
+        for own in [kept(event, "kind load_parameter arc_position force")]
+    ]
     return tuple(sorted(found, key=lambda event: event.load_parameter))
 
 
@@ -184,45 +194,58 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> SolidProbl
     """
     import fem_reference as fem
 
-    unknown = unstated(scene, "the solid", STRIPS)
-    if unknown is not None:
-        raise ModelError(unknown)
     joints = _Joints(scene)
     clamps = {spec.node for spec in scene.all_supports if _is_clamp(scene, spec, joints)}
     return fem.SolidProblem(
         strips=tuple(_strip(beam, clamps, mesh) for beam in scene.beams),
         supports=tuple(
-            _support(scene, spec, joints) for spec in scene.all_supports if spec.node not in clamps
+            fem.Support(strip=spec.beam, end=spec.end, motion=joints.motion(spec), onward=later[1:])
+            for spec in scene.all_supports
+            if spec.node not in clamps
+            for later in [scene.prescribed_motions[spec.node].increments]
         ),
-        joints=tuple(joints.stated()),
-        springs=tuple(_springs(scene, joints)),
-        loads=(*_end_loads(scene, joints), *_inner_loads(scene)),
-        pins=tuple(
-            fem.Pin(name=pin.name, path=path, radius=pin.radius or 0.0, onward=tuple(p[1:] for p in onward))
-            for pin in scene.pins
-            for path, *onward in [pin.stage_points]
+        joints=tuple(fem.Joint(**joint) for joint in joints.stated()),
+        springs=tuple(
+            fem.Spring(strip=spec.beam, end=spec.end, stiffness=stiffness)
+            for spec in scene.springs
+            for stiffness in [joints.stiffness(spec)]
+            if any(stiffness)
         ),
+        loads=(
+            *(
+                fem.PointLoad(strip=beam, at=float(end == "end"), stage=stage, **kept(load, "force moment"))
+                for stage, load in scene.numbered_loads()
+                if load.end is not None
+                for beam, end in [joints.loaded(load).split(".")]
+            ),
+            *(
+                fem.PointLoad(strip=load.beam, stage=stage, **kept(load, "at force moment"))
+                for stage, load in scene.numbered_loads()
+                if load.at is not None
+            ),
+            *(
+                fem.LineLoad(strip=beam.name, force=force, part=part, stage=stage)
+                for beam, stage, force, part in line_loads(scene)
+            ),
+        ),
+        pins=tuple(fem.Pin(name=pin.name, radius=pin.radius or 0.0, **ways(pin)) for pin in scene.pins),
         contacts=tuple(fem.Contact(strip=item.beam, **kept(item, CONTACT)) for item in scene.contacts),
     )
 
 
 class _Joints:
-    """The ends that meet, joint by joint, and the hinges among them with the stiffness of their springs."""
+    """The ends that meet, joint by joint, the hinges among them, and what is held or acts there."""
 
     def __init__(self, scene: Scene) -> None:
-
         self.meeting = joints(scene)
         self.hinges = {hinge.node: hinge.stiffness for hinge in scene.hinges}
 
-    def stated(self) -> Iterator[Joint]:
+    def stated(self) -> Iterator[dict[str, Any]]:
         """Yield the joints. The first end is one without a hinge, if there is one."""
-        from fem_reference import Joint
-
         for meeting in self.meeting:
             first, *others = sorted(meeting, key=lambda end: end in self.hinges)
-            hinged = tuple(end for end in others if end in self.hinges)
-            stiffness = tuple(self.hinges[end] for end in hinged)
-            yield Joint(ends=(first, *others), hinged=hinged, stiffness=stiffness)
+            hinged = {end: self.hinges[end] for end in others if end in self.hinges}
+            yield {"ends": (first, *others), "hinged": tuple(hinged), "stiffness": tuple(hinged.values())}
 
     def at(self, node: str) -> list[str]:
         """Return the ends that meet at one of them."""
@@ -246,6 +269,25 @@ class _Joints:
             )
         return False
 
+    def motion(self, spec: SupportSpec) -> tuple[float | None, float | None, float | None]:
+        """Return the motion of a support, without a rotation where all ends of its joint turn freely in hinges."""
+        x, y, rotation = spec.motion
+        return x, y, None if rotation is None or not self.turn(spec.node, "support") else rotation
+
+    def stiffness(self, spec: SpringSpec) -> tuple[float, float, float]:
+        """Return the stiffness of a spring, without a rotation as of a support."""
+        x, y = spec.stiffness
+        return x, y, spec.rotation if spec.rotation and self.turn(spec.node, "spring") else 0.0
+
+    def loaded(self, load: LoadSpec) -> str:
+        """Return the end at which a load acts; a moment acts on an end without a hinge."""
+        plain = self.plain(load.node) if load.moment else load.node
+        if plain is None:
+            raise ModelError(
+                f'the solid model states a moment on a joint with an end without a hinge, "{load.node}" has none'
+            )
+        return plain if load.node in self.hinges else load.node
+
 
 def _is_clamp(scene: Scene, spec: SupportSpec, joints: _Joints) -> bool:
     """Whether a support clamps the edge itself: it holds a single end at rest that bears no load and no spring.
@@ -265,52 +307,6 @@ def _is_clamp(scene: Scene, spec: SupportSpec, joints: _Joints) -> bool:
     return False
 
 
-def _support(scene: Scene, spec: SupportSpec, joints: _Joints) -> Support:
-    """Return a support. Where all ends of its joint turn freely in hinges, it holds no rotation."""
-    from fem_reference import Support
-
-    motion, onward = spec.motion, scene.prescribed_motions[spec.node].increments[1:]
-    if "rotation" in spec.held and not joints.turn(spec.node, "support"):
-        motion = (*motion[:2], None)
-    return Support(strip=spec.beam, end=spec.end, motion=motion, onward=onward)
-
-
-def _springs(scene: Scene, joints: _Joints) -> Iterator[Spring]:
-    from fem_reference import Spring
-
-    for spec in scene.springs:
-        turning = spec.rotation if spec.rotation and joints.turn(spec.node, "spring") else 0.0
-        if any((*spec.stiffness, turning)):
-            yield Spring(strip=spec.beam, end=spec.end, stiffness=(*spec.stiffness, turning))
-
-
-def _end_loads(scene: Scene, joints: _Joints) -> Iterator[PointLoad]:
-    """Yield the forces and moments on the ends; a moment acts on an end without a hinge."""
-    from fem_reference import PointLoad
-
-    for stage, load in scene.numbered_loads():
-        if load.end is None:
-            continue
-        plain = joints.plain(load.node) if load.moment else load.node
-        if plain is None:
-            raise ModelError(
-                f'the solid model states a moment on a joint with an end without a hinge, "{load.node}" has none'
-            )
-        beam, end = (plain if load.node in joints.hinges else load.node).split(".")
-        yield PointLoad(strip=beam, at=float(end == "end"), force=load.force, moment=load.moment, stage=stage)
-
-
-def _inner_loads(scene: Scene) -> Iterator[PointLoad | LineLoad]:
-    """Yield the forces and moments inside the beams, then the forces per length and the weights."""
-    from fem_reference import LineLoad, PointLoad
-
-    for stage, load in scene.numbered_loads():
-        if load.at is not None:
-            yield PointLoad(strip=load.beam, stage=stage, **kept(load, "at force moment"))
-    for beam, stage, force, part in line_loads(scene):
-        yield LineLoad(strip=beam.name, force=force, part=part, stage=stage)
-
-
 def rectangle(beam: BeamSpec) -> tuple[float, float]:
     """Return width and height of a beam's section at the start, or of the rectangle with its area and second moment.
 
@@ -319,7 +315,8 @@ def rectangle(beam: BeamSpec) -> tuple[float, float]:
     Raises ModelError if the rectangle is not slender in the plane.
     """
     if beam.width is not None and beam.height is not None:
-        return _ends(beam.width)[0], _ends(beam.height)[0]
+        width, height = (size[0] if isinstance(size, tuple) else size for size in (beam.width, beam.height))
+        return width, height
     height = beam.rectangle_height
     if height > SLENDER * beam.length:
         raise ModelError(
@@ -327,11 +324,6 @@ def rectangle(beam: BeamSpec) -> tuple[float, float]:
             f"moment is {height:.3g} high, more than an eighth of the length"
         )
     return beam.cross_section[0] / height, height
-
-
-def _ends(dimension: float | tuple[float, float]) -> tuple[float, float]:
-    """Return a dimension of the section at both ends."""
-    return dimension if isinstance(dimension, tuple) else (dimension, dimension)
 
 
 def _strip(beam: BeamSpec, clamps: set[str], mesh: tuple[int, int] | None) -> Strip:

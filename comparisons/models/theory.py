@@ -17,17 +17,13 @@ system has no such factor.
 
 from dataclasses import dataclass
 from math import factorial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from comparisons.models.options import Options
-from comparisons.models.solid import rectangle
 from comparisons.response import Response
 from comparisons.scene import BeamSpec, Scene
-
-if TYPE_CHECKING:
-    from tsm.elements import ElementType
 
 MESH = 4.0
 """Allowed error over the first neglected term, for a contact on straight elements or on solids."""
@@ -37,8 +33,6 @@ EXACT = 1e-10
 """Allowed error of exact elements, a tenth of their default integration accuracy; the quadrature order that they choose leaves less."""
 FLOOR = 1e-9
 """Error that Newton's method leaves at its tolerance: the least allowance of a discrete model."""
-DEFAULT_PENALTY = 25.0
-"""Default penalty stiffness of the solid, over E b."""
 ROUND_OFF = 1e-11
 """Allowed difference between two exact answers."""
 CHANGE = 10.0
@@ -101,67 +95,3 @@ def element_lengths(scene: Scene, options: Options) -> tuple[float, float]:
         return 1 / count, 1 / count
     lengths = np.diff([0.0, *beam.nodes, 1.0])
     return float(lengths.max()), float(lengths.min())
-
-
-def beam_errors(kind: "ElementType", scene: Scene, options: Options, bent: Bending) -> dict[str, float]:
-    """Return the allowed error of TSM elements, split by cause."""
-    from tsm.elements import ClosedForm
-
-    if not isinstance(kind, ClosedForm):
-        return {"accuracy of the integration": EXACT}
-    beam = scene.beams[0]
-    longest, shortest = element_lengths(scene, options)
-    turn = min(bent.curvature * longest, bent.turn)
-    force = bent.force * beam.EI / beam.length**2
-    slip, stretch = force / beam.GA, force / beam.EA
-    last_bit = 4 * np.finfo(float).eps
-    term = float(chord_term(turn, kind.order))
-    order = ordinal(kind.order)
-    if not kind.contact_unknowns:
-        return {
-            f"{order} order of the element": MESH * term,
-            "force normal to the chord, not to the mean tangent of the kink F/GA": slip * kind.sheared,
-            "stretch left out of the lever arms": stretch,
-            "tolerance of Newton's method": FLOOR,
-            "round-off of positions, felt by EI/l^3": last_bit / shortest**3 / max(bent.force, 1.0),
-        }
-    inside = min(longest / bent.nearest, 1.0)
-    return {
-        f"{order} order of the element": CURVED * term,
-        "third power of the shear strain": slip**3,
-        "jump of the shear strain within the element": inside * slip**2 / 2,
-        "tolerance of Newton's method": FLOOR,
-        "round-off of positions, a kink of eps/l": CHANGE * last_bit / shortest,
-    }
-
-
-def solid_errors(scene: Scene, options: Options, bent: Bending) -> dict[str, float]:
-    """Return the allowed difference between the rod and a solid with the rod's material law, split by cause."""
-    beam = scene.beams[0]
-    length = 1 / (options.mesh or beam.mesh)[0]
-    turn = min(bent.curvature * length, bent.turn)
-    width, height = rectangle(beam)
-    slender = height / beam.length
-    strain = slender * bent.curvature / 2
-    contraction = CHANGE * (abs(beam.poissons_ratio or 0.0) * strain * slender / 4)
-    kink = bent.force * (length / 2) ** 2 / 12
-    penalty = DEFAULT_PENALTY * beam.youngs_modulus * width
-    return {
-        "a bent strip, softer by 4/5 of the square of its strain": strain**2,
-        "shear and dent of a strip of this height": 2 * slender**2,
-        "clamp at the middle of a section that contracts, nu kappa h^2/8 beside the fibre that keeps its length": contraction,
-        "square of the slope's error in a biquadratic element": MESH * (turn**2 / 12) ** 2,
-        "kink of the curvature at the contact, F/EI, rounded by the axis's spline": kink,
-        "default penalty": MESH * bent.force * beam.EI / beam.length**3 / penalty,
-        "tolerance of Newton's method": FLOOR,
-    }
-
-
-def elastica_errors(scene: Scene, bent: Bending) -> dict[str, float]:
-    """Return the allowed difference between the elastica and the rod, split by cause."""
-    beam = scene.beams[0]
-    soft = beam.EI / beam.length**2 * (1 / beam.EA + 1 / beam.GA)
-    return {
-        "stretch and shear: EI/s^2 (1/EA + 1/GA) with the nearest s": CHANGE**2 * soft / bent.nearest**2,
-        "round-off": ROUND_OFF,
-    }

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from comparisons.models.base import Model, Style
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Reached, Watch
-from comparisons.models.shared import history, kept, line_loads, of_result, result_of, rows
-from comparisons.scene.keys import BEAMS, unstated
+from comparisons.models.shared import history, kept, line_loads, of_result, result_of, rows, ways
+from comparisons.scene.keys import BEAMS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from comparisons.models.theory import Bending
     from comparisons.response import Grid, Response
     from comparisons.scene import BeamSpec, ContactSpec, Scene
-    from comparisons.scene.stages import PrescribedMotion
-    from tsm import Beam, ContactPair, Load, Structure, Support
+    from tsm import Beam, ContactPair, Structure
     from tsm.elements import ElementType
 
 
@@ -74,23 +73,63 @@ class Tsm(Model):
         return beams_refusal(scene)
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
-        """Return the response to `scene`, not yet checked."""
-        return _solved(scene, options, self.kind(scene, options), watch)
+        """Return the response to `scene`, not yet checked; a tolerance is for elements that integrate."""
+        import tsm
+        from comparisons.response import ContactEvent, Deformation, FrictionHistory, Sections
+
+        kind, tolerance = self.kind(scene, options), options.integration_tolerance
+        structure = to_structure(scene, elements=options.elements, element=kind.name)
+        if tolerance is not None and kind.meshed:
+            integrated = ", ".join(name for name, other in tsm.ELEMENTS.items() if not other.meshed)
+            raise ModelError(f"integration_tolerance = {tolerance:g}: belongs to element = {integrated}")
+        settings = {} if tolerance is None else {"integration_tolerance": tolerance}
+        result = result_of(tsm, structure, scene, options, _reporter(structure, watch), **settings)
+
+        def sections(beam: str, k: int) -> Sections:
+            stations = result.stations(beam, k)
+            N, V, M = stations.forces.reshape(-1, 3).T
+            return Sections(arc=stations.arc.ravel(), N=N, V=V, M=M)
+
+        events = tuple(
+            ContactEvent(**vars(event) | {"kind": event.kind.value, "element": int(event.element)})
+            for event in result.events
+        )
+        slipped = {one.pair: one.load_parameter for one in reversed(events) if one.kind == "slip-off"}
+        contacts = {
+            pair: history(
+                item,
+                slip_off=slipped.get(pair, nan),
+                vector=rows([state.system.forces.get(number, (0.0, 0.0)) for state in result.equilibria], 2),
+                friction=None if item.friction is None else FrictionHistory(**vars(item.friction)),
+            )
+            for number, (pair, item) in enumerate(result.contacts.items())
+        }
+        return of_result(
+            self.name,
+            scene,
+            result,
+            cache(result.axis_line),
+            lambda beam, k: result.shape(beam, k)[:, :2],
+            grid=lambda k: _grid(scene, result, k),
+            contacts=contacts,
+            events=events,
+            integration_error=result.integration_error,
+            work=result.work if result.model.rubbed else None,
+            deformation=None if result.deformation is None else Deformation(**vars(result.deformation)),
+            sections=sections,
+        )
 
     def styles(self) -> dict[str, Style]:
         """Return one style for every type of element."""
         from tsm.elements import ELEMENTS
 
-        return {
-            f"{self.label} {kind.name}": Style(colour=kind.colour, marker=kind.marker)
-            for kind in ELEMENTS.values()
-        }
+        styles = {kind.name: Style(colour=kind.colour, marker=kind.marker) for kind in ELEMENTS.values()}
+        return {f"{self.label} {name}": style for name, style in styles.items()}
 
     def run_label(self, options: Options) -> str:
         """Return the label of one run, as ``TSM mixed, 20 elements``."""
-        return (
-            f"{self.label} {self.element(options).name}{super().run_label(options).removeprefix(self.label)}"
-        )
+        own = f"{self.label} {self.element(options).name}"
+        return super().run_label(options).replace(self.label, own, 1)
 
     def setting(self, scene: Scene, options: Options) -> str:
         """Return element type, numbers of elements and tolerance, as ``mixed 20``."""
@@ -117,58 +156,37 @@ class Tsm(Model):
 
     def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:
         """Return the allowed error from the element's order, contact and shear."""
-        from comparisons.models.theory import beam_errors
+        import numpy as np
 
-        return beam_errors(self.kind(scene, options), scene, options, bent)
+        from comparisons.models import theory
+        from tsm.elements import ClosedForm
 
-
-def _solved(scene: Scene, options: Options, kind: ElementType, watch: Watch) -> Response:
-    """Return the response of the tangent stiffness method; a tolerance is for elements that integrate."""
-    import tsm
-    from comparisons.response import ContactEvent, Deformation, FrictionHistory, Sections
-
-    structure = to_structure(scene, elements=options.elements, element=kind.name)
-    tolerance = options.integration_tolerance
-    if tolerance is not None and kind.meshed:
-        integrated = ", ".join(name for name, other in tsm.ELEMENTS.items() if not other.meshed)
-        raise ModelError(f"integration_tolerance = {tolerance:g}: belongs to element = {integrated}")
-    settings = {} if tolerance is None else {"integration_tolerance": tolerance}
-    result = result_of(tsm, structure, scene, options, _reporter(structure, watch), **settings)
-
-    def sections(beam: str, k: int) -> Sections:
-        stations = result.stations(beam, k)
-        N, V, M = stations.forces.reshape(-1, 3).T
-        return Sections(arc=stations.arc.ravel(), N=N, V=V, M=M)
-
-    slipped = {
-        event.pair: event.load_parameter for event in reversed(result.events) if event.kind.name == "SLIP_OFF"
-    }
-    contacts = {
-        pair: history(
-            item,
-            slip_off=slipped.get(pair, nan),
-            vector=rows([state.system.forces.get(number, (0.0, 0.0)) for state in result.equilibria], 2),
-            friction=None if item.friction is None else FrictionHistory(**vars(item.friction)),
-        )
-        for number, (pair, item) in enumerate(result.contacts.items())
-    }
-    return of_result(
-        TSM,
-        scene,
-        result,
-        cache(result.axis_line),
-        lambda beam, k: result.shape(beam, k)[:, :2],
-        grid=lambda k: _grid(scene, result, k),
-        contacts=contacts,
-        events=tuple(
-            ContactEvent(**vars(event) | {"kind": event.kind.value, "element": int(event.element)})
-            for event in result.events
-        ),
-        integration_error=result.integration_error,
-        work=result.work if result.model.rubbed else None,
-        deformation=None if result.deformation is None else Deformation(**vars(result.deformation)),
-        sections=sections,
-    )
+        kind, beam = self.kind(scene, options), scene.beams[0]
+        if not isinstance(kind, ClosedForm):
+            return {"accuracy of the integration": theory.EXACT}
+        longest, shortest = theory.element_lengths(scene, options)
+        turn = min(bent.curvature * longest, bent.turn)
+        force = bent.force * beam.EI / beam.length**2
+        slip, stretch = force / beam.GA, force / beam.EA
+        last_bit = 4 * np.finfo(float).eps
+        term = float(theory.chord_term(turn, kind.order))
+        order, newton = f"{theory.ordinal(kind.order)} order of the element", "tolerance of Newton's method"
+        if not kind.contact_unknowns:
+            return {
+                order: theory.MESH * term,
+                "force normal to the chord, not to the mean tangent of the kink F/GA": slip * kind.sheared,
+                "stretch left out of the lever arms": stretch,
+                newton: theory.FLOOR,
+                "round-off of positions, felt by EI/l^3": last_bit / shortest**3 / max(bent.force, 1.0),
+            }
+        inside = min(longest / bent.nearest, 1.0)
+        return {
+            order: theory.CURVED * term,
+            "third power of the shear strain": slip**3,
+            "jump of the shear strain within the element": inside * slip**2 / 2,
+            newton: theory.FLOOR,
+            "round-off of positions, a kink of eps/l": theory.CHANGE * last_bit / shortest,
+        }
 
 
 def _reporter(structure: Structure, watch: Watch) -> Callable[[Any], None]:
@@ -237,8 +255,21 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
     kind = TSM.element(Options(element=element))
     return tsm.Structure(
         beams=tuple(_beam(scene, beam, elements, kind) for beam in scene.beams),
-        supports=tuple(_support(motion) for motion in scene.prescribed_motions.values()),
-        loads=tuple(_loads(scene)),
+        supports=tuple(
+            tsm.Support(ux=ux, uy=uy, rotation=turn, onward=later[1:], **kept(own, "beam end"))
+            for motion in scene.prescribed_motions.values()
+            for own, later in [(motion.support, motion.increments)]
+            for ux, uy, turn in [own.motion]
+        ),
+        loads=tuple(
+            tsm.Load(
+                stage=stage,
+                arc=None if load.at is None else load.at * scene.beam(load.beam).length,
+                **kept(load, "beam end force moment"),
+            )
+            for stage, load in scene.numbered_loads()
+            if load.force_per_length is None
+        ),
         line_loads=tuple(
             tsm.LineLoad(
                 beam=beam.name, force=force, start=start * beam.length, end=end * beam.length, stage=stage
@@ -250,24 +281,17 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
             tsm.Spring(x=item.stiffness[0], y=item.stiffness[1], **kept(item, "beam end rotation"))
             for item in scene.springs
         ),
-        pins=tuple(
-            tsm.Pin(name=pin.name, path=path, onward=tuple(points[1:] for points in onward))
-            for pin in scene.pins
-            for path, *onward in [pin.stage_points]
-        ),
+        pins=tuple(tsm.Pin(name=pin.name, **ways(pin)) for pin in scene.pins),
         contacts=tuple(_pair(scene, contact) for contact in scene.contacts),
     )
 
 
 def beams_refusal(scene: Scene) -> str | None:
     """Return why no element of the tangent stiffness method states `scene`; None if one does."""
-    for contact in scene.contacts:
-        if contact.friction and _face_slope(scene, contact):
-            return (
-                f"contact {contact.pair}: the tangent stiffness method does not state friction on the face of a beam whose height tapers; "
-                'use --model solid, surface = "axis" or one height'
-            )
-    return unstated(scene, "the tangent stiffness method", BEAMS)
+    refused = (item.pair for item in scene.contacts if item.friction and _face_slope(scene, item))
+    words = "the tangent stiffness method does not state friction on the face of a beam whose height tapers"
+    use = 'use --model solid, surface = "axis" or one height'
+    return next((f"contact {pair}: {words}; {use}" for pair in refused), None)
 
 
 def _face_slope(scene: Scene, contact: ContactSpec) -> float:
@@ -287,14 +311,6 @@ def _pair(scene: Scene, contact: ContactSpec) -> ContactPair:
     end = offset + steep * beam.length if steep else None
     own = kept(contact, "node beam side keep friction")
     return ContactPair(offset=offset, end_offset=end, radius=radius, **own)
-
-
-def _support(motion: PrescribedMotion) -> Support:
-    from tsm import Support
-
-    ux, uy, rotation = motion.support.motion
-    own = kept(motion.support, "beam end")
-    return Support(ux=ux, uy=uy, rotation=rotation, onward=motion.increments[1:], **own)
 
 
 def _beam(scene: Scene, spec: BeamSpec, elements: int | None, kind: ElementType) -> Beam:
@@ -318,18 +334,6 @@ def _beam(scene: Scene, spec: BeamSpec, elements: int | None, kind: ElementType)
         element=kind.name,
         nodes=nodes,
     ).divided(*(part * spec.length for part in (*ends, *places)))
-
-
-def _loads(scene: Scene) -> Iterator[Load]:
-    """Yield the forces and moments at points."""
-    from tsm import Load
-
-    for stage, load in scene.numbered_loads():
-        if load.force_per_length is None:
-            place: Any = (
-                {"end": load.end} if load.at is None else {"arc": load.at * scene.beam(load.beam).length}
-            )
-            yield Load(stage=stage, **kept(load, "beam force moment"), **place)
 
 
 TSM = Tsm()

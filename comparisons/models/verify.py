@@ -37,7 +37,8 @@ MOTION = 1e-10
 def verified(response: Response, scene: Scene) -> Response:
     """Return `response`; a response that breaks a check has the status ``CHECK_FAILED`` and the reason.
 
-    A path with unstable equilibria is not completed, and has the status ``UNSTABLE``. A response that stopped early is checked only for elements that are bent too much and for numbers below the round-off.
+    A path with unstable equilibria is not completed, and has the status ``UNSTABLE``. A response that stopped early is checked only for
+    elements that are bent too much and for numbers below the round-off.
     """
     names = CHECKS if response.completed else UNRESOLVED
     reason = next((said for name in names for said in CHECKS[name](response, scene)), None)
@@ -50,24 +51,28 @@ def verified(response: Response, scene: Scene) -> Response:
     return replace(response, status=UNSTABLE, message=sentence)
 
 
+def _first(failed: Mask, at: Response | Deformation) -> str:
+    return f"at load parameter {at.load_parameter[np.argmax(failed)]:.6g}"
+
+
 def _unreached(response: Response, scene: Scene) -> Iterator[str]:
     if not np.array_equal(response.load_parameter, scene.times):
         yield f"{len(response.load_parameter)} of {len(scene.times)} load parameters reached"
 
 
 def _infinite(response: Response, _: Scene) -> Iterator[str]:
-    numbers = [(f"tip of {beam}", tip) for beam, tip in response.tips.items()]
+    numbers = {f"tip of {beam}": tip for beam, tip in response.tips.items()}
     for kind, held in (("support", response.supports), ("spring", response.springs)):
         for node, item in held.items():
-            numbers += [(f"{kind} force of {node}", item.force), (f"{kind} moment of {node}", item.moment)]
+            numbers |= {f"{kind} force of {node}": item.force, f"{kind} moment of {node}": item.moment}
     for pair, contact in response.contacts.items():
         closed = contact.force > 0.0
-        numbers += [
-            (f"force of {pair}", contact.force),
-            (f"arc position of {pair}", contact.arc_position[closed]),
-            (f"gap of {pair}", contact.gap[closed]),
-        ]
-    yield from (f"{name} is not finite" for name, values in numbers if not np.isfinite(values).all())
+        numbers |= {
+            f"force of {pair}": contact.force,
+            f"arc position of {pair}": contact.arc_position[closed],
+            f"gap of {pair}": contact.gap[closed],
+        }
+    yield from (f"{name} is not finite" for name, values in numbers.items() if not np.isfinite(values).all())
 
 
 def _unbalanced(response: Response, scene: Scene) -> Iterator[str]:
@@ -94,10 +99,6 @@ def _motionless(_: Response, scene: Scene) -> Iterator[str]:
         way = float(np.hypot(*np.diff(pin.points, axis=0).T).sum())
         if 0.0 < way < MOTION * length:
             yield f"{pin.name} moves by {way:.2g}, less than {MOTION:g} of the length, which is not resolved"
-
-
-def _first(failed: Mask, at: Response | Deformation) -> str:
-    return f"at load parameter {at.load_parameter[np.argmax(failed)]:.6g}"
 
 
 def _contacts(
@@ -127,10 +128,8 @@ def _inside(response: Response, scene: Scene) -> Iterator[str]:
         depth = penetration(response, scene, spec, KINK) + np.minimum(gap, 0.0)
         inside = depth > INSIDE * length
         if inside.any():
-            yield (
-                f"{spec.node} is {depth[inside][0] / length:.2g} L inside beam {spec.beam} away from its contact "
-                f"{_first(inside, response)}: one contact of a pair is modelled"
-            )
+            deep = f"{spec.node} is {depth[inside][0] / length:.2g} L inside beam {spec.beam} away from its contact"
+            yield f"{deep} {_first(inside, response)}: one contact of a pair is modelled"
 
 
 def _overlapping(response: Response, scene: Scene) -> Iterator[str]:
@@ -150,19 +149,15 @@ def _depth(response: Response, scene: Scene, spec: ContactSpec, end: BeamEnd, k:
     if abs(response.contacts[spec.pair].arc_position[k] - arc[at]) < end.half + end.radius:
         return -math.inf
     inward = (1 + 2 * at) * np.gradient(place, arc, axis=0, edge_order=2)[at]
-    (x, y), (dx, dy) = place[at].tolist(), inward.tolist()
-    node = _node(response, scene, spec, k).tolist()
-    return -end._replace(place=(x, y), inward=(dx, dy)).room((node[0], node[1]))
+    x, y = _node(response, scene, spec, k).tolist()
+    return -end._replace(place=tuple(place[at].tolist()), inward=tuple(inward.tolist())).room((x, y))
 
 
 def _node(response: Response, scene: Scene, spec: ContactSpec, k: int) -> Array:
     """Position of the contact's node at load parameter k."""
     owner, dot, _ = spec.node.partition(".")
-    return (
-        response.tips[owner][k]
-        if dot
-        else np.array(scene.pin(owner).position(float(response.load_parameter[k])))
-    )
+    t = float(response.load_parameter[k])
+    return response.tips[owner][k] if dot else np.array(scene.pin(owner).position(t))
 
 
 def penetration(response: Response, scene: Scene, spec: ContactSpec, kink: float = math.inf) -> Array:
@@ -180,23 +175,19 @@ def penetration(response: Response, scene: Scene, spec: ContactSpec, kink: float
     half = beam.height_at(0.5) / 2.0 if face else 0.0
     steep = (beam.height_at(1.0) - beam.height_at(0.0)) / (2.0 * beam.length) if face else 0.0
     for k in range(len(depth)):
-        node = _node(response, scene, spec, k)
         arc, place = response.axis_line(spec.beam, k)
         # a tapered face is the envelope of circles about the points of the axis
         offset = radius + (half + steep * (arc - beam.length / 2.0)) / math.hypot(1.0, steep)
-        away, along = node - place, np.gradient(place, arc, axis=0)
+        away, along = _node(response, scene, spec, k) - place, np.gradient(place, arc, axis=0)
         distance = np.hypot(*away.T)
         if contact.force[k] > 0.0:
             half_kink = 0.5 * min(contact.force[k] / beam.GA, kink)
             distance += half_kink * np.abs(arc - contact.arc_position[k])
         ahead, slack = np.einsum("mi,mi->m", along, away), distance - offset
-        least = np.r_[
-            ahead[0] > 0.0,
-            (slack[1:-1] <= slack[:-2]) & (slack[1:-1] <= slack[2:]),
-            ahead[-1] < 0.0,
-        ]
+        inner = (slack[1:-1] <= slack[:-2]) & (slack[1:-1] <= slack[2:])
+        least = np.r_[ahead[0] > 0.0, inner, ahead[-1] < 0.0]
         facing = side * (along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0]) > 0.0
-        depth[k] = np.max((offset - distance)[least & facing], initial=0.0)
+        depth[k] = np.max(-slack[least & facing], initial=0.0)
     return depth
 
 
@@ -230,12 +221,6 @@ CHECKS: dict[str, Check] = {
     ),
     "motion of pins": _motionless,
 }
-"""The checks of a response, in their order. Each yields a sentence for what is wrong, nothing for a right answer.
-
-All load parameters of the scene are reached, and all numbers are finite. Contact forces push, closed contacts have no gap, and those that
-must persist stay closed. Round pins are outside the beam along the whole axis, nodes and pins are clear of its ends, and open nodes are on
-the stated side unless they slipped off. Forces and moments of supports, pins and loads balance, for a model of this package. No element
-bends or strains beyond what it approximates, and no pin moves by less than numbers resolve.
-"""
+"""The checks of a response, in their order. Each yields a sentence for what is wrong, nothing for a right answer."""
 UNRESOLVED = ("bend of elements", "strain of elements", "motion of pins")
 """The checks of a response that stopped."""

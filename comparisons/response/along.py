@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import cache
+from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -66,23 +67,17 @@ def _forces(
     at: Sections, beam: BeamSpec, section: Callable[[tuple[float, ...]], Array]
 ) -> dict[str, tuple[float, float]]:
     at = _once(at, APART * beam.length)
-    found = {
-        "axial_force": peak(at.arc, at.N),
-        "shear_force": peak(at.arc, at.V),
-        "bending_moment": peak(at.arc, at.M),
-    }
+    forces = {"axial_force": at.N, "shear_force": at.V, "bending_moment": at.M}
+    found = {name: peak(at.arc, values) for name, values in forces.items()}
     if beam.height is None:
         return found
     area, lever = section(tuple(at.arc))
     faces = np.stack([at.N / area + at.M * lever, at.N / area - at.M * lever])
     for name, sign in (("tensile_stress", 1.0), ("compressive_stress", -1.0)):
-        value, arc = max((peak(at.arc, np.maximum(sign * face, 0.0)) for face in faces), key=_value)
+        ends = (peak(at.arc, np.maximum(sign * face, 0.0)) for face in faces)
+        value, arc = max(ends, key=itemgetter(0))
         found[name] = sign * value, arc
     return found
-
-
-def _value(extreme: tuple[float, float]) -> float:
-    return extreme[0]
 
 
 def _once(at: Sections, apart: float) -> Sections:
@@ -123,13 +118,11 @@ def peak(arc: Array, values: Array) -> tuple[float, float]:
 
 def _vertex(x: Array, values: Array, value: float, place: float) -> tuple[float, float]:
     """Return the largest value, and its place, of the polynomial through values at the distances `x` from a place, between its neighbours."""
-    scale = np.abs(x).max()
+    scale, middle = np.abs(x).max(), len(x) // 2
     curve = np.linalg.solve(np.vander(x / scale), values)
-    middle = len(x) // 2
+    roots = np.roots(np.polyder(curve))
     turns = [
-        float(at.real)
-        for at in np.roots(np.polyder(curve))
-        if at.imag == 0.0 and x[middle - 1] <= at.real * scale <= x[middle + 1]
+        float(at.real) for at in roots if at.imag == 0.0 and x[middle - 1] <= at.real * scale <= x[middle + 1]
     ]
     best = max(turns, key=lambda at: abs(np.polyval(curve, at)), default=0.0)
     found = float(np.polyval(curve, best))

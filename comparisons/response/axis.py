@@ -2,11 +2,10 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from typing import NoReturn
 
 import numpy as np
 
-from comparisons.response.record import Array, Grid, Response
+from comparisons.response.record import Array, Grid, Response, not_kept
 from comparisons.scene import Scene
 
 STATIONS = np.linspace(0.0, 1.0, 101)
@@ -34,8 +33,7 @@ def axes_at_stations(response: Response, beam: str, steps: Iterable[int]) -> Arr
         return np.empty((0, len(STATIONS), 2))
     first = lines[0][0]
     if all(np.array_equal(arc, first) for arc, _ in lines):
-        points = np.stack([line for _, line in lines], axis=1)
-        found = np.moveaxis(CubicSpline(first, points)(_stations(first)), 1, 0)
+        found = CubicSpline(first, np.stack([line for _, line in lines]), axis=1)(_stations(first))
     else:
         found = np.array([CubicSpline(arc, line)(_stations(arc)) for arc, line in lines])
     # a spline passes through its points up to round-off only; the ends keep the exact values of the model
@@ -86,14 +84,9 @@ def storable(response: Response, *, axes: bool = True) -> Response:
         response,
         material_force=dict(response.material_force),
         axis_line=kept,
-        grid=no_grid,
+        grid=not_kept,
         sections=None,
         deformation=None,
         certificate=None,
         definition=None,
     )
-
-
-def no_grid(_: int) -> NoReturn:
-    """Raise: a stored response has no mesh. It is the `grid` of such a response."""
-    raise NotImplementedError("a stored response has no mesh")

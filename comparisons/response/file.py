@@ -14,7 +14,7 @@ import numpy as np
 from comparisons.files import one_line
 from comparisons.output import json_text
 from comparisons.response import record
-from comparisons.response.axis import SampledAxes, no_grid, sampled_axes
+from comparisons.response.axis import SampledAxes, sampled_axes
 from comparisons.response.material import clamped
 from comparisons.response.record import Array, Response
 from comparisons.scene import Scene, load_scene
@@ -76,15 +76,11 @@ def _stated(field: Field, value: Any) -> Any:
         return value
     if "properties" in field:
         values = value if isinstance(value, dict) else vars(value)
-        left_out = {
-            key
-            for key in values
-            if values[key] is None or (isinstance(values[key], dict) and not values[key])
-        }
+        silent = {key for key, one in values.items() if one is None or (isinstance(one, dict) and not one)}
         return {
             key: _stated(one, values[key])
             for key, one in field["properties"].items()
-            if key in values and (key in field["required"] or key not in left_out)
+            if key in values and (key in field["required"] or key not in silent)
         }
     if isinstance(value, Mapping):
         named = field.get("additionalProperties", {})
@@ -138,14 +134,18 @@ def restated(data: Any) -> Response:
     if found["newton_iterations"] is None:
         found["newton_iterations"] = np.zeros(len(found["load_parameter"]), dtype=np.int64)
     arcs, places = ({beam: axis[key] for beam, axis in axes.items()} for key in ("arc_length", "position"))
-    line = SampledAxes(arc_length=arcs, position=places)
-    return Response(**found, axis_line=line, grid=no_grid)
+    return Response(**found, axis_line=SampledAxes(arc_length=arcs, position=places))
 
 
 def resolved(field: Field) -> Field:
     """Return a field with what the schema defines for it by name."""
     name = field.get("$ref", "").rpartition("/")[2]
     return {**SCHEMA["$defs"].get(name, {}), "record": name, **field} if name else field
+
+
+def _require(right: object, key: str, value: object, rule: str) -> None:
+    if not right:
+        raise FieldError(key, value, rule)
 
 
 def _read(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
@@ -160,26 +160,24 @@ def _read(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
     if "object" in kinds:
         return _table(field, value, key, sizes)
     if "array" in kinds:
-        if not isinstance(value, list):
-            raise FieldError(key, value, "must be a list")
+        _require(isinstance(value, list), key, value, "must be a list")
         return tuple(_read(field["items"], item, key, sizes) for item in value)
-    if kinds == "integer" and (type(value) is not int or abs(value) > LARGEST_WHOLE):
-        raise FieldError(key, value, "must be a whole number")
-    if kinds == "string" and key != "message" and not isinstance(value, str):
-        raise FieldError(key, value, "must be a name")
-    return value is True if kinds == "boolean" else one_line(value) if kinds == "string" else value
+    if kinds == "integer":
+        _require(type(value) is int and abs(value) <= LARGEST_WHOLE, key, value, "must be a whole number")
+    if kinds == "string":
+        _require(key == "message" or isinstance(value, str), key, value, "must be a name")
+        return one_line(value)
+    return value is True if kinds == "boolean" else value
 
 
 def _table(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
     """Return a table by name, or the record of a table with fields."""
-    if not isinstance(value, dict):
-        raise FieldError(key or "file", value, "must be a table, as `crossval solve --out` writes it")
+    rule = "must be a table, as `crossval solve --out` writes it"
+    _require(isinstance(value, dict), key or "file", value, rule)
     prefix = f"{key}." if key else ""
     if "properties" not in field:
-        return {
-            name: _read(field["additionalProperties"], one, prefix + name, sizes)
-            for name, one in value.items()
-        }
+        named = field["additionalProperties"]
+        return {name: _read(named, one, prefix + name, sizes) for name, one in value.items()}
     for mistake in check_keys(value, field["properties"], () if key else ("status",)):
         raise mistake.within(prefix)
     found, sizes = {}, dict(sizes)
@@ -189,9 +187,8 @@ def _table(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
     for name, one in field["properties"].items():
         if one.get("gaps") and found[name] is not None:
             acts = found[one["gaps"]]
-            _check_finite(
-                np.asarray(found[name]), prefix + name, bool(acts) if isinstance(acts, str) else acts != 0.0
-            )
+            needed = bool(acts) if isinstance(acts, str) else acts != 0.0
+            _check_finite(np.asarray(found[name]), prefix + name, needed)
     return RECORDS.get(field.get("record", ""), dict)(**found)
 
 
@@ -202,22 +199,28 @@ def _numbers(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
     found = _array(value, len(shape))
     if found is not None and found.size == 0 and 0 in shape:
         found = np.zeros([size or 0 for size in shape])
-    if found is None or found.ndim != len(shape) or any(map(_differ, shape, found.shape)):
+    if (
+        found is None
+        or found.ndim != len(shape)
+        or any(size not in (None, own) for size, own in zip(shape, found.shape, strict=True))
+    ):
         has = f", has {_sizes(found.shape)}" if found is not None and found.ndim else ""
         raise FieldError(key, value, _rule(shape) + has)
     _check_finite(found, key, ~np.isnan(found) if "gaps" in field else np.True_)
     if not shape:
         return float(found)
-    if names == ["m"] and sizes["s"] and (len(found) < 2 or not np.all(np.diff(found) > 0.0)):
-        raise FieldError(key, value, "must be two or more increasing numbers")
+    if names == ["m"] and sizes["s"]:
+        rises = len(found) > 1 and np.all(np.diff(found) > 0.0)
+        _require(rises, key, value, "must be two or more increasing numbers")
     sizes |= {name: own for name, own in zip(names, found.shape, strict=True) if isinstance(name, str)}
     item = field["items"]
-    if "enum" in item and not np.isin(found, item["enum"]).all():
-        raise FieldError(key, value, f"must be a list of {', '.join(map(str, item['enum']))}")
-    if "enum" not in item and item.get("type") != "integer":
+    if "enum" in item:
+        rule = f"must be a list of {', '.join(map(str, item['enum']))}"
+        _require(np.isin(found, item["enum"]).all(), key, value, rule)
+    elif item.get("type") != "integer":
         return found
-    if np.any(np.abs(found) > LARGEST_WHOLE) or np.any(found % 1.0):
-        raise FieldError(key, value, "must be a list of whole numbers")
+    whole = np.all(np.abs(found) <= LARGEST_WHOLE) and not np.any(found % 1.0)
+    _require(whole, key, value, "must be a list of whole numbers")
     return found.astype(np.int64)
 
 
@@ -233,10 +236,6 @@ def _array(value: object, depth: int) -> Array | None:
         return np.array(value, dtype=np.float64) if plain(value, depth) else None
     except (ValueError, OverflowError):
         return None
-
-
-def _differ(size: int | None, own: int) -> bool:
-    return size not in (None, own)
 
 
 def _check_finite(numbers: Array, key: str, needed: Any) -> None:

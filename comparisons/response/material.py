@@ -55,19 +55,15 @@ def clamped(scene: Scene) -> dict[str, SupportSpec]:
     found: dict[str, SupportSpec] = {}
     if unstated(scene, "the material force", MATERIAL) is not None:
         return found
-    for beam in scene.beams:
-        supports = scene.supports_of(beam.name)
-        touched = any(contact.beam == beam.name for contact in scene.contacts)
-        if touched and len(supports) == 1 and len(supports[0].held) == 3 and _otherwise_free(scene, beam):
-            found[beam.name] = supports[0]
-    return found
-
-
-def _otherwise_free(scene: Scene, beam: BeamSpec) -> bool:
-    """Whether neither load nor joint nor another beam acts on the ends of a beam."""
     acting = {load.beam for load in scene.loads} | {contact.node.split(".")[0] for contact in scene.contacts}
-    ends = {end for other in scene.beams if other is not beam for end in (other.start, other.end)}
-    return beam.name not in acting and ends.isdisjoint((beam.start, beam.end))
+    touched = {contact.beam for contact in scene.contacts} - acting
+    for beam in (beam for beam in scene.beams if beam.name in touched):
+        supports = scene.supports_of(beam.name)
+        if len(supports) == 1 and len(supports[0].held) == 3:
+            others = {end for other in scene.beams if other is not beam for end in (other.start, other.end)}
+            if others.isdisjoint((beam.start, beam.end)):
+                found[beam.name] = supports[0]
+    return found
 
 
 def material_forces(response: Response, scene: Scene, *, strains: bool = True) -> dict[str, Array]:

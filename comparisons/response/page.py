@@ -6,6 +6,7 @@ Numbers have six significant digits, fewer where the last ones are round-off; a 
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from operator import itemgetter
 
 import numpy as np
 
@@ -17,12 +18,12 @@ from comparisons.response.table import unit_names
 
 PLACE = 4
 """Significant digits of the place of an extreme, which is not sharp where the extreme is flat."""
-RELEASE, SLIP_OFF = "release", "slip-off"
-"""Events that open a contact."""
+OPENED = {"release": "opened", "slip-off": "slipped off"}
+"""Events that open a contact, and the state after."""
 EVENTS = {
     "touch": "{node} touches {beam} at arc position {arc}",
-    RELEASE: "{node} leaves {beam} at arc position {arc}",
-    SLIP_OFF: "{node} slips off {beam} at arc position {arc}; contact force before {force}",
+    "release": "{node} leaves {beam} at arc position {arc}",
+    "slip-off": "{node} slips off {beam} at arc position {arc}; contact force before {force}",
     "slip": "{node} begins to slip on {beam} at arc position {arc}; contact force {force}",
     "stick": "{node} comes to stick on {beam} at arc position {arc}; contact force {force}",
     "limit-point": "limit point of the path",
@@ -45,22 +46,19 @@ class Block:
 
 
 def text(response: Response, more: Sequence[tuple[str, str]] = (), rule: str = "") -> str:
-    """Return the page as text.
+    """Return the page as text; `more` has labels and texts for the head, `rule` says why the setting of the model was chosen.
 
-    ``response``: the answer. Without its `definition` the numbers have no units, and no extremes along the
-    beams are stated. ``more``: labels and texts that are added to the head. ``rule``: why the setting of the
-    model was chosen.
+    Without the `definition` of the answer the numbers have no units, and no extremes along the beams are stated.
     """
-    return "\n\n".join(_lines(block, response.scene) for block in blocks(response, more, rule))
+    return "\n\n".join(_lines(block, response.scene) for block in _blocks(response, more, rule))
 
 
 def html(response: Response) -> str:
     """Return the page as HTML."""
-    return "".join(_markup(block, response.scene) for block in blocks(response))
+    return "".join(_markup(block, response.scene) for block in _blocks(response))
 
 
-def blocks(response: Response, more: Sequence[tuple[str, str]] = (), rule: str = "") -> Iterator[Block]:
-    """Yield the tables of the page; see `text`."""
+def _blocks(response: Response, more: Sequence[tuple[str, str]] = (), rule: str = "") -> Iterator[Block]:
     yield Block(rows=[*_head(response, rule), *more])
     if len(response.load_parameter):
         page = _Page(response)
@@ -121,17 +119,16 @@ class _Page:
 
     def block(self, title: str, columns: dict[str, str], rows: Sequence[Row]) -> Block:
         """Return a table whose columns have the kinds of their numbers by name, empty for texts."""
-        named = [
-            f"{name} [{self.units[kind]}]" if kind in self.units else name for name, kind in columns.items()
-        ]
-        cells = [
-            [
-                cell if isinstance(cell, str) else self.round_off.text(float(cell), kind)
-                for cell, kind in zip(row, columns.values(), strict=True)
-            ]
-            for row in rows
-        ]
-        return Block(title=title, columns=named, rows=cells)
+
+        def cell(value: str | float, kind: str) -> str:
+            return value if isinstance(value, str) else self.round_off.text(float(value), kind)
+
+        units = {kind: f" [{unit}]" for kind, unit in self.units.items()}
+        return Block(
+            title=title,
+            columns=[name + units.get(kind, "") for name, kind in columns.items()],
+            rows=[[cell(*pair) for pair in zip(row, columns.values(), strict=True)] for row in rows],
+        )
 
     def reactions(self) -> Block:
         scene, response = self.scene, self.response
@@ -149,25 +146,24 @@ class _Page:
         return self.block(f"Reactions on the beams {self.now}", columns, rows)
 
     def contacts(self) -> Block:
-        columns = {
-            "contact": "",
-            "state": "",
-            "force": "force",
-            "x": "force",
-            "y": "force",
-            "arc position": "length",
-        }
+        forces = dict.fromkeys(("force", "x", "y"), "force")
+        columns = {"contact": "", "state": "", **forces, "arc position": "length"}
         if any(contact.friction is not None for contact in self.response.contacts.values()):
             columns |= {"tangential": "force", "normal": "force", "dissipated": "energy"}
         rows = []
         for pair, contact in self.response.contacts.items():
-            vector = (np.nan, np.nan) if contact.vector is None else contact.vector[-1]
-            row: Row = (pair, self._state(pair), contact.force[-1], *vector, contact.arc_position[-1])
-            rubs = contact.friction
-            own = (
-                ("", "", "") if rubs is None else (rubs.tangential[-1], rubs.normal[-1], rubs.dissipated[-1])
-            )
-            rows.append((*row, *own)[: len(columns)])
+            x, y = (np.nan, np.nan) if contact.vector is None else contact.vector[-1]
+            row: list[str | float] = [
+                pair,
+                self._state(pair),
+                contact.force[-1],
+                x,
+                y,
+                contact.arc_position[-1],
+            ]
+            if (rubs := contact.friction) is not None:
+                row += [rubs.tangential[-1], rubs.normal[-1], rubs.dissipated[-1]]
+            rows.append(row + [""] * (len(columns) - len(row)))
         return self.block(f"Contact forces on the beams {self.now}", columns, rows)
 
     def _state(self, pair: str) -> str:
@@ -175,10 +171,8 @@ class _Page:
         if contact.force[-1] != 0.0 or np.isfinite(contact.arc_position[-1]):
             return "closed" if contact.friction is None else contact.friction.states(contact.force)[-1]
         for event in reversed(self.response.events or ()):
-            if event.pair == pair and event.kind in (RELEASE, SLIP_OFF):
-                return (
-                    f"{'slipped off' if event.kind == SLIP_OFF else 'opened'} at {event.load_parameter:.6g}"
-                )
+            if event.pair == pair and event.kind in OPENED:
+                return f"{OPENED[event.kind]} at {event.load_parameter:.6g}"
         if np.isfinite(contact.slip_off):
             return f"slipped off at {contact.slip_off:.6g}"
         forces = self._forces(pair)
@@ -189,17 +183,15 @@ class _Page:
         contact, events = self.response.contacts[pair], self.response.events or ()
         found = [(one.load_parameter, one.force, one.arc_position) for one in events if one.pair == pair]
         found += zip(self.response.load_parameter, contact.force, contact.arc_position, strict=True)
-        return sorted((one for one in found if one[1] > 0.0), key=lambda one: one[0])
+        return sorted((one for one in found if one[1] > 0.0), key=itemgetter(0))
 
     def tips(self) -> Block:
-        rows, columns = list[Row](), {"tip": "", "x": "length", "y": "length"}
-        if self.scene is None:
-            rows += [(beam, *tip[-1]) for beam, tip in self.response.tips.items()]
-        else:
+        columns = {"tip": "", "x": "length", "y": "length"}
+        rows: list[Row] = [(beam, *tip[-1]) for beam, tip in self.response.tips.items()]
+        if self.scene is not None:
             columns |= {"displacement x": "length", "displacement y": "length"}
-            for beam, tip in self.response.tips.items():
-                name = f"{beam}.{self.scene.tip(beam)}"
-                rows.append((name, *tip[-1], *(tip[-1] - self.scene.place(name))))
+            ends = {f"{beam}.{self.scene.tip(beam)}": tip[-1] for beam, tip in self.response.tips.items()}
+            rows = [(end, *tip, *(tip - self.scene.place(end))) for end, tip in ends.items()]
         return self.block(f"Tips {self.now}", columns, rows)
 
     def extremes(self) -> Block:
@@ -243,37 +235,30 @@ class _Page:
         return f"{beam}, arc position {arc:.{PLACE}g} {self.units['length']}"
 
     def events(self) -> Block:
-        staged = bool(self.response.stage[-1] > 1)
-        said = [(event, self._said(event)) for event in self.response.events or ()]
-        rows = [
-            (f"{one.load_parameter:.6g}", *(str(one.stage),) * staged, words) for one, words in said if words
-        ]
-        return self.block("Events", dict.fromkeys(("load parameter", *("stage",) * staged, ""), ""), rows)
+        stage = ("stage",) * bool(self.response.stage[-1] > 1)
+        said = ((event, self._said(event)) for event in self.response.events or ())
+        told = ((f"{one.load_parameter:.6g}", str(one.stage), words) for one, words in said if words)
+        rows = [(t, number, words) if stage else (t, words) for t, number, words in told]
+        return self.block("Events", dict.fromkeys(("load parameter", *stage, ""), ""), rows)
 
     def _said(self, event: ContactEvent) -> str:
         """Return an event in words; empty for one that changes nothing but the element in contact."""
         node, _, beam = event.pair.partition("->")
         arc, force = self.with_unit(event.arc_position, "length"), self.with_unit(event.force, "force")
-        words = EVENTS.get(event.kind, f"{event.kind} {event.pair}").format(
-            node=node, beam=beam, arc=arc, force=force
+        words = EVENTS.get(event.kind, f"{event.kind} {event.pair}")
+        words = words.format(node=node, beam=beam, arc=arc, force=force)
+        released = (
+            f"; {self.with_unit(event.released, 'energy')} released" if words and event.released else ""
         )
-        return (
-            f"{words}; {self.with_unit(event.released, 'energy')} released"
-            if words and event.released
-            else words
-        )
+        return words + released
 
 
 def _lines(block: Block, scene: str) -> str:
-    """Return a table as lines: columns of numbers to the right, the others to the left."""
+    """Return a table as lines: columns of numbers, with or without units, and dashes to the right, the others to the left."""
     rows = [block.columns, *block.rows] if block.columns else block.rows
-    lines = aligned(rows, [_numeric(column) for column in zip(*block.rows, strict=True)])
-    return "\n".join([block.title or scene, *(f"  {line}" for line in lines)])
-
-
-def _numeric(cells: Sequence[str]) -> bool:
-    """Whether a column has nothing but numbers, with or without units, and dashes."""
-    return all(not cell or cell[0] in "-0123456789" for cell in cells)
+    columns = zip(*block.rows, strict=True)
+    right = [all(not cell or cell[0] in "-0123456789" for cell in column) for column in columns]
+    return "\n  ".join([block.title or scene, *aligned(rows, right)])
 
 
 def _markup(block: Block, scene: str) -> str:

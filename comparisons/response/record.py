@@ -28,9 +28,7 @@ class ContactHistory:
 
     force: Array  #: Magnitude of the contact force, shape (s,).
     arc_position: Array  #: Distance along the undeformed axis from the start (s,); nan where open.
-    gap: (
-        Array  #: Gap (s,): 0 where closed, or minus the penetration of a penalty; positive or nan where open.
-    )
+    gap: Array  #: Gap (s,): 0 or minus the penetration of a penalty where closed, positive or nan where open.
     compliance: float | Array = 0.0  #: Penetration per normal force of a penalty, ``-gap / force``.
     slip_off: float = np.nan  #: Load parameter at which the node left over the free end; nan if it did not.
     vector: Array | None = None  #: The contact force on the beam (s, 2), where the model states it.
@@ -61,11 +59,7 @@ class SupportHistory:
 
 @dataclass(frozen=True, kw_only=True)
 class ContactEvent:
-    """A change of the contact, located by the model.
-
-    In a pass-through the contact point passes a beam node and moves on to the next element. An event at the load parameter at which a
-    stage begins belongs to that stage if it happens because the load goes on.
-    """
+    """A change of the contact, located by the model; in a pass-through the contact moves on to the next element."""
 
     kind: str  #: ``touch``, ``release``, ``slip-off``, ``slip``, ``stick`` or ``pass-through``.
     load_parameter: float  #: Load parameter of the event.
@@ -74,7 +68,8 @@ class ContactEvent:
     arc_position: float  #: Distance along the undeformed axis from the beam's start.
     force: float  #: Contact force before the event.
     released: float  #: Strain energy less work of the loads that is released in the jump after a slip-off.
-    stage: int = 1  #: Number of the stage, from 1.
+    #: Number of the stage, from 1; an event as a stage begins belongs to it if it happens because the load goes on.
+    stage: int = 1
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -83,9 +78,7 @@ class CriticalPoint:
 
     kind: str  #: ``limit point`` or ``bifurcation``.
     load_parameter: float  #: Load parameter of the point.
-    mode: dict[
-        str, Array
-    ]  #: Displacements of the axes in the buckling mode (m, 2) by beam; the largest is 1.
+    mode: dict[str, Array]  #: Displacements of the axes (m, 2) in the buckling mode by beam, the largest 1.
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -107,9 +100,7 @@ class Grid:
     """A mesh in its undeformed state with fields at its points."""
 
     points: Array  #: Undeformed positions, shape (n, 2).
-    cells: dict[
-        str, NDArray[np.int64]
-    ]  #: Points of the cells (e, k) by VTK type, in its order: ``line``, ``quad9``.
+    cells: dict[str, NDArray[np.int64]]  #: Points of the cells (e, k) by VTK type in its order, as ``quad9``.
     #: Fields (n,) or (n, c); always ``displacement``, ``deformed`` (n, 2), ``beam`` (n,), the number of the beam in the scene.
     point_data: dict[str, Array]
 
@@ -124,8 +115,9 @@ class Sections:
     M: Array  #: Bending moment on the part before the section, anticlockwise (m,).
 
 
-def _nothing(*_: object) -> NoReturn:
-    raise AssertionError("no load parameter was reached")
+def not_kept(*_: object) -> NoReturn:
+    """Raise: a stored response has no mesh, and one without a load parameter has no axis."""
+    raise NotImplementedError("a stored response has no mesh")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -152,8 +144,8 @@ class Response:
     wall_seconds: float = np.nan  #: Time of the solution alone [s].
     #: ``axis_line(beam, k)``: arc length (m,) and deformed positions (m, 2) of an axis at load parameter k. A stored response has
     #: `comparisons.response.axis.SampledAxes` here.
-    axis_line: Callable[[str, int], tuple[Array, Array]] = _nothing
-    grid: Callable[[int], Grid] = _nothing  #: ``grid(k)``: mesh and fields; not of a stored response.
+    axis_line: Callable[[str, int], tuple[Array, Array]] = not_kept
+    grid: Callable[[int], Grid] = not_kept  #: ``grid(k)``: mesh and fields; not of a stored response.
     sections: Callable[[str, int], Sections] | None = None  #: ``sections(beam, k)``; not stored.
     events: tuple[ContactEvent, ...] | None = None  #: Contact events in their order.
     continuum: bool = False  #: Whether the model is a two-dimensional body and not a rod.
@@ -207,10 +199,7 @@ class Response:
     def plot(self, scene: "Scene | None" = None) -> "Figure":
         """Return a picture: deformed shape, section forces along each beam, and forces over the load parameter; needs matplotlib.
 
-        Parameters
-        ----------
-        scene : Scene, optional
-            The scene that was solved, for a response that was read from a file.
+        A response that was read from a file needs the `scene` that was solved.
         """
         from comparisons.show.answer import picture
 

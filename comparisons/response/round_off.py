@@ -36,12 +36,10 @@ class RoundOff:
     force: float = 0.0  #: `force_round_off` or, where it is larger, `RESIDUAL`.
     moment: float = 0.0  #: That of a force times the length of the longest beam.
     energy: float = 0.0  #: As of a moment.
-    length: float = (
-        0.0  #: `LAST_PLACES` of the size of the scene, or the deflection ``F L^3/EI`` by that of a force.
-    )
-    stress: float = (
-        0.0  #: That of a force over the smallest area, and of a moment over the smallest section modulus.
-    )
+    #: `LAST_PLACES` of the size of the scene, or the deflection ``F L^3/EI`` by that of a force.
+    length: float = 0.0
+    #: That of a force over the smallest area, and of a moment over the smallest section modulus.
+    stress: float = 0.0
     number: float = 0.0  #: Zero: a number without a scale is printed as it is.
 
     def text(self, value: float, kind: str) -> str:

@@ -20,6 +20,9 @@ from comparisons.output import csv_text
 from comparisons.response.along import ALONG, extremes_along
 from comparisons.response.record import Response
 
+RUBBING = {"tangential": "force", "normal": "force", "slip": "number", "dissipated": "energy"}
+"""What friction of a contact does, with its kind."""
+
 
 def table(response: Response, units: str | None = None) -> dict[str, NDArray[Any]]:
     """Return the histories by name, each of shape (s,): what ``pandas.DataFrame`` takes.
@@ -32,10 +35,14 @@ def table(response: Response, units: str | None = None) -> dict[str, NDArray[Any
         Units of force and length, as ``"N, m"``; the names then end with their units, as ``strip.start.moment [N m]``.
     """
     named = {} if units is None else unit_names(units)
-    return {
-        f"{name} [{named[kind]}]" if named.get(kind) else name: values
-        for name, kind, values in _columns(response)
-    }
+    found: dict[str, NDArray[Any]] = {}
+    for name, kind, values in _histories(response):
+        unit = f" [{named[kind]}]" if kind in named else ""
+        if values is not None and values.ndim == 1:
+            found[name + unit] = values
+        elif values is not None:
+            found |= {f"{name}_{letter}{unit}": values[:, axis] for axis, letter in enumerate("xy")}
+    return found
 
 
 def csv_history(response: Response, units: str) -> str:
@@ -53,17 +60,8 @@ def unit_names(units: str) -> dict[str, str]:
     return {"force": force, "length": length, "moment": moment, "energy": moment, "stress": stress}
 
 
-def _columns(response: Response) -> Iterator[tuple[str, str, NDArray[Any]]]:
-    """Yield the columns: name, kind (an attribute of `comparisons.response.round_off.RoundOff`) and values (s,)."""
-    for name, kind, values in _histories(response):
-        if values is not None and values.ndim == 1:
-            yield name, kind, values
-        elif values is not None:
-            yield from ((f"{name}_{letter}", kind, values[:, axis]) for axis, letter in enumerate("xy"))
-
-
 def _histories(response: Response) -> Iterator[tuple[str, str, NDArray[Any] | None]]:
-    """Yield the histories: name, kind, and values (s,) or (s, 2), None where the model does not state them."""
+    """Yield the histories: name, kind (an attribute of `RoundOff`), and values (s,) or (s, 2), None where the model does not state them."""
     yield "load_parameter", "number", response.load_parameter
     yield "stage", "number", response.stage
     for pair, contact in response.contacts.items():
@@ -71,11 +69,9 @@ def _histories(response: Response) -> Iterator[tuple[str, str, NDArray[Any] | No
         yield f"{pair}.force", "force", contact.vector
         yield f"{pair}.arc_position", "length", contact.arc_position
         yield f"{pair}.gap", "length", contact.gap
-        if contact.friction is not None:
-            yield f"{pair}.tangential", "force", contact.friction.tangential
-            yield f"{pair}.normal", "force", contact.friction.normal
-            yield f"{pair}.slip", "number", contact.friction.slip
-            yield f"{pair}.dissipated", "energy", contact.friction.dissipated
+        if (rubs := contact.friction) is not None:
+            for name, kind in RUBBING.items():
+                yield f"{pair}.{name}", kind, getattr(rubs, name)
     for prefix, held in (("", response.supports), ("spring_", response.springs)):
         for node, one in held.items():
             yield f"{node}.{prefix}force", "force", one.force

@@ -124,6 +124,16 @@ def test_the_element_suits_and_is_named(capsys):
         assert ("  element      " in out) == chosen
 
 
+def test_an_answer_of_the_solid_that_is_read_back_is_in_balance(tmp_path, capsys):
+    """A strip that moves as a whole: rounded positions alone make forces, and the file has how large they are."""
+    scene = str(Path(__file__).parent / "referee" / "scenes" / "unloaded.toml")
+    file = str(tmp_path / "a.json")
+    assert main(["solve", scene, "--model", "solid", "--mesh", "8x1", "--out", file, "--quiet"]) == 0
+    capsys.readouterr()
+    main(["certify", file, "--scene", scene])
+    assert "NOT_JUDGED: nothing to judge" in capsys.readouterr().out
+
+
 ARCH = """
 scene = { name = "arch", units = "N, mm", load_parameters = 10 }
 beam = [

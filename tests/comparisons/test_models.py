@@ -222,7 +222,8 @@ def test_an_answer_that_the_referee_refuses_ends_the_exact_rods(monkeypatch):
     """The forces of the third load parameter have the wrong sign: two equilibria are left."""
     pin = replace(KS.pins[0], start=(0.4, 0.0), displacement=(0.0, 0.05))
     held = support("end", kind="pinned")
-    scene = replace(KS, load_parameters=5, supports=(held,), pins=(pin,))
+    spring = SpringSpec(beam="cantilever", end="end", rotation=1e-5)
+    scene = replace(KS, load_parameters=5, supports=(held,), pins=(pin,), springs=(spring,))
     answer = solve(scene, "tsm", EXACT)
     contact = answer.contacts[PAIR]
     assert contact.vector is not None
@@ -231,7 +232,8 @@ def test_an_answer_that_the_referee_refuses_ends_the_exact_rods(monkeypatch):
     monkeypatch.setattr(type(TSM), "solve", lambda *_: replace(answer, contacts={PAIR: wrong}))
     rods = solve(scene, "rod")
     assert (rods.status, rods.completed, len(rods.load_parameter)) == ("NOT_AN_EQUILIBRIUM", False, 2)
-    assert len(rods.contacts[PAIR].force) == len(rods.tips["cantilever"]) == 2
+    histories = (rods.contacts[PAIR].force, rods.tips["cantilever"], rods.springs[spring.node].moment)
+    assert [len(one) for one in histories] == [2, 2, 2]
 
 
 def stop(load: float, back: float | None = None, friction: float = 0.0) -> Scene:

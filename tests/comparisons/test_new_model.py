@@ -4,11 +4,17 @@ import json
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import comparisons
+import tsm
+from comparisons.accuracy import solve_to
+from comparisons.models import solve
+from comparisons.scene import load_scene
 from tests.comparisons.processes import COMMAND, ended
 
 PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "model.md"
@@ -133,6 +139,17 @@ def test_an_element_of_another_package(offered):
         wrong = solved(name)
         assert (wrong.returncode, wrong.stderr.count("\n")) == (2, 1)
         assert wrong.stderr.startswith(f"crossval: tsm: {said}")
+
+
+def test_accuracy_grades_the_mesh_of_a_new_element_by_its_order_and_keeps_the_promise(monkeypatch):
+    kind, given = replace(tsm.ELEMENTS["mixed"], name="new", sheared=False), load_scene("ks-cantilever")
+    monkeypatch.setitem(tsm.ELEMENTS, kind.name, kind)
+    stiff = replace(given.beams[0], shear_modulus=1e9 * given.beams[0].youngs_modulus, poissons_ratio=None)
+    rigid = replace(given, beams=(stiff,), load_parameters=4)
+    answer = solve_to(rigid, 1e-5, element=kind.name)
+    own, exact = (one.contacts["pin->cantilever"].force for one in (answer.response, solve(rigid, "rod")))
+    assert answer.reached
+    assert np.abs(own - exact).max() <= 1e-5 * exact.max()
 
 
 @pytest.mark.slow

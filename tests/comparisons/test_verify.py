@@ -138,19 +138,6 @@ def test_elements_that_bend_too_far_are_not_believed(model, options, reason):
     assert re.search(reason, response.message)
 
 
-def test_a_round_pin_that_rubs_is_in_balance():
-    """Its tangential force acts on its surface, with a moment about its centre that statics alone would not see the sign of."""
-    beam = replace(SCENE.beams[0], width=0.1, height=0.1)
-    pin = PinSpec(name="pin", path=((0.7, -0.1), (0.69, -0.05)), radius=0.1)
-    spec = ContactSpec(node="pin", beam="cantilever", side="right", friction=0.3)
-    scene = replace(SCENE, beams=(beam,), pins=(pin,), contacts=(spec,), load_parameters=1)
-    response = solve(scene, "tsm", Options(element="exact"))
-    assert response.completed, response.message
-    rubs = response.contacts["pin->cantilever"].friction
-    assert rubs is not None
-    assert abs(rubs.tangential[-1]) > 0.1 * response.contacts["pin->cantilever"].force[-1]
-
-
 def test_two_pins_balance_by_the_vectors_of_their_forces():
     scene = load_scene("two-pins")
     response = solve(scene, "tsm")

@@ -43,7 +43,7 @@ def solved(
 def peers(report: Report) -> Iterator[Row]:
     """Tip displacement and contact force of the solid and of CalculiX, on the same meshes.
 
-    Raises CalculixError if CalculiX is not there, or stops under the tip load.
+    Raises ProgramError if CalculiX is not there, or stops under the tip load.
     """
     problem = to_solid(load_scene("ks-face"))
     strip = problem.strips[0]

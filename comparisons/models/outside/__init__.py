@@ -12,7 +12,7 @@ from comparisons.models.outside.adapters.exchange import (
     serve,
 )
 from comparisons.models.outside.adapters.frame import Frame, frame
-from comparisons.models.outside.program import Command, Functions, Program
+from comparisons.models.outside.programs import Command, Functions, Program
 
 __all__ = [
     "Command",

@@ -1,18 +1,17 @@
 """A program as a child process with a short environment and limits on time, memory and output, of which no process is left."""
 
-import ctypes
 import os
 import shutil
 import signal
 import sys
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from contextlib import suppress
 from enum import Enum
 from os import getpid, kill, waitpid
 from pathlib import Path
 from time import perf_counter, sleep
-from typing import Any, NamedTuple
+from typing import Any
 
 from comparisons.files import one_line, printable
 
@@ -48,28 +47,12 @@ class ProgramStatus(Enum):
     NOT_FINITE = "a number of the response is missing or not finite"
 
 
-LIMITS = {
-    ProgramStatus.TIMED_OUT: "ran longer than {:g} s",
-    ProgramStatus.OUT_OF_MEMORY: "took more than {:g} MB of memory",
-    ProgramStatus.TOO_MUCH_OUTPUT: "wrote more than {:g} MB",
-}
-"""What is said of a program that exceeds a limit."""
-
-
 class ProgramError(Exception):
     """The run of another program gave no answer: what failed, and whether the program stated success all the same."""
 
     def __init__(self, status: ProgramStatus, message: str, *, reported_success: bool = False) -> None:
         super().__init__(one_line(message))
         self.status, self.reported_success = status, reported_success
-
-
-class CalculixError(RuntimeError):
-    """CalculiX is not installed, took too long or stopped early: the reason in one line, and whether CalculiX ran."""
-
-    def __init__(self, reason: str, *, started: bool = False) -> None:
-        super().__init__(f"CalculiX {reason}")
-        self.reason, self.started = reason, started
 
 
 def found(program: str, folder: Path) -> str | None:
@@ -84,12 +67,18 @@ def environment(more: Iterable[str] = ()) -> dict[str, str]:
 
 
 def run(
-    command: Sequence[str], folder: Path, text: str, seconds: float, memory: float, more: Iterable[str] = ()
-) -> tuple[bytes, float]:
-    """Run a command in `folder` with `text` as its standard input; return its standard output and the wall time [s].
+    command: Sequence[str],
+    folder: Path,
+    text: str,
+    seconds: float,
+    memory: float,
+    more: Iterable[str] = (),
+    **set_to: str,
+) -> bytes:
+    """Run a command in `folder` with `text` as its standard input; return its standard output.
 
-    Its limits are wall time [s] and, on Linux, resident memory [MB] with all its child processes, which have ended on return; it gets
-    `more` variables of the environment. `ProgramError` names what failed.
+    Its limits are wall time [s] and, on Linux, resident memory [MB] with all its child processes, which have ended on return. It gets
+    `more` variables of the environment, and those that are `set_to` a value. `ProgramError` names what failed.
     """
     program = found(command[0], folder)
     if program is None:
@@ -97,28 +86,26 @@ def run(
     with tempfile.TemporaryDirectory(prefix="crossval-") as place:
         given, out, err = (Path(place) / name for name in ("stdin", "stdout", "stderr"))
         given.write_text(text, encoding="utf-8")
-        began = perf_counter()
         with given.open("rb") as stdin, out.open("wb") as stdout, err.open("wb") as stderr:
             streams = {"stdin": stdin, "stdout": stdout, "stderr": stderr}
-            how = {"cwd": folder, "env": environment(more), **streams}
-            code = _finished([program, *command[1:]], how, (out, err), (seconds, memory, LARGEST_OUTPUT))
-        took = perf_counter() - began
+            how = {"cwd": folder, "env": environment(more) | set_to, **streams}
+            code = _finished([program, *command[1:]], how, (out, err), seconds, memory)
         if code:
             ended = f"ended with exit status {code}"
             if code < 0 and os.name != "nt":
                 ended = f"was ended by {signal.Signals(-code).name}"
             words = _tail(err) or _tail(out) or "no message"
             raise ProgramError(ProgramStatus.CRASHED, f"{ended}: {words}")
-        return out.read_bytes(), took
+        return out.read_bytes()
 
 
 def _finished(
-    command: list[str], how: dict[str, Any], written: tuple[Path, ...], limits: tuple[float, ...]
+    command: list[str], how: dict[str, Any], written: tuple[Path, ...], seconds: float, memory: float
 ) -> int:
     """Return the exit status of a command that keeps its limits."""
     import subprocess
 
-    others = {pid for pid, one in _processes().items() if one.parent == getpid()}
+    others = set(_family())
     _adopt(1)
     try:
         process = subprocess.Popen(command, start_new_session=True, **how)  # noqa: S603 the program that the user names
@@ -132,11 +119,14 @@ def _finished(
             with suppress(subprocess.TimeoutExpired):
                 return int(process.wait(timeout=look))
             look = min(2.0 * look, LAST_LOOK)
-            memory = sum(one.memory for one in _started(others).values())
-            size = sum(path.stat().st_size for path in written)
-            used = perf_counter() - began, memory / MB, size / MB
-            for value, most, (status, words) in zip(used, limits, LIMITS.items(), strict=True):
-                if value > most:
+            taken = sum(_family(others).values()) / MB
+            size = sum(path.stat().st_size for path in written) / MB
+            for status, used, most, words in (
+                (ProgramStatus.TIMED_OUT, perf_counter() - began, seconds, "ran longer than {:g} s"),
+                (ProgramStatus.OUT_OF_MEMORY, taken, memory, "took more than {:g} MB of memory"),
+                (ProgramStatus.TOO_MUCH_OUTPUT, size, LARGEST_OUTPUT, "wrote more than {:g} MB"),
+            ):
+                if used > most:
                     raise ProgramError(status, words.format(most))
     finally:
         _end(process, others)
@@ -146,58 +136,45 @@ def _finished(
 def _adopt(adopts: int) -> None:
     """Make this process the parent of descendants that lose theirs, where the system can (Linux); 0 ends it."""
     if LINUX:
+        import ctypes  # 2 ms that only a program needs
+
         ctypes.CDLL(None).prctl(ADOPT, adopts, 0, 0, 0)
 
 
-class _Process(NamedTuple):
-    """Parent, session and resident memory [byte] of a process."""
+def _family(others: Container[int] = ()) -> dict[int, int]:
+    """Return the resident memory [byte] of what programs have started, by process; none where the system has no ``/proc``.
 
-    parent: int
-    session: int
-    memory: int
-
-
-def _processes() -> dict[int, _Process]:
-    """Return all processes by their identifiers; none where the system has no ``/proc``."""
-    found = {}
+    A program is a child in another session than this process, and none of `others`, which are from before; it may be adopted.
+    """
+    every = {}
     for file in Path("/proc").glob("[0-9]*/stat") if LINUX else ():
         with suppress(OSError):
-            values = file.read_text(errors="replace").rpartition(") ")[2].split()
-            memory = int(values[21]) * os.sysconf("SC_PAGE_SIZE")
-            found[int(file.parent.name)] = _Process(int(values[1]), int(values[3]), memory)
-    return found
-
-
-def _started(others: set[int]) -> dict[int, _Process]:
-    """Return what descends from the children of this process in other sessions: what a program starts, adopted or not.
-
-    The sessions are other ones for programs alone; `others` are children from before.
-    """
-    every = _processes()
+            parent, _, session, *values = file.read_text(errors="replace").rpartition(") ")[2].split()[1:]
+            every[int(file.parent.name)] = int(parent), int(session), int(values[17])
     found = {
         pid
-        for pid, one in every.items()
-        if one.parent == getpid() and one.session != every[getpid()].session and pid not in others
+        for pid, (parent, session, _) in every.items()
+        if parent == getpid() and session != every[parent][1] and pid not in others
     }
-    while more := {pid for pid, one in every.items() if one.parent in found} - found:
+    while more := {pid for pid, (parent, *_) in every.items() if parent in found} - found:
         found |= more
-    return {pid: every[pid] for pid in found}
+    return {pid: every[pid][2] * os.sysconf("SC_PAGE_SIZE") for pid in found}
 
 
-def _end(process: Any, others: set[int]) -> None:
+def _end(process: Any, others: Container[int]) -> None:
     """End whatever a program has started, and wait for its end; an ended process leaves its children to this one."""
     if LINUX:
         process.kill()
         for _ in range(ROUNDS):
             process.poll()
-            family = _started(others)
+            family = _family(others)
             for pid in family:
                 with suppress(ProcessLookupError, PermissionError):
                     kill(pid, KILL)
                 if pid != process.pid:
                     with suppress(ChildProcessError):
                         waitpid(pid, os.WNOHANG)
-            if not family and not _started(others):  # not while a parent ended during the look
+            if not family and not _family(others):  # not while a parent ended during the look
                 return
             sleep(FIRST_LOOK)
     elif os.name == "nt":

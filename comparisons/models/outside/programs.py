@@ -1,27 +1,196 @@
-"""The models from outside this package: adapters, entry points of other packages, and program files."""
+"""The models from outside this package: programs of others, as adapters, program files, and entry points of other packages.
+
+A program gets the resolved scene as JSON text and returns a response as JSON text.
+"""
 
 from __future__ import annotations
 
+import json
 import re
 import sys
-from collections.abc import Container
-from functools import cache
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Container
+from contextlib import redirect_stdout
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from comparisons.extras import install
-from comparisons.models.base import Model
-from comparisons.models.options import ModelError
-from comparisons.models.outside.program import Command, Program
+from comparisons.models.base import Model, Style
+from comparisons.models.options import ModelError, Options
+from comparisons.models.outside.child import ProgramError, ProgramStatus, found, run
 from comparisons.scene import rules
-from comparisons.scene.rules import RecordError, Rule, RuleError
+from comparisons.scene.keys import PROGRAMS
+from comparisons.scene.rules import RecordError, Rule, ValueRule
 from comparisons.scene.tables import InputError, check_keys, head_values, in_order, read_tables, read_text
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
+    from comparisons.models.outside.adapters.exchange import Refusal, States
+    from comparisons.models.progress import Watch
+    from comparisons.response import Response
+    from comparisons.scene import Scene
+
 SUFFIX = ".toml"
 """Suffix of a program file."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Source(ABC):
+    """What reads the text of a resolved scene and writes the text of a response."""
+
+    name: str  #: Name of the model.
+    label: str = ""  #: Name in figures and texts; the name of the model if empty.
+    #: Numbers of elements along a beam that comparisons of cost run; empty if the program chooses its resolution itself.
+    elements: tuple[int, ...] = ()
+    colour: str = "#AA3377"  #: Colour of its lines, in hexadecimal digits.
+    continuum: bool = False  #: Whether it computes a two-dimensional body.
+    #: ``refusal(scene)``: why the program cannot state the scene, None if it can; without it the program itself is asked.
+    refusal: Refusal | None = None
+
+    @abstractmethod
+    def digest(self) -> str:
+        """Return a digest of what its answers depend on."""
+
+    def missing(self) -> str | None:
+        """Return what must be installed; None if it can be found."""
+        return None
+
+    @abstractmethod
+    def ask(self, text: str) -> bytes:
+        """Return the answer to a scene; raise `ProgramError` if there is none."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Command(Source):
+    """A command in a child process: the resolved scene goes to its standard input, a response comes from its standard output."""
+
+    #: The program and its arguments. A program with a separator in its path is relative to `folder`.
+    command: tuple[str, ...]
+    folder: Path  #: Working directory of the program.
+    seconds: float = 600.0  #: Limit on the wall time [s].
+    #: Limit on the resident memory of the program and all its child processes [MB], on Linux.
+    memory: float = 4000.0
+    environment: tuple[str, ...] = ()  #: Variables of the environment that it gets beside the usual ones.
+    #: Python module or program without which `command` cannot run, by default its program.
+    requires: str = ""
+    needs: str = ""  #: How to install what it requires.
+
+    def digest(self) -> str:
+        """Return a digest of the command and of the files among its words."""
+        return _digest(json.dumps(self.command).encode(), *(self.folder / word for word in self.command))
+
+    def missing(self) -> str | None:
+        """Return what must be installed to run the command; None if it can be found."""
+        program = self.requires or self.command[0]
+        there = found(program, self.folder) or (self.requires and find_spec(program))
+        return None if there else self.needs or f"there is no program {program}"
+
+    def ask(self, text: str) -> bytes:
+        """Run the command."""
+        return run(self.command, self.folder, text, self.seconds, self.memory, self.environment)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Functions(Source):
+    """Functions in this process, as `comparisons.models.outside.adapters.exchange.serve` takes them."""
+
+    #: ``states(scene, histories)``: adds the states to `histories` and yields the load parameter of each.
+    states: States
+
+    def digest(self) -> str:
+        """Return a digest of the file that defines the states."""
+        return _digest(b"", Path(self.states.__code__.co_filename))
+
+    def ask(self, text: str) -> bytes:
+        """Call the functions. If one raises, the status of the response names the exception. What they print goes to standard error."""
+        from comparisons.models.outside.adapters.exchange import answered
+
+        try:
+            with redirect_stdout(sys.stderr):
+                return json.dumps(answered(json.loads(text), self.refusal, self.states)).encode()
+        except Exception as error:
+            raise ProgramError(ProgramStatus.CRASHED, f"{type(error).__name__}: {error}") from error
+
+
+def _digest(text: bytes, *files: Path) -> str:
+    """Return a digest of a text and of files, as far as they are there."""
+    import hashlib  # 2 ms that only a study needs
+
+    parts = (text, *(file.read_bytes() if file.is_file() else b"" for file in files))
+    return hashlib.sha256(b"\0".join(parts)).hexdigest()
+
+
+class Program(Model):
+    """A program of others; its source says how it is asked: in a child process (`Command`) or in this one (`Functions`)."""
+
+    keys = PROGRAMS
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+        self.name, self.label = source.name, source.label or source.name
+        self.continuum = source.continuum
+        self.options = ("elements",) if source.elements else ()
+        self.style = Style(colour=source.colour, marker="D")
+        self.missing = source.missing
+
+    @property
+    def identity(self) -> str:
+        """Name of the program, and a digest of what its answers depend on."""
+        return f"{self.name} {self.source.digest()}"
+
+    def refusal(self, scene: Scene) -> str | None:
+        """Return why the program cannot state the scene, or what is missing to run it."""
+        return self.unstated(scene) or _refusal(self.source, scene) or self.missing()
+
+    def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:  # noqa: ARG002 - a program states no steps
+        """Return the response to `scene`, not yet checked. Its status names what failed if there is none."""
+        from comparisons.models.outside.exchange import answer, request, silent
+
+        missing = self.missing()
+        if missing is not None:
+            raise ModelError(missing)
+        given, began = request(scene, options, scene.times), perf_counter()
+        try:
+            output = self.source.ask(given)
+            return answer(output, scene, self.name, perf_counter() - began)
+        except ProgramError as error:
+            return silent(scene, self.name, error.status.name, error, success=error.reported_success)
+
+    def setting(self, scene: Scene, options: Options) -> str:
+        """Return the numbers of elements; empty if the program chooses its resolution itself."""
+        counts = {options.elements or beam.divisions for beam in scene.beams} if self.options else set()
+        return "+".join(map(str, sorted(counts)))
+
+    def resolutions(self, *, quick: bool) -> tuple[Options, ...]:
+        """Return the program's numbers of elements; the first two if quick."""
+        counts = self.source.elements[: 2 if quick else None]
+        return tuple(Options(elements=count) for count in counts) or (Options(),)
+
+
+@lru_cache(maxsize=256)
+def _refusal(source: Source, scene: Scene) -> str | None:
+    """Return why a scene without load parameters is refused; a program that fails does not refuse it."""
+    from comparisons.models.outside.exchange import refusal, request
+
+    text = request(scene, Options(), ())
+    if source.refusal is not None:
+        return source.refusal(json.loads(text))
+    try:
+        return refusal(source.ask(text))
+    except ProgramError:
+        return None
+
+
+def _refusal_of(module: str) -> Refusal:
+    return lambda scene: import_module(module).refusal(scene)
+
+
 RUN = (
     f"import runpy, sys; sys.path.insert(0, {str(Path(__file__).parents[3])!r}); "
     "runpy.run_module({!r}, run_name='__main__')"
@@ -31,8 +200,8 @@ ADAPTERS: dict[str, Program] = {
     name: Program(
         Command(
             name=name, label=label, command=(sys.executable, "-c", RUN.format(module)), folder=Path.cwd(),
-            elements=(10, 20, 40, 80), colour=colour, requires=requires, needs=needs, module=module,
-            continuum=continuum,
+            elements=(10, 20, 40, 80), colour=colour, requires=requires, needs=needs, continuum=continuum,
+            refusal=_refusal_of(module),
         )
     )
     for name, label, colour, requires, needs, continuum in (
@@ -115,32 +284,21 @@ def read_program(path: Path) -> Program:
     return Program(Command(folder=path.resolve().parent, **given))
 
 
-def _each(rule: Rule) -> Rule:
-    return lambda value: tuple(rule(item) for item in rules.sequence(value))
-
-
-def _words(value: object) -> object:
-    if not rules.sequence(value):
-        raise RuleError("must have a program")
-    return _each(rules.text)(value)
-
-
-def _colour(value: object) -> str:
-    text = rules.text(value)
-    if not re.fullmatch("#[0-9a-fA-F]{6}", text):
-        raise RuleError("must be a colour, as #AA3377")
-    return text
+def _list(items: str, item: Any, right: Callable[[Any], object] = lambda _: True) -> Rule:
+    return rules.several(f"a list of {items}", item, right)
 
 
 RULES: dict[str, Rule] = {
     "name": rules.name,
-    "command": _words,
+    "command": _list("texts, the program first", rules.text, bool),
     "label": rules.text,
     "seconds": rules.positive,
     "memory": rules.positive,
-    "environment": _each(rules.text),
-    "elements": _each(rules.whole_number),
-    "colour": _colour,
+    "environment": _list("texts", rules.text),
+    "elements": _list("whole numbers", rules.whole_number),
+    "colour": ValueRule(
+        "a colour, as #AA3377", lambda value: re.fullmatch("#[0-9a-fA-F]{6}", str(value)), str
+    ),
     "continuum": rules.truth,
 }
 """The keys of a program file with the rules of their values."""

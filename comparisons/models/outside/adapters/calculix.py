@@ -14,21 +14,19 @@ of width b.
 """
 
 import re
-import shutil
-import subprocess
 import tempfile
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.models.outside import child
 from comparisons.models.outside.adapters.exchange import Histories, StoppedError, Table, refined, serve
 from comparisons.models.outside.adapters.strip import axes, foot, one_strip, way
-from comparisons.models.outside.child import CalculixError, environment
+from comparisons.models.outside.child import ProgramError, ProgramStatus
 
 if TYPE_CHECKING:
     from fem_reference import Strip
@@ -50,6 +48,8 @@ _CORNERS = ((0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2
 _BARS = ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7))
 _FACE = np.array([[-1.0, 4.0, -1.0], [4.0, 0.0, 4.0], [-1.0, 4.0, -1.0]]) / 12
 """Consistent nodal forces of a unit force that is spread evenly over a face with eight nodes."""
+_EDGE = np.array([1.0, 4.0, 1.0]) / 6
+"""Simpson's weights of the edge of a quadratic element."""
 _PRINT = (
     "*NODE PRINT, NSET=TIP", "U", "*NODE PRINT, NSET=AXIS", "U", "*NODE PRINT, NSET=CLAMP", "U,RF", "*END STEP", "",
 )  # fmt: skip
@@ -57,6 +57,8 @@ _HEADER = re.compile(r" (displacements|forces) \(.*\) for set (\S+) and time\s+(
 _SHORT = re.compile(r"(?<=\d)(?=[+-]\d{3}$)")
 """Place of the E that Fortran leaves out before an exponent of three digits."""
 _TAIL = 300
+MEMORY = 1e5
+"""Limit on the memory of CalculiX [MB]."""
 
 
 def refusal(scene: Table) -> str | None:
@@ -81,14 +83,14 @@ def states(scene: Table, histories: Histories) -> Iterator[float]:
     """Solve and yield every load parameter."""
     from fem_reference import Strip
 
-    beam, times = scene["beams"][0], scene["load_parameters"]
-    strip = Strip(
+    beam, frame = scene["beams"][0], axes(scene["beams"][0])
+    slab = Slab(Strip(
         name=beam["name"], start=(0.0, 0.0), end=(beam["length"], 0.0), height=beam["height"],
         width=beam["width"], youngs_modulus=beam["youngs_modulus"],
         poissons_ratio=beam["youngs_modulus"] / (2.0 * beam["shear_modulus"]) - 1.0,
         mesh=(beam["elements"], ACROSS),
-    )  # fmt: skip
-    slab, penalty, frame = Slab(strip), PENALTY * beam["EI"] / beam["length"] ** 3, axes(beam)
+    ))  # fmt: skip
+    penalty = PENALTY * beam["EI"] / beam["length"] ** 3
     increments = refined(scene, LOAD_STEPS if scene["loads"] else PIN_STEPS)
     steps = sum(map(len, increments))
     if scene["loads"]:
@@ -98,9 +100,9 @@ def states(scene: Table, histories: Histories) -> Iterator[float]:
         deck = slab.pin(tuple(start), tuple(end - start), steps, penalty)
     try:
         found = slab.answer(deck, seconds=1e5)
-    except CalculixError as error:
-        raise StoppedError(error.reason) from error
-    for number, t in enumerate(times):
+    except ProgramError as error:
+        raise StoppedError(str(error)) from error
+    for number, t in enumerate(scene["load_parameters"]):
         k = len(increments[0]) * (number + 1) - 1
         if k >= len(found.load_parameter):
             raise StoppedError(found.stopped or f"no increment at load parameter {t:.6g}")
@@ -117,29 +119,23 @@ def states(scene: Table, histories: Histories) -> Iterator[float]:
         yield t
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Answer:
-    """Histories over the load increments of CalculiX, in the strip's frame: s increments, a nodes on the axis.
+class Answer(NamedTuple):
+    """Histories over the load increments of CalculiX, in the strip's frame: s increments, a nodes on the axis."""
 
-    `load_parameter` (s,) is the part of the load or of the pin's way, `tip` (s, 2) the mean displacement of the free end, `force` (s, 2)
-    and `moment` (s,) what the clamp exerts on the strip, about the clamped point, and `axis` (s, a, 2) the positions of the nodes on the
-    axis. `stopped` is the reason why CalculiX stopped before the end, empty if it did not.
-    """
-
-    load_parameter: Array
-    tip: Array
-    force: Array
-    moment: Array
-    axis: Array
-    stopped: str = ""
+    load_parameter: Array  #: Part of the load or of the pin's way (s,).
+    tip: Array  #: Mean displacement of the free end (s, 2).
+    force: Array  #: Force (s, 2) of the clamp on the strip.
+    moment: Array  #: Its moment (s,) about the clamped point.
+    axis: Array  #: Positions of the nodes on the axis (s, a, 2).
+    stopped: str  #: Why CalculiX stopped before the end; empty if it did not.
 
 
 def tip_load(strip: "Strip", force: float) -> Answer:
-    """Return the answer to a transverse dead load [N] at the free end; raise `CalculixError` unless the whole load is reached."""
+    """Return the answer to a transverse dead load [N] at the free end; raise `ProgramError` unless the whole load is reached."""
     slab = Slab(strip)
     answer = slab.answer(slab.tip_load(force, LOAD_STEPS))
     if answer.stopped:
-        raise CalculixError(answer.stopped, started=True)
+        raise ProgramError(ProgramStatus.CRASHED, f"CalculiX {answer.stopped}")
     return answer
 
 
@@ -150,7 +146,7 @@ def pressed(strip: "Strip", start: Point, motion: Point, steps: int, penalty: fl
     through = np.flatnonzero(np.hypot(*found.force.T) < slab.unit)
     if not through.size:
         return found
-    kept = {name: values[: through[0]] for name, values in vars(found).items() if name != "stopped"}
+    kept = {name: values[: through[0]] for name, values in found._asdict().items() if name != "stopped"}
     return Answer(**kept, stopped="lost the pin through the face")
 
 
@@ -205,34 +201,26 @@ class Slab:
         return self._deck(contact, steps, ["*BOUNDARY", *moved])
 
     def answer(self, deck: str, seconds: float = 300.0) -> Answer:
-        """Return the answer to a deck, up to the last increment that was printed completely; raise `CalculixError` if there is none."""
+        """Return the answer to a deck, up to the last increment that was printed completely; raise `ProgramError` if there is none."""
         times, tables, stopped = run(deck, seconds)
-        ny, held = self.strip.mesh[1], len(self.clamp)
-        wanted = {
-            ("displacements", "TIP"): 2 * ny + 1,
-            ("displacements", "AXIS"): len(self.axis),
-            ("displacements", "CLAMP"): held,
-            ("forces", "CLAMP"): held,
-        }
+        edge, held = 2 * self.strip.mesh[1] + 1, len(self.clamp)
+        sizes = {"TIP": edge, "AXIS": len(self.axis), "CLAMP": held}
+        wanted = {("displacements", name): size for name, size in sizes.items()} | {("forces", "CLAMP"): held}
         whole = [
             [rows for rows in tables.get(name, []) if len(rows) == size] for name, size in wanted.items()
         ]
         count = min(map(len, whole))
         if count == 0:
-            raise CalculixError(stopped or "printed no result", started=True)
+            raise ProgramError(ProgramStatus.CRASHED, f"CalculiX {stopped or 'printed no result'}")
         tip, bent, moved, forces = (np.array(table[:count])[:, :, :2] for table in whole)
         forces = forces * self.unit
         x, y = (self.clamp + moved).transpose(2, 0, 1)
-        mean = np.zeros(2 * ny + 1)  # Simpson's weights of the edges of quadratic elements
-        for row in range(ny):
-            mean[2 * row : 2 * row + 3] += np.array([1.0, 4.0, 1.0]) / (6 * ny)
+        mean = np.zeros(edge)
+        for first in range(0, edge - 1, 2):
+            mean[first : first + 3] += _EDGE / self.strip.mesh[1]
+        moment = (x * forces[..., 1] - y * forces[..., 0]).sum(axis=1)
         return Answer(
-            load_parameter=np.array(times[:count]),
-            tip=mean @ tip,
-            force=forces.sum(axis=1),
-            moment=(x * forces[..., 1] - y * forces[..., 0]).sum(axis=1),
-            axis=self.axis + bent,
-            stopped=stopped,
+            np.array(times[:count]), mean @ tip, forces.sum(axis=1), moment, self.axis + bent, stopped
         )
 
     def _deck(self, contact: list[str], steps: int, action: list[str]) -> str:
@@ -263,31 +251,22 @@ class Slab:
 
 def run(deck: str, seconds: float = 300.0) -> tuple[list[float], Tables, str]:
     """Run ``ccx`` on a deck, on one thread, for at most `seconds`; return what `parse` reads, and why it did not finish, empty if it did."""
-    program, reason = shutil.which("ccx"), ""
-    if program is None:
-        raise CalculixError("is needed: there is no program ccx on the path (Debian: calculix-ccx)")
+    words = reason = ""
     with tempfile.TemporaryDirectory(prefix="calculix-") as folder:
         (Path(folder) / "job.inp").write_text(deck, encoding="ascii")
         try:
-            done = subprocess.run(  # noqa: S603 the program found on the path, our own deck
-                [program, "-i", "job"],
-                cwd=folder,
-                env={**environment(), "OMP_NUM_THREADS": "1"},
-                capture_output=True,
-                text=True,
-                errors="replace",
-                timeout=seconds,
-                check=False,
-            )
-        except subprocess.TimeoutExpired:
-            reason = f"did not finish within {seconds:g} s"
-        except OSError as error:
-            reason = f"did not start: {error.strerror}"
-        else:
-            if done.returncode or "Job finished" not in done.stdout:
-                words = " ".join((done.stdout + done.stderr).split())
-                where = words.find("*ERROR")
-                reason = f"stopped: {words[where : where + _TAIL] if where >= 0 else words[-_TAIL:]}"
+            output = child.run(("ccx", "-i", "job"), Path(folder), "", seconds, MEMORY, OMP_NUM_THREADS="1")
+            words = " ".join(output.decode(errors="replace").split())
+        except ProgramError as error:
+            if error.status is ProgramStatus.NOT_STARTED:
+                needed = "CalculiX is needed: there is no program ccx on the path (Debian: calculix-ccx)"
+                raise ProgramError(error.status, needed) from None
+            words = str(error)
+            if error.status is ProgramStatus.TIMED_OUT:
+                reason = f"did not finish within {seconds:g} s"
+        if not reason and "Job finished" not in words:
+            where = words.find("*ERROR")
+            reason = f"stopped: {words[where : where + _TAIL] if where >= 0 else words[-_TAIL:]}"
         found = Path(folder) / "job.dat"
         return *parse(found.read_text(encoding="ascii", errors="replace") if found.exists() else ""), reason
 
@@ -308,4 +287,4 @@ def parse(text: str) -> tuple[list[float], Tables]:
 
 
 if __name__ == "__main__":
-    serve(refusal, states, continuum=True)
+    serve(refusal, states)

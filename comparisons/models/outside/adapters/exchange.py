@@ -24,14 +24,11 @@ class Histories:
     """The histories of an answer to a resolved scene, one state after the other."""
 
     def __init__(self, scene: Table) -> None:
-        self.scene = scene
-        self.reached: list[float] = []
         self.axes: Table = {beam["name"]: {"arc_length": [], "position": []} for beam in scene["beams"]}
-        self.contacts: Table = {
-            item["pair"]: {"force": [], "vector": [], "arc_position": [], "gap": []}
-            for item in scene["contacts"]
-        }
-        self.supports: Table = {item["node"]: {"force": [], "moment": []} for item in scene["supports"]}
+        contact, support = ("force", "vector", "arc_position", "gap"), ("force", "moment")
+        self.contacts: Table = {item["pair"]: {key: [] for key in contact} for item in scene["contacts"]}
+        self.supports: Table = {item["node"]: {key: [] for key in support} for item in scene["supports"]}
+        self.load_parameter: list[float] = []
 
     def axis(self, beam: str, arcs: Sequence[float], points: Points) -> None:
         """Add the deformed axis of a beam: arc lengths (m,) and positions (m, 2)."""
@@ -50,52 +47,43 @@ class Histories:
     def contact(self, pair: str, vector: Sequence[float], arc: float | None, gap: float | None) -> None:
         """Add a contact: its force on the beam, arc position and gap; both None where the pair is open."""
         x, y = float(vector[0]), float(vector[1])
-        for key, value in (
-            ("force", (x * x + y * y) ** 0.5), ("vector", [x, y]), ("arc_position", arc), ("gap", gap),
-        ):  # fmt: skip
+        for key, value in zip(self.contacts[pair], ((x * x + y * y) ** 0.5, [x, y], arc, gap), strict=True):
             self.contacts[pair][key].append(value)
-
-    def tables(self) -> Table:
-        """Return the histories by the names of the response."""
-        histories = {name: getattr(self, name) for name in ("axes", "contacts", "supports")}
-        return {"load_parameter": self.reached, **histories}
 
 
 Refusal = Callable[[Table], str | None]
 States = Callable[[Table, Histories], Iterator[float]]
 
 
-def serve(refusal: Refusal, states: States, *, continuum: bool = False) -> None:
+def serve(refusal: Refusal, states: States) -> None:
     """Answer the scene on standard input.
 
-    ``refusal``: ``refusal(scene)``: why the program cannot state the scene, None if it can. ``states``:
-    ``states(scene, histories)``: adds the states to `histories` and yields the load parameter of each. It
-    raises `StoppedError` where the program stops. ``continuum``: whether the program solves a two- or three-
-    dimensional body.
+    ``refusal(scene)`` says why the program cannot state the scene, None if it can. ``states(scene, histories)`` adds the states to
+    `histories` and yields the load parameter of each; it raises `StoppedError` where the program stops.
     """
     with os.fdopen(os.dup(1), "w", encoding="utf-8") as answer:
         sys.stdout.flush()
         os.dup2(2, 1)  # what the program prints goes to standard error
         scene = json.load(sys.stdin) | ({"steps": int(sys.argv[1])} if sys.argv[1:] else {})
-        json.dump(answered(scene, refusal, states) | {"continuum": continuum}, answer)
+        json.dump(answered(scene, refusal, states), answer)
 
 
-def answered(scene: Table, refusal: Refusal, states: States) -> Table:
+def answered(scene: Table, refusal: Refusal | None, states: States) -> Table:
     """Return the tables of the response to a scene, see `serve`."""
-    reason = refusal(scene)
+    reason = refusal and refusal(scene)
     if reason is not None:
         return {"status": "REFUSED", "message": reason}
     histories, began = Histories(scene), perf_counter()
     status, message = "COMPLETED", "the program reports success"
     try:
         for load_parameter in states(scene, histories) if scene["load_parameters"] else ():
-            histories.reached.append(load_parameter)
+            histories.load_parameter.append(load_parameter)
     except RefusedError as error:
         return {"status": "REFUSED", "message": str(error)}
     except StoppedError as error:
         status, message = "STOPPED", str(error)
     seconds = perf_counter() - began
-    return {"status": status, "message": message, "wall_seconds": seconds, **histories.tables()}
+    return {"status": status, "message": message, "wall_seconds": seconds, **vars(histories)}
 
 
 def rough(scene: Table) -> str | None:

@@ -132,4 +132,4 @@ class _Contact:
 
 
 if __name__ == "__main__":
-    serve(refusal, states, continuum=True)
+    serve(refusal, states)

@@ -3,31 +3,27 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 from comparisons.models.outside.adapters.exchange import Histories, Table, points_along
 
 
-@dataclass(frozen=True, kw_only=True)
-class Element:
-    """A straight element: its beam in the resolved scene, its nodes, arc position of the first one, and undeformed length."""
+class Element(NamedTuple):
+    """A straight element."""
 
-    beam: Table
+    beam: Table  #: Its beam in the resolved scene.
     nodes: tuple[int, int]
-    arc: float
-    length: float
+    arc: float  #: Arc position of its first node.
+    length: float  #: Undeformed length.
 
 
 @dataclass(frozen=True, kw_only=True)
 class Frame:
-    """Nodes and elements of all beams; joined beams share a node.
-
-    `points` are the undeformed positions of the nodes, `numbers` the indices of the nodes along each beam.
-    """
+    """Nodes and elements of all beams; joined beams share a node."""
 
     scene: Table
-    points: list[tuple[float, float]]
-    numbers: dict[str, list[int]]
+    points: list[tuple[float, float]]  #: Undeformed positions of the nodes.
+    numbers: dict[str, list[int]]  #: Indices of the nodes along each beam.
     elements: list[Element]
 
     def node(self, item: Table) -> int:
@@ -86,10 +82,8 @@ def frame(scene: Table) -> Frame:
             if number == len(mesh.points):
                 mesh.points.append(point)
             mesh.numbers.setdefault(name, []).append(number)
-        mesh.elements.extend(
-            Element(beam=beam, nodes=nodes, arc=arc, length=beam["length"] / parts)
-            for nodes, arc in zip(pairwise(mesh.numbers[name]), arcs, strict=False)
-        )
+        ends = zip(pairwise(mesh.numbers[name]), arcs, strict=False)
+        mesh.elements.extend(Element(beam, nodes, arc, beam["length"] / parts) for nodes, arc in ends)
     return mesh
 
 

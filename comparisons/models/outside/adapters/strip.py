@@ -30,17 +30,13 @@ def way(beam: Table, pin: Table) -> tuple[list[float], Any]:
 
 
 class Foot(NamedTuple):
-    """The foot of a point on a line of quadratic elements.
+    """The foot of a point on a line of quadratic elements."""
 
-    `first` is the index of the first of three nodes, `xi` the place on the element, from -1 to 1 and beyond the ends of the line outside,
-    `shape` (3,) the shape functions, `normal` (2,) the unit normal to the left, and `away` (2,) the vector from the foot to the point.
-    """
-
-    first: int
-    xi: float
-    shape: Any
-    normal: Any
-    away: Any
+    first: int  #: Index of the first of three nodes.
+    xi: float  #: Place on the element, from -1 to 1 and beyond the ends of the line outside.
+    shape: Any  #: Shape functions (3,).
+    normal: Any  #: Unit normal (2,) to the left.
+    away: Any  #: Vector (2,) from the foot to the point.
 
 
 def foot_on(nodes: Any, point: Any, first: int = 0) -> Foot:

@@ -13,7 +13,7 @@ import fem_reference
 from comparisons.claims.solid.peers import contact_forces, peers, press
 from comparisons.cli import main
 from comparisons.models.outside.adapters.calculix import parse, run, tip_load
-from comparisons.models.outside.child import CalculixError
+from comparisons.models.outside.child import ProgramError
 from comparisons.models.solid import to_solid
 from comparisons.scene import load_scene
 
@@ -53,7 +53,7 @@ def test_without_calculix_or_where_it_stops_the_study_says_so(tmp_path, monkeypa
     fake(tmp_path, monkeypatch, "exec sleep 20")
     assert run("", seconds=0.1) == ([], {}, "did not finish within 0.1 s")
     fake(tmp_path, monkeypatch, "echo Job finished")
-    with pytest.raises(CalculixError, match="printed no result"):
+    with pytest.raises(ProgramError, match="printed no result"):
         tip_load(STRIP, FORCE)
 
 

@@ -1,0 +1,173 @@
+"""The texts that a program of others reads and writes: the resolved scene, and the response that is held against the scene."""
+
+import json
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from comparisons.files import one_line
+from comparisons.models.options import ModelError, Options
+from comparisons.models.outside.adapters.exchange import Histories
+from comparisons.models.outside.child import ProgramError, ProgramStatus
+from comparisons.models.shared import joints, kept
+from comparisons.models.verify import CHECK_FAILED
+from comparisons.referee.certificate import Verdict
+from comparisons.response import ContactHistory, Response
+from comparisons.response.axis import axis_grid, sampled_axes
+from comparisons.response.file import SCHEMA, NotFiniteError, contradictions, parsed, restated
+from comparisons.scene import BeamSpec, Scene
+from comparisons.scene.keys import PROGRAMS, unstated
+from comparisons.scene.rules import FieldError
+from comparisons.scene.tables import check_keys
+
+BEAM = "name start end length direction EA GA EI youngs_modulus width height"
+SUPPORT, LOAD = "node beam end motion", "node beam end force moment"
+CONTACT = "pair node beam side keep friction"
+"""What a program gets of each record of a scene as it is."""
+COMPLETED, REFUSED = "COMPLETED", "REFUSED"
+SHOWN = 60
+"""Bytes that are shown of an output that is not JSON."""
+WORD = re.compile(r"[A-Z][A-Z0-9_]{,39}")
+"""How a program names what stopped it."""
+VERDICTS = {*Verdict.__members__, CHECK_FAILED}
+"""Words that this program alone says of an answer."""
+
+
+def request(scene: Scene, options: Options, load_parameters: Sequence[float]) -> str:
+    """Return the resolved scene as JSON text; ``docs/reference/resolved-scene.schema.json`` is its schema.
+
+    All derived quantities are stated: stiffnesses, load parameters, offsets of contacts, positions of pins. The options may have a number
+    of elements in place of the scene's. No load parameters ask only whether the program can state the scene. A `ModelError` names a key
+    that the resolved scene does not state.
+    """
+    unknown = unstated(scene, "the resolved scene", PROGRAMS)
+    if unknown is not None:
+        raise ModelError(unknown)
+    data = {
+        "name": scene.name,
+        "units": scene.units,
+        "load_parameters": list(load_parameters),
+        "beams": [_beam(scene, beam, options) for beam in scene.beams],
+        "joints": joints(scene),
+        "supports": [kept(item, SUPPORT) for item in scene.all_supports],
+        "loads": [kept(item, LOAD) for item in scene.loads],
+        "pins": [
+            {
+                "name": pin.name,
+                "radius": pin.radius or 0.0,
+                "path": pin.points if pin.moving else pin.points * 2,
+                "corners": pin.corners,
+                "positions": [pin.position(t) for t in load_parameters],
+            }
+            for pin in scene.pins
+        ],
+        "contacts": [kept(item, CONTACT) | {"offset": scene.offset(item)} for item in scene.contacts],
+    }
+    return json.dumps(data, allow_nan=False, indent=1) + "\n"
+
+
+def _beam(scene: Scene, beam: BeamSpec, options: Options) -> dict[str, Any]:
+    area, second_moment, shear_area = beam.cross_section
+    return kept(beam, BEAM) | {
+        "tip": scene.tip(beam.name),
+        "shear_modulus": beam.GA / shear_area,
+        "area": area,
+        "second_moment": second_moment,
+        "shear_area": shear_area,
+        "elements": options.elements or beam.divisions,
+    }
+
+
+def refusal(output: bytes) -> str | None:
+    """Return why the program cannot state the scene; None if it can, or gave no answer."""
+    try:
+        data = _parsed(output)
+    except ProgramError:
+        return None
+    return _reason(data) if data.get("status") == REFUSED else None
+
+
+def _reason(data: dict[str, Any]) -> str:
+    return one_line(data.get("message") or "no reason given")
+
+
+def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
+    """Return the response that a program wrote, JSON by `comparisons.response.file.SCHEMA`; it took `seconds` if it states no time itself.
+
+    The program states its status, and may leave out what follows from the rest: names of model and scene, message, tips, numbers of
+    iterations, wall time. An answer that is not COMPLETED may leave out all histories. A scene that the program refuses is a `ModelError`,
+    an output that is no response to the scene a `ProgramError`.
+    """
+    data = _parsed(output)
+    status = data.get("status")
+    if status == REFUSED:
+        raise ModelError(_reason(data))
+    reported = status == COMPLETED
+    mistakes = [*check_keys(data, SCHEMA["properties"], required=("status",))]
+    if not isinstance(status, str) or not WORD.fullmatch(status) or status in VERDICTS:
+        # a misspelt success, and the words that only this program says of an answer
+        rule = f"must be {COMPLETED}, in capitals, {REFUSED}, or another word in capitals"
+        mistakes.append(FieldError("status", status, f"{rule} that is no verdict of this program"))
+    try:
+        for mistake in mistakes:
+            raise mistake
+        known = {"message": "as the program reports", "wall_seconds": seconds}
+        if not reported and "load_parameter" not in data:
+            return silent(scene, model, str(status), data.get("message", known["message"]))
+        response = _read(scene, model, {**known, **data})
+        wrong = next(contradictions(response, scene), "")
+    except NotFiniteError as error:
+        raise ProgramError(ProgramStatus.NOT_FINITE, str(error), reported_success=reported) from None
+    except FieldError as error:
+        wrong = str(error)
+    if wrong:
+        raise ProgramError(ProgramStatus.INVALID_RESPONSE, wrong, reported_success=reported)
+    return replace(
+        response,
+        load_parameter=np.array(scene.times[: len(response.load_parameter)]),
+        contacts={pair: penetrating(item) for pair, item in response.contacts.items()},
+        grid=lambda k: axis_grid(scene, response.axis_line, k),
+    )
+
+
+def silent(scene: Scene, model: str, status: str, message: object, *, success: bool = False) -> Response:
+    """Return a response without any load parameter, which states why there is none."""
+    none = vars(Histories(json.loads(request(scene, Options(), ()))))
+    said = {"status": status, "message": message, "reported_success": success, "wall_seconds": 0.0}
+    return _read(scene, model, {**none, **said})
+
+
+def _read(scene: Scene, model: str, data: dict[str, Any]) -> Response:
+    """Return the response that tables state, with the tips at the ends of the axes if they state none."""
+    response = restated({"scene": scene.name, **data, "model": model})
+    if "tips" in data:
+        return response
+    ends = {beam.name: -1 if scene.tip(beam.name) == "end" else 0 for beam in scene.beams}
+    lines = {name: line for name, line in sampled_axes(response).position.items() if name in ends}
+    tips = {name: line[:, ends[name]] if line.size else np.empty((0, 2)) for name, line in lines.items()}
+    return replace(response, tips=tips)
+
+
+def _parsed(output: bytes) -> dict[str, Any]:
+    try:
+        data = parsed(output.decode("utf-8"))
+    except FieldError as error:
+        raise ProgramError(ProgramStatus.INVALID_RESPONSE, str(error)) from None
+    except (ValueError, RecursionError) as error:
+        begin = one_line(output[:SHOWN].decode("utf-8", errors="replace"))
+        words = f"{len(output)} bytes written" + (f", they begin with: {begin}" if begin else "")
+        raise ProgramError(ProgramStatus.INVALID_JSON, f"{error}; {words}") from None
+    if not isinstance(data, dict):
+        raise ProgramError(ProgramStatus.INVALID_RESPONSE, "the output must be a table")
+    return data
+
+
+def penetrating(contact: ContactHistory) -> ContactHistory:
+    """Return a contact whose negative gaps are the penetration of a penalty."""
+    pressing = contact.force if contact.friction is None else contact.friction.normal
+    deep = (contact.force > 0.0) & (contact.gap < 0.0) & (pressing > 0.0)
+    per_force = np.divide(-contact.gap, pressing, out=np.zeros_like(contact.force), where=deep)
+    return replace(contact, compliance=per_force)
