@@ -1,13 +1,12 @@
 """The picture of one answer: deformed shape, section forces along the beams, and forces over the load parameter."""
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from comparisons.quantities import forces, size
-from comparisons.response import Array, Response
+from comparisons.response import Response
 from comparisons.response.round_off import round_off
 from comparisons.response.table import unit_names
 from comparisons.scene import Scene
@@ -27,7 +26,6 @@ HEIGHT, DIAGRAM, HISTORY = 3.6, 1.25, 1.9
 ARROW = 0.16
 """Size of the largest force over the size of the scene."""
 DIAGRAMS = (("N", "axial", "force"), ("V", "shear", "force"), ("M", "moment", "moment"))
-ACTING = {palette.PIN: "contact force on the beam", palette.BLACK: "load"}
 
 
 class PictureError(ValueError):
@@ -104,45 +102,28 @@ def _shape(axes: "Axes", response: Response, scene: Scene, k: int) -> None:
         at = np.array(pin.position(t))
         sketch.disc(at, pin.radius, facecolor=palette.PIN, alpha=0.5)
         (sketch.legend[pin.name],) = axes.plot(*at, ".", color=palette.PIN, markersize=6, zorder=5)
-    found = list(_acting(sketch, response, k))
-    largest = max((float(np.hypot(*force)) for _, force, _, _ in found), default=0.0)
-    for tips, force, colour, words in found:
-        if np.hypot(*force) > 1e-6 * largest:
-            sketch.arrows(tips, ARROW * sketch.size / largest * force, words, colour, 1.3)
-            sketch.named(ACTING[colour], colour, marker=">", markersize=4, linewidth=1.3)
+    unit, vectors = (
+        unit_names(scene.units)["force"],
+        {one: response.contacts[one.pair].vector for one in scene.contacts},
+    )
+    acting = {one: vector[k] for one, vector in vectors.items() if vector is not None and vector[k].any()}
+    largest = max((float(np.hypot(*force)) for force in acting.values()), default=0.0)
+    for one, force in acting.items():
+        part = float(response.contacts[one.pair].arc_position[k]) / scene.beam(one.beam).length
+        # four significant digits, without an exponent below a million
+        words = f"{float(f'{np.hypot(*force):.4g}'):.6g} {unit}"
+        sketch.arrows(
+            sketch.at(one.beam, [part]), ARROW * sketch.size / largest * force, words, palette.PIN, 1.3
+        )
+        sketch.named("contact force on the beam", palette.PIN, marker=">", markersize=4, linewidth=1.3)
+    for history in scene.load_histories:
+        sketch.load(history.load, history.at(t))
+    sketch.weights(scene.gravity_at(t))
     sketch.symbols()
     entries = {words.partition(" of ")[0]: entry for words, entry in sketch.legend.items()}
-    place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.17), "ncols": 5}
+    place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.17), "ncols": 4}
     axes.legend(entries.values(), entries, fontsize="x-small", frameon=False, labelspacing=1.2, **place)
     sketch.separate(1)
-
-
-def _acting(sketch: Sketch, response: Response, k: int) -> Iterator[tuple[Array, Array, str, str]]:
-    """Yield points (n, 2), the force at each, the colour and the value of every contact force, load and weight."""
-    scene, t = sketch.scene, float(response.load_parameter[k])
-    units = unit_names(scene.units)
-
-    def value(force: Array) -> str:
-        # four significant digits, without an exponent below a million
-        return f"{float(f'{np.hypot(*force):.4g}'):.6g} {units['force']}"
-
-    for spec in scene.contacts:
-        contact = response.contacts[spec.pair]
-        if contact.vector is not None and contact.force[k] > 0.0:
-            at = sketch.at(spec.beam, [float(contact.arc_position[k]) / scene.beam(spec.beam).length])
-            yield at, contact.vector[k], palette.PIN, value(contact.vector[k])
-    for history in scene.load_histories:
-        load, force = history.load, np.array(history.at(t)[:2])
-        tips, words, share = sketch.loaded(load), value(force), 1.0
-        if load.force_per_length is not None:  # its resultant in equal parts
-            words = f"{words}/{units['length']}"
-            share = (load.span[1] - load.span[0]) * scene.beam(load.beam).length / len(tips)
-        if force.any():
-            yield tips, share * force, palette.BLACK, words
-    for beam in scene.beams:
-        weight = beam.mass * np.array(scene.gravity_at(t))
-        if weight.any():
-            yield sketch.at(beam.name, [0.5]), weight, palette.BLACK, f"weight {value(weight)}"
 
 
 def _diagram(axes: "Axes", response: Response, scene: Scene, quantity: tuple[str, str], k: int) -> None:

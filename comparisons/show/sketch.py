@@ -1,10 +1,10 @@
-"""Drawings of a scene: beams at their height, supports, arrows with their values, pins; and the drawing of one before it is solved."""
+"""Drawings of a scene: beams at their height, supports, loads and forces as arrows with their values, pins."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from math import hypot
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -32,7 +32,9 @@ ROW = 11
 """Arrows of a force per length."""
 NAME, WEIGHT = 0.25, 0.65
 """Fractions of the length at which a beam's name and its weight stand."""
-UP = np.array([0.0, 1.0])
+CORNER = np.array([1.0, 1.0])
+"""Way from a moment to its value, which arrows along the axes leave free."""
+SCALED = {True: "force per length, arrows not to scale", False: "force, arrow not to scale"}
 
 
 def stated(scene: Scene, others: Sequence[str] = ()) -> Iterator[str]:
@@ -100,7 +102,7 @@ class Sketch:
         arc = self.scene.beam(beam).length * np.array(parts)
         return np.stack([np.interp(arc, arcs, values) for values in points.T], axis=1)
 
-    def loaded(self, load: LoadSpec) -> Array:
+    def _tips(self, load: LoadSpec) -> Array:
         """Return the points (n, 2) at which the arrows of a load end, more than one of a force per length."""
         if load.force_per_length is not None:
             return self.at(load.beam, np.linspace(*load.span, ROW).tolist())
@@ -119,13 +121,7 @@ class Sketch:
             self.axes.add_patch(Circle(tuple(at), radius, **style))
 
     def arrows(
-        self,
-        tips: Array,
-        vector: Array,
-        words: str,
-        colour: str,
-        width: float,
-        where: Literal["tail", "tip", "beside"] = "tail",
+        self, tips: Array, vector: Array, words: str, colour: str, width: float, at_tip: bool = False
     ) -> None:
         """Draw equal arrows to the `tips` (n, 2), more than one with a line through their tails, and write beside the one in the middle."""
         tails = tips - vector
@@ -133,9 +129,40 @@ class Sketch:
             arrow(self.axes, tail, tip, colour, width)
         if len(tips) > 1:
             self.axes.plot(*tails.T, color=colour, linewidth=width)
-        tail, tip = tails[len(tips) // 2], tips[len(tips) // 2]
-        places = {"tail": (tail, -vector), "tip": (tip, vector), "beside": ((tail + tip) / 2, UP[::-1])}
-        self.label(words, *places[where], colour)
+        ends, way = (tips, vector) if at_tip else (tails, -vector)
+        self.label(words, ends[len(tips) // 2], way, colour)
+
+    def load(self, load: LoadSpec, amount: Sequence[float], stage: int = 1) -> None:
+        """Draw a load of that amount, force or force per length and moment, as arrows of one length with their values."""
+        units, after, tips = unit_names(self.scene.units), _after(stage), self._tips(load)
+        along, (*force, moment) = load.force_per_length is not None, amount
+        if any(force):
+            length, width = (ARROW / 2, 0.9) if along else (ARROW, 2.0)
+            vector, unit = length * self.size * _unit(force), f"/{units['length']}" if along else ""
+            words = f"{hypot(*force):.6g} {units['force']}{unit}{after}"
+            pulls = _pulls(self.scene, load, force)
+            self.arrows(tips + pulls * vector, vector, words, LOAD, width, at_tip=pulls)
+            self.named(SCALED[along], LOAD, marker=">", linewidth=width)
+        if moment:
+            self.turn(tips[0], moment, f"{abs(moment):.6g} {units['moment']}{after}", LOAD)
+            self.legend.setdefault("moment", legend_symbol(chain(arc(1.0)), LOAD))
+
+    def weights(self, gravity: Sequence[float], stage: int = 1) -> None:
+        """Draw the weights of the beams under an acceleration."""
+        for beam in self.scene.beams if any(gravity) else ():
+            if beam.density:
+                words = f"weight {hypot(*gravity) * beam.mass:.4g} {unit_names(self.scene.units)['force']}{_after(stage)}"
+                self.arrows(
+                    self.at(beam.name, [WEIGHT]), ARROW * self.size * _unit(gravity), words, LOAD, 2.0
+                )
+                self.named(SCALED[False], LOAD, marker=">", linewidth=2.0)
+
+    def turn(self, at: Array, turn: float, words: str, colour: str) -> None:
+        """Draw a moment or a rotation as an arc with its value."""
+        points = at + TURN * self.size * arc(turn)
+        self.axes.plot(*points.T, color=colour, linewidth=2.0)
+        arrow(self.axes, points[-2], points[-1], colour, 2.0)
+        self.label(words, at + TURN * self.size * _unit(CORNER), CORNER, colour)
 
     def label(self, words: str, at: Array, direction: Array, colour: str) -> None:
         """Write beside a place, in the direction given."""
@@ -197,7 +224,10 @@ def draw(scene: Scene, path: Path) -> None:
         _side(sketch, contact)
     sketch.symbols()
     _motions(sketch)
-    _loads(sketch)
+    for number, load in scene.numbered_loads():
+        sketch.load(load, load.amount, number + 1)
+    for stage, gravity in enumerate(scene.stage_gravities, 1):
+        sketch.weights(gravity, stage)
     for pin in scene.pins:
         _pin(sketch, pin)
     place = {"loc": "outside lower center", "ncols": 2, "fontsize": "small", "frameon": False}
@@ -212,14 +242,7 @@ def _beam(sketch: Sketch, beam: BeamSpec) -> None:
     middle, tangent = np.array(beam.place(0.5)), np.array(beam.tangent(0.5))
     arrow(sketch.axes, middle, middle + 0.03 * sketch.size * tangent, BEAM)
     left = _across(beam.tangent(NAME))
-    loads = [history.load for history in sketch.scene.load_histories]
-    along = [
-        one.force_per_length for one in loads if one.beam == beam.name and one.force_per_length is not None
-    ]
-    taken = {one.side == "left" for one in sketch.scene.contacts if one.beam == beam.name}
-    taken |= {float(np.array(force) @ left) < 0.0 for force in along}
-    clear = -left if taken == {True} else left
-    sketch.label(beam.name, beam.place(NAME) + beam.height_at(NAME) / 2 * clear, clear, BEAM)
+    sketch.label(beam.name, beam.place(NAME) + beam.height_at(NAME) / 2 * left, left, BEAM)
     flat = beam.height is None
     words = "beam: axis, without a height" if flat else "beam, height to scale"
     sketch.legend.setdefault(words, line if flat else outline)
@@ -250,67 +273,26 @@ def _motions(sketch: Sketch) -> None:
             if path.any():
                 at = at + path
                 words = f"{hypot(dx, dy):.6g} {unit_names(scene.units)['length']}{_after(stage)}"
-                sketch.arrows(at[None], path, words, HELD, 1.2, "tip")
+                sketch.arrows(at[None], path, words, HELD, 1.2, at_tip=True)
             if turn:
-                _turn(sketch, place, turn, f"{abs(turn):.6g} rad{_after(stage)}", HELD)
+                sketch.turn(place, turn, f"{abs(turn):.6g} rad{_after(stage)}", HELD)
             if path.any() or turn:
                 sketch.named("motion of a support", HELD, marker=">")
 
 
-def _loads(sketch: Sketch) -> None:
-    """Draw the loads of every stage with their values, and the weights of the beams."""
-    scene, units = sketch.scene, unit_names(sketch.scene.units)
-    force = units["force"]
-    for number, load in scene.numbered_loads():
-        after, tips = _after(number + 1), sketch.loaded(load)
-        if load.force_per_length is not None:
-            words = f"{hypot(*load.force_per_length):.6g} {force}/{units['length']}{after}"
-            sketch.arrows(tips, ARROW / 2 * sketch.size * _unit(load.force_per_length), words, LOAD, 0.9)
-            sketch.named("force per length, arrows not to scale", LOAD, marker=">", linewidth=0.9)
-            continue
-        if any(load.force):
-            vector = ARROW * sketch.size * _unit(load.force)
-            words = f"{hypot(*load.force):.6g} {force}{after}"
-            pulls = _pulls(scene, load)
-            sketch.arrows(tips + pulls * vector, vector, words, LOAD, 2.0, "tip" if pulls else "tail")
-            sketch.named("force, arrow not to scale", LOAD, marker=">", linewidth=2.0)
-        if load.moment:
-            _turn(sketch, tips[0], load.moment, f"{abs(load.moment):.6g} {units['moment']}{after}", LOAD)
-            sketch.legend.setdefault("moment", legend_symbol(chain(arc(1.0)), LOAD))
-    for stage, gravity in enumerate(scene.stage_gravities, 1):
-        for beam in scene.beams if any(gravity) else ():
-            if beam.density:
-                words = f"weight {hypot(*gravity) * beam.mass:.4g} {force}{_after(stage)}"
-                vector = ARROW * sketch.size * _unit(gravity)
-                sketch.arrows(sketch.at(beam.name, [WEIGHT]), vector, words, LOAD, 2.0, "beside")
-                sketch.named("force, arrow not to scale", LOAD, marker=">", linewidth=2.0)
-
-
-def _pulls(scene: Scene, load: LoadSpec) -> bool:
+def _pulls(scene: Scene, load: LoadSpec, force: Sequence[float]) -> bool:
     """Whether a force on a beam's end points away from the beam, along which its arrow would lie."""
     if load.end is None:
         return False
     beam = scene.beam(load.beam)
     outward = np.array(beam.tangent(1.0)) if load.end == "end" else -np.array(beam.tangent(0.0))
-    return float(_unit(load.force) @ outward) > PULL
-
-
-def _turn(sketch: Sketch, at: Array, turn: float, words: str, colour: str) -> None:
-    """Draw a moment or a rotation as an arc, with its value on the side without the arrow of a force."""
-    scene = sketch.scene
-    ends = [load for load in scene.loads if load.end is not None and load.force[1] < 0.0]
-    above = any(np.array_equal(at, scene.place(load.node)) for load in ends)
-    points = at + TURN * sketch.size * arc(turn)
-    sketch.axes.plot(*points.T, color=colour, linewidth=2.0)
-    arrow(sketch.axes, points[-2], points[-1], colour, 2.0)
-    side = -UP if above else UP
-    sketch.label(words, at + TURN * sketch.size * side, side, colour)
+    return float(_unit(force) @ outward) > PULL
 
 
 def _pin(sketch: Sketch, pin: PinSpec) -> None:
     """Draw a pin with its true radius, and its path."""
     points = np.array(pin.points)
-    behind = _unit(points[0] - points[1]) if len(points) > 1 else -UP
+    behind = _unit(points[0] - points[1]) if len(points) > 1 else np.array([0.0, -1.0])
     for stage in map(np.array, pin.stage_points):
         if len(stage) > 1:
             arrow(sketch.axes, stage[-1] - 0.01 * sketch.size * _unit(stage[-1] - stage[-2]), stage[-1], PIN)
