@@ -10,7 +10,8 @@ import numpy as np
 import tsm
 from comparisons import models
 from comparisons.budget import Budget, error_budget
-from comparisons.cases import Case, Measurement, Row
+from comparisons.cases import Case, Row
+from comparisons.cases.measure import verdict
 from comparisons.cases.rows import reached_errors
 from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.models import Model, certified, find, solve
@@ -121,9 +122,7 @@ class Comparison:
     def wrong(self) -> list[Row]:
         """The runs whose answers were refused by the checks or the referee, and the reference if it stopped."""
         return [
-            row
-            for row in self.rows
-            if row.measured.wrong or (row.label == ROD.label and not row.response.completed)
+            row for row in self.rows if row.wrong or (row.label == ROD.label and not row.response.completed)
         ]
 
 
@@ -191,7 +190,8 @@ def _row(scene: Scene, run: Run, response: Response, reference: Response) -> Row
     case = run.case(scene)
     known = None if response is reference else reached_errors(response, reference, scene, names(mesh=False))
     cause = _cause(case, reference)
-    return Row(case=case, measured=Measurement.of(response), errors=known, name=run.label, cause=cause)
+    judged = verdict(response)
+    return Row(case=case, response=response, verdict=judged, errors=known, name=run.label, cause=cause)
 
 
 def _cause(case: Case, reference: Response) -> str:

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import ceil
 from pathlib import Path
 from typing import Any
@@ -93,9 +93,8 @@ def measure_league(
     return League(
         scenes=tuple(scenes),
         rows=[
-            Row(
-                case=case,
-                measured=found[case],
+            replace(
+                found[case],
                 errors=reached_errors(found[case].response, exact[case.scene.name], case.scene, QUANTITIES),
             )
             for case in cases
@@ -118,20 +117,20 @@ def _cases(scene: Scene, name: str, model: Model, most: int) -> Iterator[Case]:
 
 def league_row(row: Row) -> dict[str, Any]:
     """Return a row of the table."""
-    response, measured = row.response, row.measured
+    response = row.response
     return {
         "scene": row.case.scene.name,
         "program": row.family,
         "setting": row.label,
         "outcome": row.outcome,
         **{f"error_{name}": row.error("path", name) for name in QUANTITIES},
-        "seconds": measured.seconds,
-        "process_seconds": measured.process_seconds,
+        "seconds": row.seconds,
+        "process_seconds": row.process_seconds,
         "unknowns": response.unknowns,
         "load_parameters_reached": len(response.load_parameter),
         "status": response.status,
-        "verdict": measured.verdict,
-        "said_success_and_was_wrong": measured.wrong,
+        "verdict": row.verdict,
+        "said_success_and_was_wrong": row.wrong,
         "message": response.message,
     }
 
@@ -175,7 +174,7 @@ def plot_league(league: League, *paths: Path) -> None:
 
 def _draw(axes: Any, program: str, rows: Sequence[Row]) -> None:
     # the seconds of the solution where the system does not count processes
-    whole = [(row.measured.process_seconds, row.measured.seconds) for row in rows]
+    whole = [(row.process_seconds, row.seconds) for row in rows]
     seconds = np.array([process if np.isfinite(process) else own for process, own in whole])
     errors = np.maximum([row.error("path", "force") for row in rows], FLOOR)
     seen = np.isfinite(errors) & np.isfinite(seconds)
@@ -186,7 +185,7 @@ def _draw(axes: Any, program: str, rows: Sequence[Row]) -> None:
     axes.plot(seconds[seen], errors[seen], linewidth=1.2, label=program, **own)
     for x, y, row in zip(seconds, errors, rows, strict=True):
         mark: dict[str, Any] = {}
-        if row.measured.wrong:
+        if row.wrong:
             mark = {"color": "black", "marker": "x", "markersize": 10}
         elif not row.response.completed:
             mark = {"markerfacecolor": "white", **own}
@@ -220,8 +219,8 @@ def _line(row: Row) -> dict[str, str]:
         "setting": row.label,
         "outcome": row.outcome,
         **{name: "-" if np.isnan(error) else f"{error:.1e}" for name, error in errors.items()},
-        "seconds": f"{row.measured.seconds:.2g}",
-        "process": f"{row.measured.process_seconds:.2g}",
+        "seconds": f"{row.seconds:.2g}",
+        "process": f"{row.process_seconds:.2g}",
     }
 
 

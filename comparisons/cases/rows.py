@@ -1,14 +1,12 @@
-"""Rows: cases with their answers, their costs, and their errors against a reference; and the table of a study."""
+"""The errors of a row as far as it came, and the table of a study."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
 from math import nan
 from typing import Any
 
 import numpy as np
 
-from comparisons.cases.case import Case
-from comparisons.cases.measure import Measurement
+from comparisons.cases.measure import Row
 from comparisons.cases.settings import settings
 from comparisons.errors import Errors, error_histories, largest
 from comparisons.output import tabulated
@@ -21,74 +19,6 @@ DETAILS = ("moment:", "tip_x:", "tip_y:")
 """Columns that a table for a reader leaves out, by their beginnings."""
 HIDDEN = {"label", "load_parameter", "cutbacks", "seconds", "repeats", "peak_memory", "version", "message"}
 """Columns that a table for a reader leaves out; without times it is the same in every run."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Row:
-    """A case with its answer, its cost and its errors by scope and quantity.
-
-    `errors` are against the reference, which itself has none; `own_errors` are against what the model converges to, where that is known.
-    `name` is the label of the run, by default that of the case. `cause` is the largest part of the error that theory allows the model,
-    empty where theory has no estimate for the scene.
-    """
-
-    case: Case
-    measured: Measurement
-    errors: Errors | None = None
-    own_errors: Errors | None = None
-    name: str = ""
-    cause: str = ""
-
-    @property
-    def response(self) -> Response:
-        """The answer."""
-        return self.measured.response
-
-    @property
-    def label(self) -> str:
-        """Label of the run."""
-        return self.name or self.case.label
-
-    @property
-    def family(self) -> str:
-        """What the runs that differ in resolution only share."""
-        return self.case.family
-
-    @property
-    def resolution(self) -> float:
-        """Number of elements along a beam; nan without a mesh, or where the scene gives the number."""
-        return self.case.resolution
-
-    @property
-    def stable(self) -> str:
-        """Yes, no, a dash where the model states no index, or that it states one at a part of the load parameters."""
-        index = self.response.index
-        if index is None or not np.any(index >= 0):
-            return "-"
-        return "no" if np.any(index > 0) else "yes" if np.all(index >= 0) else "in part"
-
-    @property
-    def outcome(self) -> str:
-        """``certified``, ``wrong`` for a refused answer that the program reported as a success, or the status of a stop."""
-        if self.measured.wrong:
-            return "wrong"
-        if not self.response.completed:
-            return self.response.status
-        return self.measured.verdict.lower().replace("_", " ") or "no verdict"
-
-    def error(self, scope: str, quantity: str, *, own: bool = False) -> float:
-        """Return an error against the reference, or against what the model converges to; nan where it is not known."""
-        errors = self.own_errors if own else self.errors
-        return nan if errors is None else errors[scope][quantity]
-
-    def spent(self, cost: str) -> float:
-        """Return the ``seconds``, the ``iterations`` or the ``unknowns``."""
-        return float(getattr(self.measured if cost == "seconds" else self.response, cost))
-
-    def cost(self) -> dict[str, float]:
-        """Return the columns of all costs."""
-        own = {name: getattr(self.response, name) for name in ("iterations", "cutbacks", "unknowns")}
-        return own | {name: getattr(self.measured, name) for name in ("seconds", "repeats", "peak_memory")}
 
 
 def reached_errors(
@@ -104,12 +34,11 @@ def reached_errors(
     }
 
 
-def result_rows(results: Mapping[Case, Measurement]) -> list[dict[str, Any]]:
-    """Return a row for each result, with settings that differ, status, last state reached and cost.
+def result_rows(rows: Collection[Row]) -> list[dict[str, Any]]:
+    """Return a line for each row, with settings that differ, status, last state reached and cost.
 
     The columns of answers are ``force:PAIR``, ``arc_position:PAIR``, ``moment:BEAM``, ``tip_x:BEAM`` and ``tip_y:BEAM``.
     """
-    rows = [Row(case=case, measured=found) for case, found in results.items()]
     stated = [settings(row.case) for row in rows]
     answers = [_answers(row.response) for row in rows]
     varied = _varied(stated)
@@ -121,7 +50,7 @@ def result_rows(results: Mapping[Case, Measurement]) -> list[dict[str, Any]]:
             "label": row.label,
             **{name: _text(own.get(name)) for name in varied},
             "status": row.response.status,
-            "verdict": row.measured.verdict,
+            "verdict": row.verdict,
             **{name: answer.get(name) for name in columns},
             **row.cost(),
             "version": version(),

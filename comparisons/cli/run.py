@@ -152,7 +152,7 @@ def _study(given: "argparse.Namespace") -> int:
     table = f"{study.name}.csv"
     folder = writable_folder(given.out or Path("out/study"), table)
     with running(folder / study.name, workers(given), quiet=given.quiet, repeats=study.repeats) as run_cases:
-        rows = result_rows(run_cases(study.cases))
+        rows = result_rows(run_cases(study.cases).values())
     ends = Counter(row["status"] for row in rows)
     print(result_table(rows))
     print(f"\n{study.name}: {len(rows)} cases: {', '.join(f'{name} {ends[name]}' for name in sorted(ends))}")
