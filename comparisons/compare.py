@@ -24,14 +24,14 @@ from comparisons.response import Response
 from comparisons.response.file import as_dict
 from comparisons.scene import Scene, to_toml
 from comparisons.scene.keys import special_keys
-from comparisons.show.budget_plot import plot_budget, write_budget
-from comparisons.show.compare_report import write_comparison_page
+from comparisons.show.budget_plot import budget_section, plot_budget, write_budget
 from comparisons.show.export import check_series, write_series
-from comparisons.show.findings import BUDGET
+from comparisons.show.findings import BUDGET, findings
+from comparisons.show.pages import Section, motion_section, picture, states_section, table, tracks, write_page
 from comparisons.show.panel import mises_panel
 from comparisons.show.plot import nearest_steps, plot_shapes
 from comparisons.show.render import NoOpenGLError, write_picture
-from comparisons.show.table import table_csv
+from comparisons.show.table import line, table_csv
 from comparisons.version import versions
 from tsm.elements import TIMOSHENKO, ElementType
 
@@ -70,8 +70,13 @@ RUNS = tuple(
 PAPER = tuple(_beams(TIMOSHENKO, elements) for elements in (10, 20, 50))
 """The paper's element."""
 MIXED = _beams(tsm.elements.MIXED, 20)
-"""The beams that are exported and rendered."""
 SOLID, ROD, ELASTICA = (run_of(model, Options()) for model in (models.SOLID, models.ROD, models.ELASTICA))
+EXPORTED = (MIXED, SOLID)
+"""The beams and the solid that are exported and rendered."""
+ERRORS = (
+    f"Largest error over all load parameters against the {ROD.label}; forces and moments over their largest, positions "
+    "over the length, friction over the contact forces. Newton iterations and wall seconds of the whole path."
+)
 
 
 def _layer(run: Run) -> int:
@@ -150,7 +155,7 @@ def compare(
     if refused is not None:
         raise ModelError(f"compare: errors are measured against the {ROD.label}; {refused}")
     folder = writable_folder(folder, *NAMES)
-    for run in (MIXED, SOLID):
+    for run in EXPORTED:
         check_series(folder / run.model, run.model, scene)
     left_out: dict[str, str] = {}
     answers: dict[Run, Response] = {}
@@ -226,15 +231,18 @@ def _write_all(
         plot_budget(budget, *files[-3:-1])
         write_budget(budget, files[-1])
     count(3, WRITTEN)
-    series = {}
-    for run in (MIXED, SOLID):
-        if run.label in responses:
-            write_series(writable_folder(folder / run.model), responses[run.label], scene)
-            series[run.label] = folder / run.model / f"{run.model}.pvd"
+    exported = [run for run in EXPORTED if run.label in responses]
+    for run in exported:
+        write_series(writable_folder(folder / run.model), responses[run.label], scene)
     count(4, WRITTEN)
     write_text(folder / "table.csv", table_csv(rows))
-    files = [folder / "summary.json", folder / "table.csv", *files, *series.values()]
-    files.insert(0, write_comparison_page(scene, rows, budget, files, series, folder, left_out))
+    files = [
+        folder / "summary.json",
+        folder / "table.csv",
+        *files,
+        *(folder / run.model / f"{run.model}.pvd" for run in exported),
+    ]
+    files.insert(0, _write_page(scene, rows, budget, files, left_out, folder))
     summary = {
         "scene": scene.name,
         "scene_file": to_toml(scene),
@@ -247,9 +255,33 @@ def _write_all(
     return files
 
 
+def _write_page(
+    scene: Scene,
+    rows: list[Row],
+    budget: Budget | None,
+    files: list[Path],
+    left_out: Mapping[str, str],
+    folder: Path,
+) -> Path:
+    responses = {row.label: row.response for row in rows}
+    vtu = {run.label: f"{run.model}/{run.model}-{{}}.vtm" for run in EXPORTED if run.label in responses}
+    shown, states = tracks(responses, ROD.label, scene), states_section(responses)
+    sections = [
+        Section("Errors", table(ERRORS, [line(row) for row in rows])),
+        motion_section("Shapes and histories", scene, responses, shown, focus=ROD.label, vtu=vtu),
+        *([] if states is None else [states]),
+        *([] if budget is None else [budget_section(budget, folder / "budget.svg")]),
+    ]
+    stress = folder / "side-by-side.png"
+    if stress in files:
+        sections.append(Section("Stress", picture(stress, "Beams and solid, von Mises stress.")))
+    lead = " ".join(findings(scene, rows, ROD.label, budget, left_out))
+    return write_page(folder, f"{scene.name}: beams, solid and exact answers", lead, sections, [scene], files)
+
+
 def _write_picture(scene: Scene, responses: dict[str, Response], folder: Path, report: Report) -> list[Path]:
     """Write the side-by-side picture of the beams and the solid at load parameters that both reached."""
-    both = [responses[run.label] for run in (MIXED, SOLID) if run.label in responses]
+    both = [responses[run.label] for run in EXPORTED if run.label in responses]
     reached = min((len(response.load_parameter) for response in both), default=0)
     if len(both) < 2 or reached == 0:
         report("side-by-side.png: left out, it takes beams and solid")

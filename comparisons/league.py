@@ -18,14 +18,18 @@ from comparisons.models.outside.programs import used
 from comparisons.output import write_numbers, write_rows
 from comparisons.scene import Scene
 from comparisons.show import palette
-from comparisons.show.pages import folded, picture
-from comparisons.show.plot import WIDTH, figure, save
-from comparisons.show.work import draw_legend, logarithmic, rows_table, write_report
+from comparisons.show.pages import Section, folded, picture, table, write_page
+from comparisons.show.plot import WIDTH, draw_legend, figure, logarithmic, save
 
 MOST = 5
 """Largest number of resolutions of a program."""
 QUANTITIES = ("force", "arc", "moment", "tip", "friction")
 """The quantities whose errors are stated."""
+SHOWN = {
+    "setting": "setting", "outcome": "outcome", **{f"error_{name}": name for name in QUANTITIES}, "seconds": "seconds",
+    "process_seconds": "process",
+}  # fmt: skip
+"""The columns that the page shows, and how it calls them."""
 COLUMNS = 2
 """Panels of the diagram beside each other."""
 FLOOR = 1e-14
@@ -212,38 +216,27 @@ def summary(league: League) -> list[dict[str, object]]:
     return rows
 
 
-def _line(row: Row) -> dict[str, str]:
-    """Return a row for people."""
-    errors = {name: row.error("path", name) for name in QUANTITIES}
-    return {
-        "setting": row.label,
-        "outcome": row.outcome,
-        **{name: "-" if np.isnan(error) else f"{error:.1e}" for name, error in errors.items()},
-        "seconds": f"{row.seconds:.2g}",
-        "process": f"{row.process_seconds:.2g}",
-    }
-
-
 def _write_page(league: League, files: Sequence[Path], folder: Path) -> Path:
-    sections = {
-        "Programs": [rows_table("How the runs of each program ended", summary(league))],
-        "Work and precision": [picture(folder / "league.svg", DIAGRAM)],
-    }
+    sections = [
+        Section("Programs", table("How the runs of each program ended", summary(league))),
+        Section("Work and precision", picture(folder / "league.svg", DIAGRAM)),
+    ]
     for scene in league.scenes:
-        lines = [_line(row) for program in league.programs for row in league.of(scene.name, program)]
+        rows = [league_row(row) for program in league.programs for row in league.of(scene.name, program)]
+        lines = [{words: row[name] for name, words in SHOWN.items()} for row in rows]
         reasons = [
             {"program": who, "reason": why} for name, who, why in league.left_out if name == scene.name
         ]
-        parts = [folded("all runs", rows_table(CAPTION, lines))]
+        html = folded("all runs", table(CAPTION, lines))
         if scene.name in league.stopped:
             end = f"The exact rods end here: {league.stopped[scene.name]}"
-            parts.insert(0, f"<p>{end}. Errors are measured as far as they came.</p>")
+            html = f"<p>{end}. Errors are measured as far as they came.</p>\n{html}"
         if reasons:
-            parts.append(folded("who cannot state it", rows_table("Reasons", reasons)))
-        sections[scene.name] = parts
+            html += "\n" + folded("who cannot state it", table("Reasons", reasons))
+        sections.append(Section(scene.name, html))
     others = ", ".join(model.label for model in used())
     lead = (
         f"{len(league.rows)} runs of {len(league.programs)} programs on {len(league.scenes)} scenes, each against the exact rods"
         f"{f'; programs of others: {others}' if others else ''}. Seconds belong to the machine named below. There is no single score."
     )
-    return write_report(folder, "League", lead, sections, league.scenes, files)
+    return write_page(folder, "League", lead, sections, league.scenes, files)

@@ -7,14 +7,13 @@ from comparisons.show.pages.page import (
     folded,
     page,
     picture,
-    provenance,
     table,
     write_page,
 )
 from comparisons.show.pages.states import states_section
 
 __all__ = [
-    "Section", "Track", "definitions", "folded", "motion_section", "page", "picture", "provenance", "states_section", "table", "tracks",
+    "Section", "Track", "definitions", "folded", "motion_section", "page", "picture", "states_section", "table", "tracks",
     "write_page",
 ]  # fmt: skip
 

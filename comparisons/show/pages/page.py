@@ -4,12 +4,11 @@ import base64
 import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from html import escape
 from importlib import resources
 from pathlib import Path
 from string import Template
-from typing import Any
+from typing import Any, NamedTuple
 from urllib.parse import quote
 
 from comparisons.files import write_text
@@ -21,8 +20,7 @@ NAME = "report.html"
 TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
 
 
-@dataclass(frozen=True, kw_only=True)
-class Section:
+class Section(NamedTuple):
     """A part of a page: its heading, which no other section has, and the markup below it.
 
     The `data` are what a script shows, JSON's types, arrays or records; the script finds them as
@@ -70,29 +68,32 @@ def part(name: str) -> str:
     return (resources.files("comparisons.show.pages") / name).read_text(encoding="utf-8")
 
 
-def write_page(folder: Path, title: str, lead: str, sections: Sequence[Section]) -> Path:
-    """Write the `page` as ``report.html`` to `folder`; return the file."""
-    write_text(folder / NAME, page(title, lead, sections))
-    return folder / NAME
+def write_page(
+    folder: Path,
+    title: str,
+    lead: str,
+    sections: Iterable[Section],
+    scenes: Iterable[Scene],
+    files: Iterable[Path],
+    name: str = NAME,
+) -> Path:
+    """Write sections as a `page` to `folder`, closed by input, versions and machine, and links to files; return the page's file.
 
-
-def provenance(scenes: Iterable[Scene], files: Iterable[Path], folder: Path) -> list[Section]:
-    """Return the sections that close every page: input, versions and machine, files.
-
-    Each scene opens on demand as its scene file. The files are linked relative to `folder`, where the page
-    is.
+    Each scene opens on demand as its scene file.
     """
-    inputs = (
+    inputs = [
         folded(f"{scene.name}.toml", f'<pre tabindex="0"><code>{text(to_toml(scene))}</code></pre>')
         for scene in scenes
-    )
+    ]
     names = (path.relative_to(folder).as_posix() for path in files)
     links = "\n".join(f'<li><a href="{quote(name)}">{text(name)}</a></li>' for name in names)
-    return [
-        Section(title="Input", html="\n".join(inputs)),
-        Section(title="Versions and machine", html=definitions({**versions(), **machine()})),
-        Section(title="Files", html=f"<ul>\n{links}\n</ul>"),
+    closing = [
+        *([Section("Input", "\n".join(inputs))] if inputs else []),
+        Section("Versions and machine", definitions({**versions(), **machine()})),
+        Section("Files", f"<ul>\n{links}\n</ul>"),
     ]
+    write_text(folder / name, page(title, lead, [*sections, *closing]))
+    return folder / name
 
 
 def text(value: Any) -> str:
@@ -100,13 +101,17 @@ def text(value: Any) -> str:
     return escape(cell(value))
 
 
-def table(caption: str, header: Sequence[str], rows: Iterable[Sequence[Any]], *, prose: bool = False) -> str:
-    """Return a table that scrolls by itself where the screen is narrow; the first column heads its rows.
+def table(caption: str, rows: Sequence[Mapping[str, Any]], *, prose: bool = False) -> str:
+    """Return rows of equal keys as a table that scrolls by itself where the screen is narrow; the first column heads its rows.
 
     Its caption stands above it and names it; the cells of `prose` break their lines.
     """
-    cells = (("", first, "".join(f"<td>{text(one)}</td>" for one in rest)) for first, *rest in rows)
-    inner = markup(header, cells, "prose" if prose else "")
+    if not rows:
+        return "<p>None.</p>"
+    cells = []
+    for first, *rest in (row.values() for row in rows):
+        cells.append(("", first, "".join(f"<td>{text(one)}</td>" for one in rest)))
+    inner = markup(list(rows[0]), cells, "prose" if prose else "")
     return f'<p class="caption">{text(caption)}</p>\n{scrolling(caption, inner)}'
 
 

@@ -93,7 +93,9 @@ def test_a_page_is_alone_and_begins_with_the_findings(compared):
 
 def test_text_is_escaped_and_data_cannot_end_the_script():
     sections = [
-        Section(title="A & B <x>", html=table("<c>", ("<h>", "n"), [("<r>", 0.123456), ("s", None)])),
+        Section(
+            title="A & B <x>", html=table("<c>", [{"<h>": "<r>", "n": 0.123456}, {"<h>": "s", "n": None}])
+        ),
         Section(title="data", html="", data={"text": "</script><b>", "nan": np.array([np.nan, 1.0])}),
     ]
     html = page("<t>", "a < b", sections)
