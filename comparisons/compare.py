@@ -28,6 +28,7 @@ from comparisons.show.budget_plot import budget_section, plot_budget, write_budg
 from comparisons.show.export import check_series, write_series
 from comparisons.show.findings import BUDGET, findings
 from comparisons.show.pages import Section, motion_section, picture, states_section, table, tracks, write_page
+from comparisons.show.palette import style
 from comparisons.show.panel import mises_panel
 from comparisons.show.plot import nearest_steps, plot_shapes
 from comparisons.show.render import NoOpenGLError, write_picture
@@ -79,20 +80,11 @@ ERRORS = (
 )
 
 
-def _layer(run: Run) -> int:
-    """Layer of a run in a figure, from below: the solid, beams without nodes, beams, exact answers."""
-    model = models.MODELS[run.model]
-    if model.continuum or not model.meshed:
-        return 0 if model.continuum else 3
-    return 1 if model.reference is not None and run.options.element == model.reference.element else 2
-
-
-DRAWN = tuple(sorted((run for run in RUNS if run not in (MIXED, ELASTICA)), key=_layer))
+DRAWN = tuple(
+    sorted((run for run in RUNS if run not in (MIXED, ELASTICA)), key=lambda run: -style(run.label).width)
+)
 """The runs whose deflected axes are drawn over each other: the widest line first, the exact rod on top."""
-
 BRANCH = ("force", "moment", "tip")
-WRITTEN = 5
-"""Parts of the files: shapes, stress, budget, VTU files, tables and page."""
 NAMES = ("report.html", "summary.json", "table.csv", "shapes.png", "shapes.svg", "side-by-side.png", "budget.png", "budget.svg", "budget.json")  # fmt: skip
 """The files beside those of ParaView."""
 APART = 0.5
@@ -180,8 +172,8 @@ def compare(
         if budget is None:
             left_out[BUDGET] = lack
             report(f"budget.json: left out, {lack}")
-    with staging("drawing and writing files") as count, alone_in(folder):
-        files = _write_all(scene, rows, budget, left_out, folder, report, count)
+    with staging("drawing and writing files"), alone_in(folder):
+        files = _write_all(scene, rows, budget, left_out, folder, report)
     return Comparison(rows=rows, files=files)
 
 
@@ -217,24 +209,19 @@ def _write_all(
     left_out: Mapping[str, str],
     folder: Path,
     report: Report,
-    count: Count,
 ) -> list[Path]:
     responses = {row.label: row.response for row in rows}
     drawn = {run.label: responses[run.label] for run in DRAWN if run.label in responses}
     files = [folder / "shapes.png", folder / "shapes.svg"]
     plot_shapes(scene, drawn, *files)
-    count(1, WRITTEN)
     files += _write_picture(scene, responses, folder, report)
-    count(2, WRITTEN)
     if budget is not None:
         files += [folder / name for name in NAMES[-3:]]
         plot_budget(budget, *files[-3:-1])
         write_budget(budget, files[-1])
-    count(3, WRITTEN)
     exported = [run for run in EXPORTED if run.label in responses]
     for run in exported:
         write_series(writable_folder(folder / run.model), responses[run.label], scene)
-    count(4, WRITTEN)
     write_text(folder / "table.csv", table_csv(rows))
     files = [
         folder / "summary.json",

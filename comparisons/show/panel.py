@@ -4,8 +4,7 @@ Beams are ribbons of their height, so that beams and solids are shown on one foo
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +13,7 @@ from comparisons.response import CONTACT_STATES, OPEN, SLIPS, Array, Grid, Respo
 from comparisons.scene import Scene
 from comparisons.show.export import CONTACTS, HINGES, POINTS, SUPPORTS, blocks
 from comparisons.show.palette import PIN
-from comparisons.show.symbols import SYMBOL, Segments, fixings, hinge_symbol, placed
+from comparisons.show.symbols import HINGE, SYMBOL, Segments, fixings
 
 Body = tuple[Array, Array]
 """Quadrilaterals (m, 4, 2) of a deformed body, and the stress (m, 4) at their corners."""
@@ -104,43 +103,43 @@ def mises_panel(response: Response, scene: Scene, ks: Sequence[int], title: str)
                 direct, bent = data["N"] / area, data["M"] * data["height"] / (2.0 * inertia)
                 data["axial_stress_right"], data["axial_stress_left"] = direct + bent, direct - bent
                 data["shear_stress"] = 1.5 * data["V"] / area
-    panels = [panel(state, title, stress="von_mises") for state in states]
-    whole: dict[str, Any] = {
-        item.name: np.concatenate([getattr(one, item.name) for one in panels])
-        for item in fields(Panel)
-        if item.name != "title"
-    }
-    return Panel(title=title, **{**whole, "forces": 0.0 * whole["forces"]})
+    found = panel(states, title, stress="von_mises")
+    return replace(found, forces=0.0 * found.forces)
 
 
 def panel(
-    grids: Mapping[str, Grid], title: str, factor: float = 1.0, *, stress: str = "axial_stress"
+    states: Sequence[Mapping[str, Grid]], title: str, factor: float = 1.0, *, stress: str = "axial_stress"
 ) -> Panel:
-    """Return the deformed bodies, solids or the ribbons of beams, with contacts, their forces and supports.
+    """Return the deformed bodies, solids or the ribbons of beams, with contacts, their forces and supports, of states over each other.
 
-    The blocks are those of `comparisons.show.export.blocks`, and the title states the enlargement `factor` of
+    The blocks of a state are those of `comparisons.show.export.blocks`, and the title states the enlargement `factor` of
     the displacements. A closed contact stays on its beam: it moves as the touched point does. A beam has a
     von Mises stress where its points have a ``shear_stress``.
     """
-    structure = [grid for name, grid in grids.items() if name not in POINTS]
+    structure = [grid for grids in states for name, grid in grids.items() if name not in POINTS]
     size = float(np.ptp(np.concatenate([grid.points for grid in structure]), axis=0).max())
     bodies = [
         _solid(grid, stress, factor) if QUARTERS.keys() & grid.cells.keys() else _ribbon(grid, size, factor)
         for grid in structure
     ]
-    none = np.zeros((0, 2))
-    data = grids[CONTACTS].point_data if CONTACTS in grids else {}
-    forces = data.get("contact_force", none)
-    slips = data.get("slip", np.full(len(forces), np.nan))
-    symbols = [placed(symbol, place, SYMBOL * size) for place, symbol in _symbols(grids, factor)]
+    contacts = [grids[CONTACTS].point_data for grids in states if CONTACTS in grids]
+
+    def every(name: str, otherwise: float = 0.0, *more: int) -> Array:
+        parts = [data.get(name, np.full(len(data["radius"]), otherwise)) for data in contacts]
+        return np.concatenate([np.zeros((0, *more)), *parts])
+
+    forces, moved = every("contact_force", 0.0, 2), every("beam_displacement", 0.0, 2)
+    symbols = [
+        place + SYMBOL * size * symbol for grids in states for place, symbol in _symbols(grids, factor)
+    ]
     return Panel(
         title=title if factor == 1.0 else f"{title}, deformation x {factor:g}",
         quads=np.concatenate([quads for quads, _ in bodies]),
         stress=np.concatenate([values for _, values in bodies]),
-        pins=data.get("deformed", none) + (factor - 1.0) * data.get("beam_displacement", none),
-        radii=data.get("radius", np.zeros(0)),
+        pins=every("deformed", 0.0, 2) + (factor - 1.0) * moved,
+        radii=every("radius"),
         forces=forces,
-        states=np.array([_state(*one) for one in zip(forces, slips, strict=True)], dtype=str),
+        states=np.array([_state(*one) for one in zip(forces, every("slip", np.nan), strict=True)], dtype=str),
         supports=np.concatenate([np.zeros((0, 2, 2)), *symbols]),
     )
 
@@ -207,7 +206,7 @@ def _end_angles(chords: Array) -> Array:
 def _symbols(grids: Mapping[str, Grid], factor: float) -> Iterator[tuple[Array, Segments]]:
     """Yield the symbols of supports, springs and hinges with their places."""
     for place in _enlarged(grids[HINGES], factor) if HINGES in grids else ():
-        yield place, hinge_symbol()
+        yield place, HINGE
     if SUPPORTS not in grids:
         return
     data = grids[SUPPORTS].point_data

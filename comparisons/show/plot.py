@@ -22,8 +22,8 @@ BEAMS: tuple[dict[str, Any], ...] = (
     {"marker": ".", "markersize": 4.0},
     {"marker": "^", "markersize": 4.0},
 )
-CONTINUOUS = {"linewidth": 3.5}
-"""Exact elements, which have no nodes to mark."""
+CONTINUOUS = {"linewidth": 3.5, "zorder": 1.9}
+"""Exact elements, which have no nodes to mark, below the others."""
 FINE = 5
 """Points of an axis for each line of its grid, below which the lines are no elements but pieces of an exact one."""
 SHOWN = (0.2, 0.4, 0.6, 0.8, 1.0)

@@ -72,7 +72,7 @@ def film(series: Sequence[Series], factor: float = 1.0) -> Film:
 
 def _panel(series: Series, t: float, factor: float) -> Panel:
     k = int(np.flatnonzero(series.load_parameter == t)[0])
-    return panel(series.blocks(k), f"{series.title}, t = {t:.3f}", factor)
+    return panel([series.blocks(k)], f"{series.title}, t = {t:.3f}", factor)
 
 
 def write_picture(panels: list[Panel], stress_label: str, path: Path) -> None:

@@ -5,8 +5,7 @@ matplotlib and by pyvista, and stand in a legend.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +54,7 @@ _COIL = chain([(0, 0), (0, -0.4), (0.4, -0.6), (-0.4, -1), (0.4, -1.4), (-0.4, -
 _SPRING = np.concatenate([_COIL, _ground(-2.4, 0.7)])
 _ANGLE = np.linspace(0.0, 4.0 * np.pi, 41)
 _SPIRAL = chain((0.25 + 0.15 * _ANGLE / np.pi)[:, None] * np.stack([np.cos(_ANGLE), np.sin(_ANGLE)], axis=1))
+HINGE = chain(0.35 * arc(1.0, points=17, part=1.0))
 SUPPORTS: dict[tuple[str, ...], tuple[str, Segments]] = {
     ("x", "y", "rotation"): ("clamped", _ground(0.0, 1.0)),
     ("x", "y"): ("pinned", np.concatenate([_TRIANGLE, _ground(-1.0, 0.9)])),
@@ -96,18 +96,7 @@ def fixed(scene: Scene) -> NDArray[np.int64]:
     return np.asarray(np.array(kinds)[:, None] * np.array(held).reshape(-1, 3))
 
 
-def hinge_symbol() -> Segments:
-    """Return a small circle."""
-    return chain(0.35 * arc(1.0, points=17, part=1.0))
-
-
-def placed(segments: Segments, at: Array, size: float) -> Segments:
-    """Return segments enlarged to `size` and moved to the node `at`."""
-    return np.asarray(at + size * segments)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Symbol:
+class Symbol(NamedTuple):
     """The symbol of what is at a beam's end: segments (n, 2, 2) of unit size about the node, and its words."""
 
     item: SupportSpec | SpringSpec | HingeSpec
@@ -123,7 +112,7 @@ def end_symbols(scene: Scene) -> list[Symbol]:
     """Return the symbols of the supports, springs and hinges of a scene."""
     units = unit_names(scene.units)
     stiff = f"{units['moment']}/rad"
-    found: list[tuple[SupportSpec | SpringSpec | HingeSpec, str, Segments]] = []
+    found = []
     for one, kinds in zip(scene.holding, fixed(scene), strict=True):
         for names, segments in fixings(kinds, inward(scene, one)):
             words = SUPPORTS[names][0]
@@ -131,11 +120,11 @@ def end_symbols(scene: Scene) -> list[Symbol]:
                 stiffness = dict(zip(COMPONENTS, (*one.stiffness, one.rotation), strict=True))[names[0]]
                 unit = stiff if names == ("rotation",) else f"{units['force']}/{units['length']}"
                 words = f"spring of {stiffness:.6g} {unit} in {names[0]}"
-            found.append((one, words, segments))
+            found.append(Symbol(one, words, segments))
     for hinge in scene.hinges:
         words = f"hinge with a spring of {hinge.stiffness:.6g} {stiff}" if hinge.stiffness else "hinge"
-        found.append((hinge, words, hinge_symbol()))
-    return [Symbol(item=item, words=words, segments=segments) for item, words, segments in found]
+        found.append(Symbol(hinge, words, HINGE))
+    return found
 
 
 def draw_symbols(axes: Any, scene: Scene, lines: Mapping[str, Array], size: float) -> dict[str, Any]:
@@ -147,7 +136,7 @@ def draw_symbols(axes: Any, scene: Scene, lines: Mapping[str, Array], size: floa
 
     symbols = end_symbols(scene)
     for one in symbols:
-        drawn = placed(one.segments, one.at(lines[one.item.beam]), size)
+        drawn = one.at(lines[one.item.beam]) + size * one.segments
         axes.add_collection(LineCollection(list(drawn), colors=palette.BLACK, linewidths=1.0, zorder=4))
         axes.update_datalim(drawn.reshape(-1, 2))
     return {one.words: legend_symbol(one.segments) for one in symbols}
