@@ -12,7 +12,7 @@ from comparisons.response.table import unit_names
 from comparisons.scene import Scene
 from comparisons.show import palette
 from comparisons.show.plot import WIDTH, figure, save
-from comparisons.show.sketch import Sketch, axis
+from comparisons.show.sketch import ARROW, LEFT, Sketch, axis
 from comparisons.version import release
 
 if TYPE_CHECKING:
@@ -23,8 +23,6 @@ COLOURS = (palette.BLUE, palette.ORANGE, palette.GREEN, palette.PURPLE, palette.
 """Colours of the beams, and of the forces, in turn."""
 HEIGHT, DIAGRAM, HISTORY = 3.6, 1.25, 1.9
 """Heights of the shape, of each diagram and of the forces over the load parameter [inch]."""
-ARROW = 0.16
-"""Size of the largest force over the size of the scene."""
 DIAGRAMS = (("N", "axial", "force"), ("V", "shear", "force"), ("M", "moment", "moment"))
 
 
@@ -84,41 +82,33 @@ def _loaded(response: Response, scene: Scene) -> int:
 
 
 def _shape(axes: "Axes", response: Response, scene: Scene, k: int) -> None:
-    t = float(response.load_parameter[k])
-    lines = {beam.name: response.axis_line(beam.name, k) for beam in scene.beams}
-    undeformed = {beam.name: axis(beam)[1] for beam in scene.beams}
-    points = np.concatenate([*(line for _, line in lines.values()), *undeformed.values()])
-    extent = float(np.ptp(points, axis=0).max())
-    sketch = Sketch(axes=axes, scene=scene, size=extent, lines=lines, letters="x-small")
+    t, lines = float(response.load_parameter[k]), {}
+    for beam in scene.beams:
+        arcs, line = response.axis_line(beam.name, k)
+        tangent = np.gradient(line, axis=0)
+        lines[beam.name] = arcs, line, tangent @ LEFT / np.maximum(np.hypot(*tangent.T), 1e-300)[:, None]
     title = " ".join(filter(None, (response.model, response.setting)))
-    sketch.frame(f"{scene.name}, {title}: {response.status}, load parameter {t:.6g}", "medium")
+    title = f"{scene.name}, {title}: {response.status}, load parameter {t:.6g}"
+    sketch = Sketch(axes, scene, lines, title, "x-small")
     for number, beam in enumerate(scene.beams):
-        (dashed,) = axes.plot(*undeformed[beam.name].T, color="0.6", linewidth=0.9, linestyle="--")
-        tangent = np.gradient(lines[beam.name][1], axis=0)
-        normal = tangent @ [[0.0, 1.0], [-1.0, 0.0]] / np.maximum(np.hypot(*tangent.T), 1e-300)[:, None]
-        _, drawn = sketch.body(beam, normal, COLOURS[number % len(COLOURS)], 1.6)
+        (dashed,) = axes.plot(*axis(beam)[1].T, color="0.6", linewidth=0.9, linestyle="--")
+        _, drawn = sketch.body(beam, COLOURS[number % len(COLOURS)], 1.6)
         sketch.legend |= {"undeformed": dashed, beam.name: drawn}
     for pin in scene.pins:
         at = np.array(pin.position(t))
         sketch.disc(at, pin.radius, facecolor=palette.PIN, alpha=0.5)
         (sketch.legend[pin.name],) = axes.plot(*at, ".", color=palette.PIN, markersize=6, zorder=5)
-    unit, vectors = (
-        unit_names(scene.units)["force"],
-        {one: response.contacts[one.pair].vector for one in scene.contacts},
-    )
+    vectors = {one: response.contacts[one.pair].vector for one in scene.contacts}
     acting = {one: vector[k] for one, vector in vectors.items() if vector is not None and vector[k].any()}
     largest = max((float(np.hypot(*force)) for force in acting.values()), default=0.0)
     for one, force in acting.items():
-        part = float(response.contacts[one.pair].arc_position[k]) / scene.beam(one.beam).length
+        tip = sketch.at(one.beam, [response.contacts[one.pair].arc_position[k] / scene.beam(one.beam).length])
         # four significant digits, without an exponent below a million
-        words = f"{float(f'{np.hypot(*force):.4g}'):.6g} {unit}"
-        sketch.arrows(
-            sketch.at(one.beam, [part]), ARROW * sketch.size / largest * force, words, palette.PIN, 1.3
-        )
+        words = f"{float(f'{np.hypot(*force):.4g}'):.6g} {sketch.units['force']}"
+        sketch.arrows(tip, ARROW * sketch.size / largest * force, words, palette.PIN, 1.3)
         sketch.named("contact force on the beam", palette.PIN, marker=">", markersize=4, linewidth=1.3)
-    for history in scene.load_histories:
-        sketch.load(history.load, history.at(t))
-    sketch.weights(scene.gravity_at(t))
+    loads = [(history.load, history.at(t)) for history in scene.load_histories]
+    sketch.loads(loads, scene.gravity_at(t))
     sketch.symbols()
     entries = {words.partition(" of ")[0]: entry for words, entry in sketch.legend.items()}
     place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.17), "ncols": 4}
