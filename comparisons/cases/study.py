@@ -1,19 +1,18 @@
 """Study files: a scene, and what is varied in it, as TOML."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from itertools import product
 from math import isclose, prod
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from comparisons.cases import settings
 from comparisons.cases.case import Case
 from comparisons.models import TSM, find
 from comparisons.models.options import BRANCHES, ModelError, Options
 from comparisons.scene import Scene, built_in_scenes, load_scene, rules
-from comparisons.scene.read import LISTS
 from comparisons.scene.rules import FieldError, RecordError, Rule, RuleError
 from comparisons.scene.tables import (
     InputError,
@@ -28,13 +27,9 @@ from comparisons.scene.tables import (
 
 Axes = dict[settings.Path, tuple[object, ...]]
 """The values of every setting that a run varies, by its place."""
-Tree = dict[str, "Tree | None"]
-"""The keys of a table, each with those of the table that it is, or None."""
 
 LARGEST, LARGEST_COUNT = 100_000, 10_000
 """Cases of a study, and values of a range."""
-
-
 RANGE: dict[str, Rule] = {
     "from": rules.number,
     "to": rules.number,
@@ -78,68 +73,36 @@ def read_study(path: Path) -> Study:
     return Study(name=head["name"], repeats=head.get("repeats", 3), cases=tuple(dict.fromkeys(cases)))
 
 
-@contextmanager
-def _noting(mistakes: list[FieldError], place: str = "") -> Iterator[list[FieldError]]:
-    """Give a list of mistakes; add these, and what is raised, to `mistakes` as mistakes within `place`."""
-    own: list[FieldError] = []
-    try:
-        yield own
-    except FieldError as error:
-        own += error.mistakes
-    mistakes += (item.within(place) for item in own)
-
-
 def _cases(scene: Scene, runs: list[dict[str, Any]], folder: Path, mistakes: list[FieldError]) -> list[Case]:
     """Return the cases of the runs; what is wrong is added to `mistakes`."""
-    axes: list[Axes] = []
-    for i, run in enumerate(runs):
-        with _noting(mistakes, f"run[{i}].") as wrong:
-            varied = _axes(scene, run, wrong)
-        axes.append({} if wrong else varied)
+    axes = [_axes(run, f"run[{i}].", mistakes) for i, run in enumerate(runs)]
     total = sum(prod(map(len, varied.values())) for varied in axes)
     if total > LARGEST:
         mistakes.append(FieldError("run", total, f"must be at most {LARGEST} cases"))
         return []
     cases: list[Case] = []
     for i, varied in enumerate(axes):
-        for chosen in product(*varied.values()) if varied else ():
-            with _noting(mistakes, f"run[{i}]."):
+        for chosen in product(*varied.values()):
+            try:
                 cases.append(_case(scene, dict(zip(varied, chosen, strict=True)), folder))
+            except FieldError as error:
+                mistakes += (item.within(f"run[{i}].") for item in error.mistakes)
     return cases
 
 
-def _axes(scene: Scene, run: dict[str, Any], mistakes: list[FieldError]) -> Axes:
-    """Return what a run varies: the values of every setting by its place."""
-    known: Tree = dict.fromkeys(("model", *OPTION_RULES)) | {"scene": dict.fromkeys(settings.OWN)}
-    for kind, record in LISTS.items():
-        keys: Tree = dict.fromkeys(item.name for item in fields(record))
-        records = getattr(scene, f"{kind}s")
-        named = settings.record_names(kind, map(settings.stated, records))
-        known[kind] = {**dict.fromkeys(named, keys), **keys} if records else {}
+def _axes(run: dict[str, Any], within: str, mistakes: list[FieldError], place: settings.Path = ()) -> Axes:
+    """Return what a run, or a table in it, varies: the values of every setting by its place."""
     axes: Axes = {}
-    for place, value in _places((), run, known, mistakes):
-        with _noting(mistakes):
-            axes[place] = values(".".join(place), value)
+    for key, given in run.items():
+        at = (*place, key)
+        if isinstance(given, dict) and not RANGE.keys() & given.keys():
+            axes |= _axes(given, within, mistakes, at)
+            continue
+        try:
+            axes[at] = values(".".join(at), given)
+        except FieldError as error:
+            mistakes += (item.within(within) for item in error.mistakes)
     return axes
-
-
-def _places(
-    place: settings.Path, given: object, known: Tree, mistakes: list[FieldError]
-) -> Iterator[tuple[settings.Path, object]]:
-    """Yield the values of the table at a place and of the tables in it by their places; keys that are not `known` are mistakes."""
-    name = ".".join(place)
-    if not isinstance(given, dict):
-        mistakes.append(FieldError(name, given, f"must be followed by a key, {name}.KEY"))
-    elif not known:
-        mistakes.append(FieldError(name, given, f"the scene has no {name}"))
-    else:
-        required = () if place else ("model",)
-        mistakes += (item.within(f"{name}.".lstrip(".")) for item in check_keys(given, known, required))
-        for key in (key for key in given if key in known):
-            if (below := known[key]) is None:
-                yield (*place, key), given[key]
-            else:
-                yield from _places((*place, key), given[key], below, mistakes)
 
 
 def _model(value: object, folder: Path) -> str:
@@ -180,16 +143,18 @@ HEAD_RULES: dict[str, Rule] = {"name": rules.name, "scene": rules.text, "repeats
 def _case(scene: Scene, chosen: dict[settings.Path, object], folder: Path) -> Case:
     """Return the case of the chosen settings; raise all mistakes in them."""
     given = {place[0]: value for place, value in chosen.items() if len(place) == 1}
-    own, wrong = table_values(given, {"model": lambda value: _model(value, folder), **OPTION_RULES}, ())
-    mistakes: list[FieldError] = []
+    rules_of = {"model": lambda value: _model(value, folder), **OPTION_RULES}
+    own, mistakes = table_values(given, rules_of, ("model",))
     if "model" in own:
         model = find(own["model"])
         none = f'is no option of model = "{model.name}"'
-        mistakes += (FieldError(key, given[key], none) for key in given.keys() - {"model", *model.options})
-    with _noting(mistakes):
+        mistakes += (FieldError(key, given[key], none) for key in own.keys() - {"model", *model.options})
+    try:
         scene = settings.changed(scene, {place: chosen[place] for place in chosen if len(place) > 1})
-    if mistakes or wrong:
-        raise RecordError([*mistakes, *wrong])
+    except FieldError as error:
+        mistakes += error.mistakes
+    if mistakes:
+        raise RecordError(mistakes)
     return Case(scene=scene, model=own.pop("model"), options=Options(**own))
 
 
@@ -225,9 +190,8 @@ def _range(given: dict[str, Any]) -> tuple[float, ...]:
         if logarithmic and given[name] <= 0:
             raise FieldError(name, given[name], 'must be positive in a range of spacing = "log"')
 
-    def between(part: float) -> float:
-        value: float = first * (last / first) ** part if logarithmic else first + (last - first) * part
-        whole = isinstance(first, int) and isinstance(last, int)
-        return round(value) if whole and isclose(value, round(value), rel_tol=1e-12) else value
-
-    return (first, *(between(k / (count - 1)) for k in range(1, count - 1)), last)
+    found = (np.geomspace if logarithmic else np.linspace)(first, last, count).tolist()
+    whole = isinstance(first, int) and isinstance(last, int)
+    return tuple(
+        round(value) if whole and isclose(value, round(value), rel_tol=1e-12) else value for value in found
+    )

@@ -151,7 +151,8 @@ BAD = {
     'run[0].mesh = "25x2": is no option of model = "tsm"': 'mesh = "25x2"',
     "run[1].mesh = 25: must be NXxNY": '[[run]]\nmodel = "solid"\nmesh = [25]',
     'run[1].model = "fem": must be one of': '[[run]]\nmodel = "fem"',
-    "run[0].scene = 3: must be followed by a key, scene.KEY": "scene = 3",
+    "run[0].scene = 3: unknown key": "scene = 3",
+    "run[0].scene.units = {a = 3}: unknown key": "scene.units.a = 3",
     "run[0].load = {moment = 1}: the scene has no load": "load.moment = 1",
     "run[0].contact[0].beam = ": 'beam.name = "other"',
     "run = 1000000: must be at most 100000 cases": "elements = { from = 1, to = 10000, count = 10000 }\n"
