@@ -1,4 +1,4 @@
-"""Suites: cases, the rows that they become, where many run, the files of their results, and studies as files."""
+"""Suites: cases, the rows that they become, where they run, files of results, and studies as files."""
 
 from comparisons.cases.case import Case
 from comparisons.cases.measure import Row, measure

@@ -48,25 +48,26 @@ class Row:
     case : Case
         What was solved.
     response : Response
-        The answer, up to the last load parameter reached. Its status is ``REFUSED`` if the model cannot state the scene. That of `measure`
-        is storable, has no wall time, and has no axes if no run is timed.
+        The answer, up to the last load parameter reached; ``REFUSED`` if the model cannot state the scene.
+        That of `measure` is storable, has no wall time, and has no axes if no run is timed.
     seconds : float
-        Processor time from the scene to the checked response without imports [s]: the median over `repeats` runs after a warm-up, nan if
-        no run is timed. On one thread it equals the wall time on an idle core.
+        Processor time from the scene to the checked response without imports [s]: the median over `repeats`
+        runs after a warm-up, nan if no run is timed. On one thread it is the wall time on an idle core.
     repeats : int
         Number of timed runs; one, without a warm-up, where the first run took more than 10 s.
     peak_memory : int
-        Largest rise of the process's resident memory over its start in the first run [byte]; zero where the system is not Linux.
+        Largest rise of the process's resident memory in the first run [byte]; zero but on Linux.
     verdict : str
-        Verdict of the certificate for the last load parameter and the neighbours of events. Empty if none was reached or no run is timed.
+        Verdict of the certificate for the last load parameter and the neighbours of events; empty if none was
+        reached or no run is timed.
     process_seconds : float
         Processor time of a whole process of ``crossval solve`` without certificate [s]; nan if it was not asked for.
     errors, own_errors : Errors, optional
-        Errors by scope and quantity against the reference, which itself has none, and against what the model converges to, if known.
+        Errors by scope and quantity against the reference, which has none, and against the model's limit.
     name : str
         Label of the run, if not that of the case.
     cause : str
-        Largest part of the error that theory allows the model; empty where theory has no estimate for the scene.
+        Largest part of the error that theory allows the model; empty where theory has no estimate.
     """
 
     case: Case
@@ -98,7 +99,7 @@ class Row:
 
     @property
     def stable(self) -> str:
-        """Yes, no, a dash where the model states no index, or that it states one at a part of the load parameters."""
+        """Yes, no, a dash where no index is stated, or that it is at a part of the load parameters."""
         index = self.response.index
         if index is None or not np.any(index >= 0):
             return "-"
@@ -112,7 +113,7 @@ class Row:
 
     @property
     def outcome(self) -> str:
-        """``certified``, ``wrong`` for a refused answer that the program reported as a success, or the status of a stop."""
+        """``certified``, ``wrong`` for a refused answer that was reported as a success, or a stop's status."""
         if self.wrong:
             return "wrong"
         if not self.response.completed:
@@ -120,7 +121,7 @@ class Row:
         return self.verdict.lower().replace("_", " ") or "no verdict"
 
     def error(self, scope: str, quantity: str, *, own: bool = False) -> float:
-        """Return an error against the reference, or against what the model converges to; nan where it is not known."""
+        """Return an error against the reference, or against the model's limit; nan where it is not known."""
         errors = self.own_errors if own else self.errors
         return nan if errors is None else errors[scope][quantity]
 
@@ -134,7 +135,7 @@ class Row:
         return own | {name: getattr(self, name) for name in ("seconds", "repeats", "peak_memory")}
 
     def to_json(self) -> str:
-        """Return what was measured as JSON text, after what the case is; a number that is not finite is null."""
+        """Return what was measured as JSON text, after what the case is; null for what is not finite."""
         numbers = {name: getattr(self, name) for name in STORED}
         data = {**self.case.description, **numbers, "response": as_dict(self.response)}
         return json.dumps(plain(data), allow_nan=False)
@@ -208,7 +209,7 @@ def _processor_seconds() -> float:
 
 
 def _with_peak_memory(action: Callable[[], tuple[Response, float]]) -> tuple[tuple[Response, float], int]:
-    """Return what `action` returns, and by how many bytes the resident memory rose above its start: Linux can reset its peak."""
+    """Return what `action` returns, and by how many bytes the memory rose: Linux can reset its peak."""
     if sys.platform != "linux":
         return action(), 0
     gc.collect()

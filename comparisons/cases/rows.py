@@ -35,10 +35,7 @@ def reached_errors(
 
 
 def result_rows(rows: Collection[Row]) -> list[dict[str, Any]]:
-    """Return a line for each row, with settings that differ, status, last state reached and cost.
-
-    The columns of answers are ``force:PAIR``, ``arc_position:PAIR``, ``moment:BEAM``, ``tip_x:BEAM`` and ``tip_y:BEAM``.
-    """
+    """Return a line for each row: settings that differ, status, last state reached, and cost."""
     stated = [settings(row.case) for row in rows]
     answers = [_answers(row.response) for row in rows]
     varied = _varied(stated)

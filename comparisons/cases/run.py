@@ -95,10 +95,7 @@ def _write(file: Path, row: Row) -> None:
 
 
 def recorded(case: Case, file: Path) -> Row | None:
-    """Return the settled result of a case that `file` holds; None if there is none.
-
-    A file that cannot be read, or holds something else, is an `OutputError`.
-    """
+    """Return the settled result in a file, None without one; `OutputError` if it cannot be read."""
     try:
         found = Row.from_json(case, file.read_text(encoding="utf-8"))
     except FileNotFoundError:

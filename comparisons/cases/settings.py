@@ -18,7 +18,7 @@ Table = dict[str, Any]
 
 
 def _named(kind: str, records: list[Table]) -> dict[str, Table]:
-    """Return records by the names of a study file: their own, the pair, the place or the node; the number from 2 on of a nameless stage."""
+    """Return records by their names in a study file; the number from 2 on of a stage without one."""
     name_of = {
         "contact": lambda record: f"{record['node']}->{record['beam']}",
         "load": lambda record: LoadSpec(**record).node,
@@ -30,7 +30,7 @@ def _named(kind: str, records: list[Table]) -> dict[str, Table]:
 
 
 def _places(tables: Table, path: Path, value: object) -> Iterator[tuple[str, Table]]:
-    """Yield the tables that a setting changes with their places in a scene file; a setting that is in none is a `FieldError`."""
+    """Yield the tables that a setting changes with their places in a scene file; `FieldError` for none."""
     kind, *name, key = path
     given: Table = {name[0]: {key: value}} if name else {key: value}
     records = _named(kind, tables.get(kind, [])) if kind in LISTS else {"": tables["scene"]}
@@ -48,10 +48,7 @@ def _places(tables: Table, path: Path, value: object) -> Iterator[tuple[str, Tab
 
 
 def changed(scene: Scene, changes: Changes) -> Scene:
-    """Return `scene` with changed settings. A change for a named record takes precedence over a change for all records of its kind.
-
-    All rules that are broken are raised as one `FieldError`; their keys are the settings'.
-    """
+    """Return a scene with changed settings, named records last; one `FieldError` for all mistakes."""
     tables: Table = to_tables(scene)
     stated, mistakes = dict[str, str](), list[FieldError]()
     for path, value in sorted(changes.items(), key=lambda item: len(item[0])):

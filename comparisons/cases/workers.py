@@ -15,7 +15,7 @@ from comparisons.extras import install
 from comparisons.scene.tables import InputError
 
 Workers = Callable[[], AbstractContextManager[tuple[Executor, int]]]
-"""Gives an executor, and the number of cases to have under way. The end of the context by an exception ends what runs."""
+"""Gives an executor, and the number of cases to have under way; its end by an exception ends what runs."""
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 """Environment of a worker: numerical libraries use one thread, so that times of cases are comparable."""
 CLUSTER_PATIENCE = 10.0

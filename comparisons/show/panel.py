@@ -71,10 +71,7 @@ class Panel:
         ]
 
     def shapes(self, scale: "Scale") -> Iterator[tuple[str, float, Array]]:
-        """Yield what stands for the pins, from below: colour, opacity and polygons (n, corners, 2) of discs, marks and arrows.
-
-        An arrow ends where a round pin touches.
-        """
+        """Yield colour, opacity and polygons (n, corners, 2) of discs, marks and arrows, from below."""
         lengths = scale.force * np.hypot(*self.forces.T)
         for state in self.shown():
             own, colour = self.states == state, COLOURS[state]
@@ -110,12 +107,7 @@ def mises_panel(response: Response, scene: Scene, ks: Sequence[int], title: str)
 def panel(
     states: Sequence[Mapping[str, Grid]], title: str, factor: float = 1.0, *, stress: str = "axial_stress"
 ) -> Panel:
-    """Return the deformed bodies, solids or the ribbons of beams, with contacts, their forces and supports, of states over each other.
-
-    The blocks of a state are those of `comparisons.show.export.blocks`, and the title states the enlargement `factor` of
-    the displacements. A closed contact stays on its beam: it moves as the touched point does. A beam has a
-    von Mises stress where its points have a ``shear_stress``.
-    """
+    """Return states, each as its `blocks`, over each other, with displacements enlarged by `factor`."""
     structure = [grid for grids in states for name, grid in grids.items() if name not in POINTS]
     size = float(np.ptp(np.concatenate([grid.points for grid in structure]), axis=0).max())
     bodies = [

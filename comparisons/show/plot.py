@@ -84,11 +84,7 @@ def nearest_steps(load_parameter: Array, last: float = 1.0) -> list[int]:
 
 
 def plot_shapes(scene: Scene, responses: dict[str, Response], *paths: Path) -> None:
-    """Draw the deflected axes of all responses over each other, as Fig. 8 of the paper, and the last tip enlarged.
-
-    The responses are by label, in the order of drawing; beams are drawn with the nodes of their elements. The
-    scene gives the pins and their paths.
-    """
+    """Draw axes by label over each other, as Fig. 8 of the paper, with the last tip enlarged."""
     fig = figure(figsize=(WIDTH, 7.4))
     places = fig.subplot_mosaic([["whole", "whole"], ["detail", "legend"]])
     whole, detail = places["whole"], places["detail"]

@@ -1,4 +1,4 @@
-"""Pictures and motions of stressed bodies side by side, by pyvista in a child process: VTK ends its process where there is no OpenGL.
+"""Pictures of stressed bodies by pyvista, in a child process: without OpenGL, VTK ends its process.
 
 ``python -m comparisons.show.render`` draws the film that its standard input has.
 """
@@ -22,8 +22,8 @@ from comparisons.show.export import Series
 from comparisons.show.panel import COLOURS, Panel, Scale, panel
 
 NO_OPENGL = (
-    "pyvista cannot draw here: it needs OpenGL, as Debian's libegl1 and libgl1-mesa-dri or libosmesa6 have it; "
-    f"if pyvista is missing, {install('pyvista')}"
+    "pyvista cannot draw here: it needs OpenGL, as Debian's libegl1 and libgl1-mesa-dri or libosmesa6 have it; if "
+    f"pyvista is missing, {install('pyvista')}"
 )
 FRAMES = 40
 """Pictures of a film at most."""
@@ -51,11 +51,7 @@ class Film(NamedTuple):
 
 
 def film(series: Sequence[Series], factor: float = 1.0) -> Film:
-    """Return the film of the load parameters that all `series` reach, with a panel for each series.
-
-    It is evenly thinned to `FRAMES`, with the first and the last. The titles state the enlargement `factor`
-    of the displacements. Without a common load parameter it raises `OutputError`.
-    """
+    """Return the film of at most `FRAMES` load parameters that all `series` reach; `OutputError` for none."""
     shared = sorted(set.intersection(*({*one.load_parameter.tolist()} for one in series)))
     if not shared:
         names = ", ".join(one.title for one in series)
@@ -83,7 +79,7 @@ def write_picture(panels: list[Panel], stress_label: str, path: Path) -> None:
 
 
 def write_film(shown: Film, folder: Path, count: Count = uncounted) -> list[Path]:
-    """Write ``view.png``, the last state, and ``view.gif``, the motion; `count` receives the pictures that are drawn."""
+    """Write ``view.png``, the last state, and ``view.gif``; `count` receives the pictures that are drawn."""
     from PIL import Image
 
     last, motion = files = [folder / "view.png", folder / "view.gif"]
@@ -215,7 +211,7 @@ def _mesh(polygons: Array, height: float) -> Any:
 
 
 def _window(scale: Scale) -> tuple[int, float]:
-    """Return the height of a panel in pixels, and the pixels of a unit of length: a flat drawing has a flat panel."""
+    """Return the height of a panel in pixels, flat for a flat drawing, and the pixels of a unit of length."""
     wide, tall = (max(half, 1e-3 * scale.half) for half in scale.extent)
     pixels = min(PANEL / (2.0 * RIM * wide), TALLEST / (2.0 * tall))
     return round(min(max(AROUND + 2.0 * tall * pixels, LOWEST), PANEL)), pixels

@@ -1,4 +1,4 @@
-"""Drawings of a scene: beams at their height, supports, loads and forces as arrows with their values, pins."""
+"""Drawings of a scene: beams at their height, supports, pins, loads as arrows with their values."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import hypot
@@ -41,11 +41,7 @@ Axis = tuple[Array, Array, Array]
 
 
 def stated(scene: Scene, others: Sequence[str] = ()) -> Iterator[str]:
-    """Yield a line on what the scene has, and one for every model: whether it can state the scene, or why not.
-
-    The `others` are adapters and program files that are asked besides the models of this package and of entry
-    points.
-    """
+    """Yield a line on what the scene has, and one for every model: whether it can state it, or why not."""
     counts = ((len(scene.beams), "beam"), (len(scene.pins), "pin"), (len(scene.contacts), "contact pair"))
     parts = (f"{count} {what}{'' if count == 1 else 's'}" for count, what in counts)
     stages = f" in {1 + len(scene.stages)} stages" if scene.stages else ""
@@ -123,7 +119,7 @@ class Sketch:
     def loads(
         self, loads: Sequence[tuple[LoadSpec, Sequence[float]]], gravity: Sequence[float], after: str = ""
     ) -> None:
-        """Draw loads of those amounts, force or force per length and moment, and weights, as arrows of one length with their values."""
+        """Draw loads (force or force per length, and moment) and weights as arrows of one length."""
         force, named = self.units["force"], "force, arrow not to scale"
         for load, (*vector, moment) in loads:
             if load.force_per_length is not None:
@@ -212,7 +208,7 @@ def _reach(scene: Scene, lines: Mapping[str, Axis]) -> Array:
 
 
 def draw(scene: Scene, path: Path) -> None:
-    """Draw the scene to `path`, in the format of its suffix, with a legend of everything in it; beams and pins have their true size."""
+    """Draw the scene to `path` with a legend of everything in it; beams and pins have their true size."""
     lines = {beam.name: axis(beam) for beam in scene.beams}
     extent = np.ptp(_reach(scene, lines), axis=0)
     width, height = np.maximum(extent, 0.2 * extent.max()) + 0.2 * extent.max()

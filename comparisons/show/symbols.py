@@ -77,10 +77,7 @@ def _turned(segments: Segments, held: tuple[str, ...], away: Array) -> Segments:
 
 
 def fixings(kinds: Iterable[int], away: Array) -> Iterator[tuple[tuple[str, ...], Segments]]:
-    """Yield the symbols at an end by their components: of a support that holds those of kind 1, of a spring against each of kind 2.
-
-    The unit vector `away` (2,) points into the beam; the ground is on the other side.
-    """
+    """Yield the symbols at an end of supports (kind 1) and springs (kind 2); `away` points into the beam."""
     named = list(zip(COMPONENTS, kinds, strict=True))
     held = tuple(name for name, kind in named if kind == 1)
     if held:
@@ -128,10 +125,7 @@ def end_symbols(scene: Scene) -> list[Symbol]:
 
 
 def draw_symbols(axes: Any, scene: Scene, lines: Mapping[str, Array], size: float) -> dict[str, Any]:
-    """Draw the symbols of supports, springs and hinges at their ends; return their entries in a legend.
-
-    The `lines` (m, 2) are the deformed axes by beam. The `size` of a symbol is a length. The axes reach around the symbols.
-    """
+    """Draw the symbols at the ends of axes (m, 2) by beam; return their entries in a legend."""
     from matplotlib.collections import LineCollection
 
     symbols = end_symbols(scene)

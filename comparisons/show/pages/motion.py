@@ -38,11 +38,7 @@ CHART = (
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Track:
-    """A quantity over s load parameters: values (s,) by the label of the run, nan where it has none.
-
-    The `errors` (s,) are the distance from the reference, empty without one, and `error_title` says what they
-    are.
-    """
+    """A quantity over s load parameters: values (s,) by run, nan for none, and errors (s,)."""
 
     title: str
     unit: str
@@ -52,11 +48,7 @@ class Track:
 
 
 def tracks(responses: Mapping[str, Response], reference: str, scene: Scene) -> list[Track]:
-    """Return the quantities that are drawn, with errors against the label `reference`.
-
-    The errors are those of `comparisons.errors`. A scene without contact has the forces of its supports. What
-    vanishes in all responses is left out.
-    """
+    """Return the quantities that act in some response, with errors against `reference`."""
     units = unit_names(scene.units)
     shown = {label: response for label, response in responses.items() if len(response.load_parameter)}
     found = []
@@ -100,11 +92,7 @@ def motion_section(
     focus: str,
     vtu: Mapping[str, str] | None = None,
 ) -> Section:
-    """Return a section with the deformed axes under a slider, a switch for each run, and histories.
-
-    The labels of runs begin with a model's name. The tip of the run `focus` is enlarged. `vtu` has the path
-    of the VTU files by label; ``{}`` in it is replaced by the number of the load parameter, from 1.
-    """
+    """Return axes under a slider, switches, histories, the tip of the run `focus`, and links of `vtu`."""
     times = max((one.load_parameter for one in responses.values()), key=len)
     if not len(times):
         return Section(title=title, html="<p>No run reached a load parameter.</p>")

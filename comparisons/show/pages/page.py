@@ -44,10 +44,7 @@ class Section(NamedTuple):
 
 
 def page(title: str, lead: str, sections: Sequence[Section]) -> str:
-    """Return sections as one HTML file without external resources, below a title and a lead in plain text.
-
-    Two sections of one title raise `ValueError`.
-    """
+    """Return sections of different titles, below a title and a lead, as one HTML file that loads nothing."""
     idents = [section.ident for section in sections]
     if len(set(idents)) < len(idents):
         raise ValueError(f"sections = {idents}: must have different titles")
@@ -77,10 +74,7 @@ def write_page(
     files: Iterable[Path],
     name: str = NAME,
 ) -> Path:
-    """Write sections as a `page` to `folder`, closed by input, versions and machine, and links to files; return the page's file.
-
-    Each scene opens on demand as its scene file.
-    """
+    """Write a `page` that ends with scenes, versions, machine and links to files; return its file."""
     inputs = [
         folded(f"{scene.name}.toml", f'<pre tabindex="0"><code>{text(to_toml(scene))}</code></pre>')
         for scene in scenes
@@ -102,10 +96,7 @@ def text(value: Any) -> str:
 
 
 def table(caption: str, rows: Sequence[Mapping[str, Any]], *, prose: bool = False) -> str:
-    """Return rows of equal keys as a table that scrolls by itself where the screen is narrow; the first column heads its rows.
-
-    Its caption stands above it and names it; the cells of `prose` break their lines.
-    """
+    """Return rows of equal keys as a table with a caption; the cells of `prose` break their lines."""
     if not rows:
         return "<p>None.</p>"
     cells = []
@@ -131,10 +122,7 @@ def scrolling(label: str, inner: str) -> str:
 
 
 def picture(path: Path, caption: str) -> str:
-    """Return an SVG or PNG file as a figure that is part of the page.
-
-    An SVG is embedded as an image. As a part of the document, its names and styles could clash with other figures.
-    """
+    """Return an SVG or PNG file as an image: markup of two SVGs in one page would share names and styles."""
     content = base64.b64encode(path.read_bytes()).decode("ascii")
     image = f'<img alt="{text(caption)}" src="data:{TYPES[path.suffix]};base64,{content}">'
     return f"<figure>\n{scrolling(caption, image)}\n<figcaption>{text(caption)}</figcaption>\n</figure>"

@@ -15,10 +15,7 @@ CAPTION = "What each contact with friction does, over the load parameter."
 
 
 def states_section(responses: Mapping[str, Response]) -> Section | None:
-    """Return a section with one band for each run and contact with friction; None without friction.
-
-    A change of state lies at the load parameter at which the model located it, or in the middle between two load parameters.
-    """
+    """Return a section with one band for each run and contact with friction; None without friction."""
     bands = {
         f"{label}, {pair}" if len(response.contacts) > 1 else label: band(response, pair)
         for label, response in responses.items()
