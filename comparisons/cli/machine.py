@@ -7,7 +7,7 @@ from importlib import metadata
 
 from comparisons.extras import EXTRAS
 
-NEEDED = ("numpy", "scipy", "scikit-fem", "meshio", "matplotlib")
+NEEDED = ("numpy", "scipy", "scikit-fem", "meshio", "matplotlib", "jinja2")
 
 
 def examined() -> Iterator[tuple[str, str, str]]:

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from string import Template
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ from comparisons.response import Array, Response
 from comparisons.response.table import unit_names
 from comparisons.scene import Scene
 from comparisons.show import palette
-from comparisons.show.pages.page import Section, markup, part, scrolling, text
+from comparisons.show.pages.page import Section, rendered
 from comparisons.show.symbols import SYMBOL, end_symbols
 
 POINTS = 61
@@ -26,14 +25,6 @@ DASHES = ("7 3", "2 3", "9 3 2 3", "12 3", "5 2 1 2 1 2", "3 2", "9 2 2 2 2 2", 
 """Dashes of the lines of runs, which distinguish runs without colour."""
 INKS = {palette.BLACK: "var(--ink)", palette.GREY: "var(--grey)"}
 """Colours of the page that are light on a dark screen, in place of black and grey."""
-SWATCH = (
-    '<label class="switch"><input type="checkbox" checked data-switch="{}"><svg class="swatch" viewBox="0 0 40 10" aria-hidden="true">'
-    '<line x1="1" y1="5" x2="39" y2="5" style="stroke:{colour};stroke-width:{width};stroke-dasharray:{dash}"/></svg>{}</label>'
-)
-CHART = (
-    '<figure><figcaption>{title}</figcaption><svg class="chart" data-track="{}" data-kind="{}" tabindex="0" role="img" '
-    'aria-label="{title} against the load parameter"></svg></figure>'
-)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -95,7 +86,7 @@ def motion_section(
     """Return axes under a slider, switches, histories, the tip of the run `focus`, and links of `vtu`."""
     times = max((one.load_parameter for one in responses.values()), key=len)
     if not len(times):
-        return Section(title=title, html="<p>No run reached a load parameter.</p>")
+        return Section(title, "<p>No run reached a load parameter.</p>")
     labels = dict.fromkeys([*responses, *(label for track in shown for label in track.values)])
     # the wide solid below, the exact answers on top
     ordered = sorted(labels, key=lambda label: -palette.style(label).width)
@@ -138,7 +129,8 @@ def motion_section(
         "tracks": shown,
         "vtu": vtu or {},
     }
-    return Section(title=title, html=_markup(runs, shown, len(times)), data=data)
+    html = rendered("motion", runs=runs, tracks=shown, last=len(times) - 1)
+    return Section(title, html.rstrip("\n"), data)
 
 
 def _axis(scene: Scene, response: Response, beam: str, k: int) -> Array:
@@ -165,26 +157,3 @@ def _lines(scene: Scene, response: Response, decimals: int) -> list[list[Array]]
 
     steps = range(len(response.load_parameter))
     return [[thinned(*response.axis_line(beam.name, k)) for beam in scene.beams] for k in steps]
-
-
-def _markup(runs: Sequence[Mapping[str, Any]], shown: Sequence[Track], steps: int) -> str:
-    """Return the frame that the script fills: switches, slider, drawings, charts and the table of values."""
-    # every track has a chart and a column of its values, and of its errors where there are some
-    columns = []
-    for number, track in enumerate(shown):
-        titled = f"{track.title} [{track.unit}]"
-        columns.append((number, "values", titled, titled))
-        if track.errors:
-            columns.append((number, "errors", "error", f"{track.title}, {track.error_title}"))
-    cells = "".join(f'<td data-track="{number}" data-kind="{kind}">-</td>' for number, kind, _, _ in columns)
-    rows = ((f' data-run="{number}"', run["label"], cells) for number, run in enumerate(runs))
-    table = markup(["model", *(name for _, _, name, _ in columns)], rows, "values")
-    bands = any(kind == "errors" for _, kind, _, _ in columns)
-    template = Template(part("motion.html"))
-    return template.substitute(
-        last=steps - 1,
-        switches="\n".join(SWATCH.format(k, text(run["label"]), **run) for k, run in enumerate(runs)),
-        table=scrolling("values at the load parameter of the slider", table),
-        charts="\n".join(CHART.format(k, kind, title=text(title)) for k, kind, _, title in columns),
-        bands="; bands reach from a model to the reference" if bands else "",
-    ).rstrip("\n")

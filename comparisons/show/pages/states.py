@@ -6,12 +6,11 @@ from itertools import groupby
 import numpy as np
 
 from comparisons.response import CONTACT_STATES, SLIPS, Response
-from comparisons.show.pages.page import Section, scrolling, text
+from comparisons.show.pages.page import Section, piece
 
 HATCH = "repeating-linear-gradient(135deg,#16181d 0 1px,{} 1px 5px)"
 COLOURS = {**CONTACT_STATES, SLIPS[-1]: HATCH.format(CONTACT_STATES[SLIPS[-1]])}
 """Backgrounds of the bands; one is hatched, which distinguishes it in grey print."""
-CAPTION = "What each contact with friction does, over the load parameter."
 
 
 def states_section(responses: Mapping[str, Response]) -> Section | None:
@@ -25,22 +24,7 @@ def states_section(responses: Mapping[str, Response]) -> Section | None:
     if not bands:
         return None
     last = max(parts[-1][2] for parts in bands.values())
-    rows = ""
-    for label, parts in bands.items():
-        drawn = (
-            f'<span title="{text(state)} from {begin:.6g} to {end:.6g}" '
-            f'style="width:{100 * (end - begin) / last:.3f}%;background:{COLOURS[state]}"></span>'
-            for state, begin, end in parts
-        )
-        rows += f"<p>{text(label)}</p>\n<div>{''.join(drawn)}</div>\n"
-    axis = "".join(f"<span>{part * last:g}</span>" for part in (0.0, 0.25, 0.5, 0.75, 1.0))
-    legend = " ".join(
-        f'<span class="switch"><i class="swatch" style="background:{colour}"></i>{text(state)}</span>'
-        for state, colour in COLOURS.items()
-    )
-    drawing = f'<div class="states">\n{rows}<div class="scale">{axis}</div>\n</div>'
-    scrolled = scrolling("contact states over the load parameter", drawing)
-    return Section(title="Stick and slip", html=f"<p>{CAPTION}</p>\n<p>{legend}</p>\n{scrolled}")
+    return Section("Stick and slip", piece("states", bands, COLOURS, last))
 
 
 def band(response: Response, pair: str) -> list[tuple[str, float, float]]:
