@@ -1,8 +1,8 @@
 """One scene through every model: table, pictures and files."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +22,7 @@ from comparisons.output import Report, json_text
 from comparisons.quantities import event_differences, names
 from comparisons.response import Response
 from comparisons.response.file import as_dict
+from comparisons.response.table import unit_names
 from comparisons.scene import Scene, to_toml
 from comparisons.scene.keys import special_keys
 from comparisons.show.budget_plot import budget_section, plot_budget, write_budget
@@ -40,7 +41,7 @@ Watching = Callable[[str], AbstractContextManager[Watch]]
 Staging = Callable[[str], AbstractContextManager[Count]]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Run:
     """One model with its options, whatever the scene."""
 
@@ -93,10 +94,23 @@ APART = 0.5
 
 @dataclass(frozen=True, kw_only=True)
 class Comparison:
-    """Result of a comparison: one row for each run, and the files written."""
+    """Result of a comparison: a row for each run, the budget, who is left out and why by family, and the files written."""
 
+    scene: Scene
     rows: list[Row]
-    files: list[Path]
+    budget: Budget | None
+    left_out: Mapping[str, str]
+    files: list[Path] = field(default_factory=list)
+
+    @property
+    def responses(self) -> dict[str, Response]:
+        """The answers by label."""
+        return {row.label: row.response for row in self.rows}
+
+    @property
+    def exported(self) -> list[tuple[Run, Response]]:
+        """The answers of beams and solid that are exported and rendered."""
+        return [(run, self.responses[run.label]) for run in EXPORTED if run.label in self.responses]
 
     @property
     def apart(self) -> list[Row]:
@@ -156,8 +170,9 @@ def compare(
         head = f"[{number}/{len(runs)}] {run.label}"
         try:
             with watching(head) as watch:
-                answers[run] = certified(solve(scene, run.model, run.options, watch), scene)
-            report(f"{head}: {_outcome(answers[run])}")
+                answers[run] = one = certified(solve(scene, run.model, run.options, watch), scene)
+            end = f"{one.wall_seconds:.2f} s" if one.completed else f"{one.status}: {one.message}"
+            report(f"{head}: {end}")
         except ModelError as error:
             report(f"{head}: left out, {error}")
             left_out[run.case(scene).family] = str(error).removeprefix(f"{run.model}: ")
@@ -172,14 +187,10 @@ def compare(
         if budget is None:
             left_out[BUDGET] = lack
             report(f"budget.json: left out, {lack}")
+    found = Comparison(scene=scene, rows=rows, budget=budget, left_out=left_out)
     with staging("drawing and writing files"), alone_in(folder):
-        files = _write_all(scene, rows, budget, left_out, folder, report)
-    return Comparison(rows=rows, files=files)
-
-
-def _outcome(response: Response) -> str:
-    stopped = f"{response.status}: {response.message}"
-    return f"{response.wall_seconds:.2f} s" if response.completed else stopped
+        found.files.extend(_write(found, folder, report))
+    return found
 
 
 def _row(scene: Scene, run: Run, response: Response, reference: Response) -> Row:
@@ -202,88 +213,64 @@ def _cause(case: Case, reference: Response) -> str:
     return max(parts, key=lambda why: parts[why]).partition(":")[0]
 
 
-def _write_all(
-    scene: Scene,
-    rows: list[Row],
-    budget: Budget | None,
-    left_out: Mapping[str, str],
-    folder: Path,
-    report: Report,
-) -> list[Path]:
-    responses = {row.label: row.response for row in rows}
+def _write(found: Comparison, folder: Path, report: Report) -> Iterator[Path]:
+    """Write and yield all files, the page first."""
+    scene, responses = found.scene, found.responses
     drawn = {run.label: responses[run.label] for run in DRAWN if run.label in responses}
-    files = [folder / "shapes.png", folder / "shapes.svg"]
-    plot_shapes(scene, drawn, *files)
-    files += _write_picture(scene, responses, folder, report)
-    if budget is not None:
-        files += [folder / name for name in NAMES[-3:]]
-        plot_budget(budget, *files[-3:-1])
-        write_budget(budget, files[-1])
-    exported = [run for run in EXPORTED if run.label in responses]
-    for run in exported:
-        write_series(writable_folder(folder / run.model), responses[run.label], scene)
-    write_text(folder / "table.csv", table_csv(rows))
-    files = [
-        folder / "summary.json",
-        folder / "table.csv",
-        *files,
-        *(folder / run.model / f"{run.model}.pvd" for run in exported),
-    ]
-    files.insert(0, _write_page(scene, rows, budget, files, left_out, folder))
+    files = [folder / name for name in ("summary.json", "table.csv", "shapes.png", "shapes.svg")]
+    write_text(files[1], table_csv(found.rows))
+    plot_shapes(scene, drawn, *files[2:])
+    files += _write_picture(found, folder, report)
+    if found.budget is not None:
+        *drawings, numbers = budget = [folder / name for name in NAMES[-3:]]
+        plot_budget(found.budget, *drawings)
+        write_budget(found.budget, numbers)
+        files += budget
+    for run, response in found.exported:
+        write_series(writable_folder(folder / run.model), response, scene)
+        files.append(folder / run.model / f"{run.model}.pvd")
+    files.insert(0, _write_page(found, files, folder))
     summary = {
         "scene": scene.name,
         "scene_file": to_toml(scene),
         "reference": ROD.label,
         "versions": versions(),
         "files": [str(path.relative_to(folder)) for path in files],
-        "runs": [{"label": row.label, **as_dict(row.response), "errors": row.errors} for row in rows],
+        "runs": [{"label": row.label, **as_dict(row.response), "errors": row.errors} for row in found.rows],
     }
-    write_text(folder / "summary.json", json_text(summary))
-    return files
+    write_text(files[1], json_text(summary))
+    yield from files
 
 
-def _write_page(
-    scene: Scene,
-    rows: list[Row],
-    budget: Budget | None,
-    files: list[Path],
-    left_out: Mapping[str, str],
-    folder: Path,
-) -> Path:
-    responses = {row.label: row.response for row in rows}
-    vtu = {run.label: f"{run.model}/{run.model}-{{}}.vtm" for run in EXPORTED if run.label in responses}
+def _write_page(found: Comparison, files: list[Path], folder: Path) -> Path:
+    scene, responses = found.scene, found.responses
+    vtu = {run.label: f"{run.model}/{run.model}-{{}}.vtm" for run, _ in found.exported}
     shown, states = tracks(responses, ROD.label, scene), states_section(responses)
     sections = [
-        Section("Errors", table(ERRORS, [line(row) for row in rows])),
+        Section("Errors", table(ERRORS, [line(row) for row in found.rows])),
         motion_section("Shapes and histories", scene, responses, shown, focus=ROD.label, vtu=vtu),
         *([] if states is None else [states]),
-        *([] if budget is None else [budget_section(budget, folder / "budget.svg")]),
+        *([] if found.budget is None else [budget_section(found.budget, folder / "budget.svg")]),
     ]
     stress = folder / "side-by-side.png"
     if stress in files:
         sections.append(Section("Stress", picture(stress, "Beams and solid, von Mises stress.")))
-    lead = " ".join(findings(scene, rows, ROD.label, budget, left_out))
+    lead = " ".join(findings(scene, found.rows, ROD.label, found.budget, found.left_out))
     return write_page(folder, f"{scene.name}: beams, solid and exact answers", lead, sections, [scene], files)
 
 
-def _write_picture(scene: Scene, responses: dict[str, Response], folder: Path, report: Report) -> list[Path]:
-    """Write the side-by-side picture of the beams and the solid at load parameters that both reached."""
-    both = [responses[run.label] for run in EXPORTED if run.label in responses]
-    reached = min((len(response.load_parameter) for response in both), default=0)
-    if len(both) < 2 or reached == 0:
-        report("side-by-side.png: left out, it takes beams and solid")
-        return []
-    ks = nearest_steps(both[0].load_parameter[:reached], scene.times[-1])
-    times = ", ".join(f"{both[0].load_parameter[k]:.3g}" for k in ks)
-    panels = [
-        mises_panel(both[0], scene, ks, f"{MIXED.label}\nt = {times}"),
-        mises_panel(both[1], scene, ks, f"{SOLID.label}\nt = {times}"),
-    ]
-    force, length = (unit.strip() for unit in scene.units.split(","))
-    path = folder / "side-by-side.png"
+def _write_picture(found: Comparison, folder: Path, report: Report) -> Iterator[Path]:
+    """Write and yield the side-by-side picture of the beams and the solid at load parameters that both reached."""
+    scene, path = found.scene, folder / "side-by-side.png"
+    times = min((response.load_parameter for _, response in found.exported), key=len, default=np.zeros(0))
+    if len(found.exported) < 2 or not len(times):
+        report(f"{path.name}: left out, it takes beams and solid")
+        return
+    ks = nearest_steps(times, scene.times[-1])
+    at = ", ".join(f"{times[k]:.3g}" for k in ks)
+    panels = [mises_panel(one, scene, ks, f"{run.label}\nt = {at}") for run, one in found.exported]
     try:
-        write_picture(panels, f"von Mises stress [{force}/{length}^2]", path)
+        write_picture(panels, f"von Mises stress [{unit_names(scene.units)['stress']}]", path)
+        yield path
     except NoOpenGLError as error:
         report(f"{path.name}: left out, {error}")
-        return []
-    return [path]
