@@ -14,7 +14,7 @@ from comparisons.scene import Scene
 from comparisons.show import palette
 from comparisons.show.symbols import SYMBOL, draw_symbols
 
-SOLID = {"linewidth": 6.0, "alpha": 0.55, "solid_capstyle": "butt"}
+SOLID = {"linewidth": 6.0, "alpha": 0.55, "solid_capstyle": "butt", "zorder": 1.8}
 EXACT = {"linewidth": 1.0}
 BEAMS: tuple[dict[str, Any], ...] = (
     {"marker": "o", "markersize": 7.0, "markerfacecolor": "none"},
