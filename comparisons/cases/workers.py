@@ -38,7 +38,7 @@ def _processes(count: int) -> Iterator[tuple[Executor, int]]:
         raise WorkersError(
             "workers", f"cannot load {main}: a program from standard input must be a file to start processes"
         )
-    context, before = get_context("spawn"), dict(os.environ)
+    context, before = get_context("spawn"), {name: os.environ.get(name) for name in ONE_THREAD}
     # nothing is sent: the workers see the pipe close when this process closes it or dies
     watched, held = context.Pipe(duplex=False)
     executor = ProcessPoolExecutor(count, mp_context=context, initializer=_end_with, initargs=(watched,))
@@ -46,8 +46,9 @@ def _processes(count: int) -> Iterator[tuple[Executor, int]]:
     try:
         yield executor, count
     finally:
-        os.environ.clear()
-        os.environ.update(before)
+        for name, value in before.items():
+            del os.environ[name]
+            os.environ.update({} if value is None else {name: value})
         held.close()
         executor.shutdown(cancel_futures=True)
         watched.close()
