@@ -12,7 +12,6 @@ from comparisons import models
 from comparisons.budget import Budget, error_budget
 from comparisons.cases import Case, Row
 from comparisons.cases.measure import verdict
-from comparisons.cases.rows import reached_errors
 from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.models import Model, certified, find, solve
 from comparisons.models.options import ModelError, Options
@@ -194,12 +193,10 @@ def compare(
 
 
 def _row(scene: Scene, run: Run, response: Response, reference: Response) -> Row:
-    """Return the row of a run with its errors, over the path as far as it came, and their cause."""
-    case = run.case(scene)
-    known = None if response is reference else reached_errors(response, reference, scene, names(mesh=False))
-    cause = _cause(case, reference)
-    judged = verdict(response)
-    return Row(case=case, response=response, verdict=judged, errors=known, name=run.label, cause=cause)
+    """Return the row of a run with its errors and their cause."""
+    case, judged = run.case(scene), verdict(response)
+    row = Row(case=case, response=response, verdict=judged, name=run.label, cause=_cause(case, reference))
+    return row if response is reference else row.against(reference, names(mesh=False))
 
 
 def _cause(case: Case, reference: Response) -> str:

@@ -2,8 +2,8 @@
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
-from math import ceil
+from dataclasses import dataclass, field
+from math import ceil, isfinite
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,6 @@ import numpy as np
 
 from comparisons.cases import Case, Row
 from comparisons.cases.progress import Runner
-from comparisons.cases.rows import reached_errors
 from comparisons.models import MODELS, ROD, Model, find
 from comparisons.models.options import Options
 from comparisons.models.outside.programs import used
@@ -96,13 +95,7 @@ def measure_league(
     exact = {name: found[case].response for name, case in references.items()}
     return League(
         scenes=tuple(scenes),
-        rows=[
-            replace(
-                found[case],
-                errors=reached_errors(found[case].response, exact[case.scene.name], case.scene, QUANTITIES),
-            )
-            for case in cases
-        ],
+        rows=[found[case].against(exact[case.scene.name], QUANTITIES) for case in cases],
         left_out=left_out,
         stopped={name: response.message for name, response in exact.items() if not response.completed},
     )
@@ -178,23 +171,18 @@ def plot_league(league: League, *paths: Path) -> None:
 
 def _draw(axes: Any, program: str, rows: Sequence[Row]) -> None:
     # the seconds of the solution where the system does not count processes
-    whole = [(row.process_seconds, row.seconds) for row in rows]
-    seconds = np.array([process if np.isfinite(process) else own for process, own in whole])
-    errors = np.maximum([row.error("path", "force") for row in rows], FLOOR)
-    seen = np.isfinite(errors) & np.isfinite(seconds)
-    if not seen.any():
-        return
+    seconds = (row.process_seconds if isfinite(row.process_seconds) else row.seconds for row in rows)
+    places = [(x, max(row.error("path", "force"), FLOOR)) for x, row in zip(seconds, rows, strict=True)]
+    seen = [place for place in places if np.isfinite(place).all()]
     style = palette.style(program)
-    own = {"color": style.colour, "marker": style.marker}
-    axes.plot(seconds[seen], errors[seen], linewidth=1.2, label=program, **own)
-    for x, y, row in zip(seconds, errors, rows, strict=True):
-        mark: dict[str, Any] = {}
+    own: dict[str, Any] = {"color": style.colour, "marker": style.marker}
+    if seen:
+        axes.plot(*zip(*seen, strict=True), linewidth=1.2, label=program, **own)
+    for place, row in zip(places, rows, strict=True):
         if row.wrong:
-            mark = {"color": "black", "marker": "x", "markersize": 10}
+            axes.plot(*place, "x", color="black", markersize=10, zorder=4)
         elif not row.response.completed:
-            mark = {"markerfacecolor": "white", **own}
-        if mark:
-            axes.plot(x, y, linestyle="none", zorder=4, **mark)
+            axes.plot(*place, linestyle="none", markerfacecolor="white", zorder=4, **own)
 
 
 def summary(league: League) -> list[dict[str, object]]:

@@ -6,7 +6,7 @@ import json
 import statistics
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from importlib import import_module
@@ -20,10 +20,11 @@ from typing import Any
 import numpy as np
 
 from comparisons.cases.case import Case
-from comparisons.errors import Errors
+from comparisons.errors import Errors, error_histories, largest
 from comparisons.models import certified, find, solve
 from comparisons.models.options import ModelError
 from comparisons.output import plain
+from comparisons.quantities import SCOPES
 from comparisons.referee import Verdict
 from comparisons.response import Response
 from comparisons.response.axis import storable
@@ -119,6 +120,16 @@ class Row:
         if not self.response.completed:
             return self.response.status
         return self.verdict.lower().replace("_", " ") or "no verdict"
+
+    def against(self, reference: Response, quantities: Sequence[str]) -> "Row":
+        """Return the row with its errors as far as both answers came; of ``end`` at the reference's last state."""
+        response = self.response
+        if not np.isin(response.load_parameter, reference.load_parameter).any():
+            return replace(self, errors={scope: dict.fromkeys(quantities, nan) for scope in SCOPES})
+        shared, found = error_histories(response, reference, self.case.scene, quantities=quantities)
+        ends = {"end": shared == reference.load_parameter[-1], "path": slice(None)}
+        errors = {scope: {name: largest(found[name][at]) for name in found} for scope, at in ends.items()}
+        return replace(self, errors=errors)
 
     def error(self, scope: str, quantity: str, *, own: bool = False) -> float:
         """Return an error against the reference, or against the model's limit; nan where it is not known."""

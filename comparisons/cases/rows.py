@@ -1,37 +1,20 @@
-"""The errors of a row as far as it came, and the table of a study."""
+"""The table of a study."""
 
-from collections.abc import Collection, Mapping, Sequence
-from math import nan
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
 
 from comparisons.cases.measure import Row
 from comparisons.cases.settings import settings
-from comparisons.errors import Errors, error_histories, largest
 from comparisons.output import tabulated
-from comparisons.quantities import SCOPES
 from comparisons.response import Response
-from comparisons.scene import Scene
 from comparisons.version import version
 
 DETAILS = ("moment:", "tip_x:", "tip_y:")
 """Columns that a table for a reader leaves out, by their beginnings."""
 HIDDEN = {"label", "load_parameter", "cutbacks", "seconds", "repeats", "peak_memory", "version", "message"}
 """Columns that a table for a reader leaves out; without times it is the same in every run."""
-
-
-def reached_errors(
-    response: Response, reference: Response, scene: Scene, quantities: Sequence[str]
-) -> Errors:
-    """Return the errors as far as both responses came, nan where there are none; those of ``end`` are at the reference's last state."""
-    if not np.isin(response.load_parameter, reference.load_parameter).any():
-        return {scope: dict.fromkeys(quantities, nan) for scope in SCOPES}
-    shared, found = error_histories(response, reference, scene, quantities=quantities)
-    ends = {"end": shared == reference.load_parameter[-1], "path": slice(None)}
-    return {
-        scope: {name: largest(values[at]) for name, values in found.items()} for scope, at in ends.items()
-    }
 
 
 def result_rows(rows: Collection[Row]) -> list[dict[str, Any]]:
