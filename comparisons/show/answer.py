@@ -12,7 +12,8 @@ from comparisons.response.table import unit_names
 from comparisons.scene import Scene
 from comparisons.show import palette
 from comparisons.show.plot import WIDTH, figure, save
-from comparisons.show.sketch import ARROW, LEFT, Sketch, axis
+from comparisons.show.sketch import ARROW, Sketch, axis
+from comparisons.show.symbols import LEFT
 from comparisons.version import release
 
 if TYPE_CHECKING:

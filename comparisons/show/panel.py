@@ -13,7 +13,7 @@ from comparisons.response import CONTACT_STATES, OPEN, SLIPS, Array, Grid, Respo
 from comparisons.scene import Scene
 from comparisons.show.export import CONTACTS, HINGES, POINTS, SUPPORTS, blocks
 from comparisons.show.palette import PIN
-from comparisons.show.symbols import HINGE, SYMBOL, Segments, fixings
+from comparisons.show.symbols import HINGE, LEFT, SYMBOL, Segments, fixings
 
 Body = tuple[Array, Array]
 """Quadrilaterals (m, 4, 2) of a deformed body, and the stress (m, 4) at their corners."""
@@ -79,7 +79,7 @@ class Panel:
             yield colour, 0.35, self.pins[discs, None] + self.radii[discs, None, None] * CIRCLE
             yield colour, 1.0, self.pins[own, None] + POINT * scale.half * CIRCLE
             along = self.forces[drawn] / np.hypot(*self.forces[drawn].T)[:, None]
-            axes = lengths[drawn, None, None] * np.stack([along, along @ [[0.0, 1.0], [-1.0, 0.0]]], axis=1)
+            axes = lengths[drawn, None, None] * np.stack([along, along @ LEFT], axis=1)
             tips = self.pins[drawn] + self.radii[drawn, None] * along
             yield colour, 1.0, np.concatenate([tips[:, None] + part @ axes for part in (SHAFT, HEAD)])
 
@@ -148,51 +148,39 @@ def _enlarged(grid: Grid, factor: float) -> Array:
 
 
 def _ribbon(grid: Grid, size: float, factor: float) -> Body:
-    """Ribbons of a beam's height about the cubics that have the ends and end tangents of the lines; straight lines without rotations."""
-    data, ends = grid.point_data, grid.cells["line"]
-    before, after, ending = (
-        (points @ [1.0, 1.0j])[ends] for points in (grid.points, data["deformed"], _enlarged(grid, factor))
-    )
-    straight, tangent = (np.repeat(np.diff(points), 2, axis=1) for points in (before, after))
+    """Return the ribbon of a beam's height about the cubics through its points, with their rotations if it has some."""
+    from scipy.interpolate import CubicHermiteSpline, CubicSpline
+
+    steps = np.hypot(*np.diff(grid.points, axis=0).T)
+    arc, own = np.unique(np.append(0.0, np.cumsum(steps)), return_index=True)  # a jump has two points
+    data = {name: values[own] for name, values in grid.point_data.items()}
+    start = CubicSpline(arc, grid.points[own])(arc, 1)
     if "rotation" in data:
-        angles = _end_angles(np.angle(straight[:, 0]))
-        straight = np.abs(straight) * np.exp(1.0j * angles)
-        tangent = np.abs(tangent) * np.exp(1.0j * (angles + data["rotation"][ends]))
-    tangent = tangent + (factor - 1.0) * (tangent - straight)
-    u = np.linspace(0.0, 1.0, PARTS + 1)
-    blends = np.stack([1 - 3 * u**2 + 2 * u**3, 3 * u**2 - 2 * u**3, u - 2 * u**2 + u**3, u**3 - u**2])
-    line = np.concatenate([ending, tangent], axis=1) @ blends
+        cosine, sine = np.cos(data["rotation"])[:, None], np.sin(data["rotation"])[:, None]
+        tangent = cosine * start + sine * start @ LEFT
+    else:
+        tangent = CubicSpline(arc, data["deformed"])(arc, 1)
+    curve = CubicHermiteSpline(arc, _enlarged(grid, factor)[own], start + factor * (tangent - start))
+    count = len(arc) - 1
+    at = np.interp(np.linspace(0.0, count, PARTS * count + 1), np.arange(count + 1), arc)
+    along = curve(at, 1)
+    normal = along @ LEFT / np.hypot(*along.T)[:, None]
 
-    def along(name: str) -> Array:
-        values = data.get(name, np.zeros(len(grid.points)))[ends]
-        return np.asarray((values @ np.stack([1 - u, u]))[..., None])
+    def read(name: str) -> Array:
+        return np.asarray(np.interp(at, arc, data.get(name, 0.0 * arc)))[:, None]
 
-    turn = np.angle(tangent[:, 1:] * tangent[:, :1].conj())
-    normal = 1.0j * np.exp(1.0j * (np.angle(tangent[:, :1]) + turn * u))
-    half = along("height") / 2.0
-    half[half == 0.0] = THIN / 2.0 * size
+    half = np.where(read("height") > 0.0, read("height"), THIN * size) / 2.0
     across = np.linspace(-1.0, 1.0, LAYERS["shear_stress" in data] + 1)
-    points = line[..., None] + half * across * normal[..., None]
-    stress = along("axial_stress_right") * (1 - across) / 2 + along("axial_stress_left") * (1 + across) / 2
+    stress = read("axial_stress_right") * (1 - across) / 2 + read("axial_stress_left") * (1 + across) / 2
     if "shear_stress" in data:
-        stress = np.sqrt(stress**2 + 3.0 * (along("shear_stress") * (1.0 - across**2)) ** 2)
+        stress = np.sqrt(stress**2 + 3.0 * (read("shear_stress") * (1.0 - across**2)) ** 2)
+    points = curve(at)[:, None] + (half * across)[..., None] * normal[:, None]
 
     def corners(values: Array) -> Array:
-        found = (values[:, :-1, :-1], values[:, 1:, :-1], values[:, 1:, 1:], values[:, :-1, 1:])
-        return np.stack(found, axis=-1).reshape(-1, 4)
+        found = (values[:-1, :-1], values[1:, :-1], values[1:, 1:], values[:-1, 1:])
+        return np.stack(found, axis=2).reshape(-1, 4, *values.shape[2:])
 
-    quads = corners(points)
-    return np.stack([quads.real, quads.imag], axis=-1), corners(stress)
-
-
-def _end_angles(chords: Array) -> Array:
-    """Return the angles of an undeformed axis at both ends of every line, shape (e, 2), from those of the lines of an arc."""
-    chords = np.unwrap(chords)
-    between = (chords[1:] + chords[:-1]) / 2.0
-    if not len(between):
-        return np.repeat(chords[:, None], 2, axis=1)
-    first, last = 2.0 * chords[0] - between[0], 2.0 * chords[-1] - between[-1]
-    return np.stack([np.append(first, between), np.append(between, last)], axis=1)
+    return corners(points), corners(stress)
 
 
 def _symbols(grids: Mapping[str, Grid], factor: float) -> Iterator[tuple[Array, Segments]]:

@@ -17,7 +17,7 @@ from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene
 from comparisons.scene.conditions import LoadSpec
 from comparisons.show import palette
 from comparisons.show.plot import WIDTH, arrow, figure, save
-from comparisons.show.symbols import arc, chain, draw_symbols, legend_symbol
+from comparisons.show.symbols import LEFT, arc, chain, draw_symbols, legend_symbol
 
 BEAM, PIN, SIDE, HELD, LOAD = palette.BLUE, palette.PIN, palette.PURPLE, palette.BLACK, palette.GREEN
 SYMBOL, STROKE, ARROW, TURN = 0.025, 0.012, 0.14, 0.05
@@ -34,8 +34,6 @@ NAME, WEIGHT = 0.25, 0.65
 """Fractions of the length at which a beam's name and its weight stand."""
 CORNER = np.array([1.0, 1.0])
 """Way from a moment to its value, which arrows along the axes leave free."""
-LEFT = np.array([[0.0, 1.0], [-1.0, 0.0]])
-"""Turns rows of tangents to the left."""
 Axis = tuple[Array, Array, Array]
 """Arc lengths (n,), points (n, 2), and unit normals to the left (n, 2)."""
 

@@ -22,6 +22,8 @@ SYMBOL = 0.03
 """Size of a symbol over the size of a picture."""
 LARGEST = 13.0
 """Largest size of a symbol in a legend, so that it stays in its row [point]."""
+LEFT = np.array([[0.0, 1.0], [-1.0, 0.0]])
+"""Turns rows of tangents to the left."""
 HATCHES = 5
 """Strokes below a ground."""
 
