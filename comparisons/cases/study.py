@@ -1,6 +1,8 @@
 """Study files: a scene, and what is varied in it, as TOML."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
+from functools import partial
 from itertools import product
 from math import isclose, prod
 from pathlib import Path
@@ -105,29 +107,24 @@ def _axes(run: dict[str, Any], within: str, mistakes: list[FieldError], place: s
     return axes
 
 
-def _model(value: object, folder: Path) -> str:
-    """Accept a model's name, or a program file ``NAME.toml`` in `folder`, as its path."""
-    name = rules.text(value)
+def _known(value: object, find_it: Callable[[str], str]) -> str:
+    """Return the name of what is found by its name."""
     try:
-        if name.endswith(".toml"):
-            name = str((folder / name).resolve())
-        find(name)
+        return find_it(rules.text(value))
     except ModelError as error:
         raise RuleError(str(error).partition(": ")[2]) from None
+
+
+def _model(name: str, folder: Path) -> str:
+    """Return a model's name, of a program file ``NAME.toml`` in `folder` its path."""
+    name = str((folder / name).resolve()) if name.endswith(".toml") else name
+    find(name)
     return name
-
-
-def _element(value: object) -> str:
-    name = rules.text(value)
-    try:
-        return TSM.element(Options(element=name)).name
-    except ModelError as error:
-        raise RuleError(str(error).partition(": ")[2]) from None
 
 
 OPTION_RULES: dict[str, Rule] = {
     "elements": rules.whole_number,
-    "element": _element,
+    "element": partial(_known, find_it=lambda name: TSM.element(Options(element=name)).name),
     "integration_tolerance": rules.fraction,
     "mesh": rules.mesh_text,
     "branch": rules.choice(*BRANCHES),
@@ -143,7 +140,10 @@ HEAD_RULES: dict[str, Rule] = {"name": rules.name, "scene": rules.text, "repeats
 def _case(scene: Scene, chosen: dict[settings.Path, object], folder: Path) -> Case:
     """Return the case of the chosen settings; raise all mistakes in them."""
     given = {place[0]: value for place, value in chosen.items() if len(place) == 1}
-    rules_of = {"model": lambda value: _model(value, folder), **OPTION_RULES}
+    rules_of: dict[str, Rule] = {
+        "model": partial(_known, find_it=partial(_model, folder=folder)),
+        **OPTION_RULES,
+    }
     own, mistakes = table_values(given, rules_of, ("model",))
     if "model" in own:
         model = find(own["model"])

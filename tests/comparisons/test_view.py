@@ -20,8 +20,6 @@ from comparisons.show.render import film, write_picture
 from tests.comparisons.show.specimen import SPECIMEN
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=3)
-BENT = 0.01 / (0.02**4 / 12)
-"""Stress on a face over the bending moment."""
 
 
 @pytest.fixture(scope="module")
