@@ -27,7 +27,8 @@ from comparisons.scene.keys import special_keys
 from comparisons.show.budget_plot import budget_section, plot_budget, write_budget
 from comparisons.show.export import check_series, write_series
 from comparisons.show.findings import BUDGET, findings
-from comparisons.show.pages import Section, motion_section, picture, states_section, table, tracks, write_page
+from comparisons.show.motion import motion_section, states_section, tracks
+from comparisons.show.pages import Section, picture, table, write_page
 from comparisons.show.palette import style
 from comparisons.show.panel import mises_panel
 from comparisons.show.plot import nearest_steps, plot_shapes

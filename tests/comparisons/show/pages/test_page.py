@@ -14,7 +14,8 @@ from comparisons.compare import RUNS
 from comparisons.errors import error_histories, errors
 from comparisons.models import MODELS, solve
 from comparisons.scene import read_scene
-from comparisons.show.pages import Section, motion_section, page, table, tracks
+from comparisons.show.motion import motion_section, tracks
+from comparisons.show.pages import Section, page, table
 from tests.comparisons.show.pages.conftest import KS
 from tests.comparisons.show.pages.markup import block, check_alone
 

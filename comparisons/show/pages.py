@@ -1,4 +1,4 @@
-"""The page: style, script, data and sections in one file that loads nothing; the markup stands in templates beside it."""
+"""The page: style, script, data and sections in one file that loads nothing; the markup stands in templates."""
 
 import base64
 import json
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from jinja2 import Environment
     from markupsafe import Markup
 
-FOLDER = Path(__file__).parent
+FOLDER = Path(__file__).with_name("templates")
 NAME = "report.html"
 TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
 

@@ -1,18 +1,19 @@
-"""Shapes under a slider and histories beside them: the data of a section that moves, and its markup."""
+"""Sections of a page about answers: shapes under a slider with histories, bands of stick and slip."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import groupby
 from typing import Any
 
 import numpy as np
 
 from comparisons.errors import error_columns
 from comparisons.quantities import QUANTITIES, size
-from comparisons.response import Array, Response
+from comparisons.response import CONTACT_STATES, SLIPS, Array, Response
 from comparisons.response.table import unit_names
 from comparisons.scene import Scene
 from comparisons.show import palette
-from comparisons.show.pages.page import Section, rendered
+from comparisons.show.pages import Section, piece, rendered
 from comparisons.show.symbols import SYMBOL, end_symbols
 
 POINTS = 61
@@ -25,6 +26,9 @@ DASHES = ("7 3", "2 3", "9 3 2 3", "12 3", "5 2 1 2 1 2", "3 2", "9 2 2 2 2 2", 
 """Dashes of the lines of runs, which distinguish runs without colour."""
 INKS = {palette.BLACK: "var(--ink)", palette.GREY: "var(--grey)"}
 """Colours of the page that are light on a dark screen, in place of black and grey."""
+HATCH = "repeating-linear-gradient(135deg,#16181d 0 1px,{} 1px 5px)"
+STATES = {**CONTACT_STATES, SLIPS[-1]: HATCH.format(CONTACT_STATES[SLIPS[-1]])}
+"""Backgrounds of the bands; one is hatched, which distinguishes it in grey print."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -157,3 +161,36 @@ def _lines(scene: Scene, response: Response, decimals: int) -> list[list[Array]]
 
     steps = range(len(response.load_parameter))
     return [[thinned(*response.axis_line(beam.name, k)) for beam in scene.beams] for k in steps]
+
+
+def states_section(responses: Mapping[str, Response]) -> Section | None:
+    """Return a section with one band for each run and contact with friction; None without friction."""
+    bands = {
+        f"{label}, {pair}" if len(response.contacts) > 1 else label: band(response, pair)
+        for label, response in responses.items()
+        for pair, contact in response.contacts.items()
+        if contact.friction is not None and len(response.load_parameter)
+    }
+    if not bands:
+        return None
+    last = max(parts[-1][2] for parts in bands.values())
+    return Section("Stick and slip", piece("states", bands, STATES, last))
+
+
+def band(response: Response, pair: str) -> list[tuple[str, float, float]]:
+    """Return the states of a contact in their order, each with the load parameters between which it lasts."""
+    contact, times = response.contacts[pair], response.load_parameter
+    assert contact.friction is not None, "a band belongs to a contact with friction"
+    events = [event for event in response.events or () if event.pair == pair and event.kind != "pass-through"]
+    located = sorted(event.load_parameter for event in events)
+    parts: list[tuple[str, float, float]] = []
+    begin, last = 0.0, 0
+    for state, same in groupby(contact.friction.states(contact.force)):
+        last += len(list(same))
+        end = float(times[-1])
+        if last < len(times):
+            between = [t for t in located if times[last - 1] <= t <= times[last]]
+            end = between[-1] if between else float(np.mean(times[last - 1 : last + 1]))
+        parts.append((state, begin, end))
+        begin = end
+    return parts
