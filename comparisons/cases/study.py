@@ -1,6 +1,6 @@
-"""Study files: a scene, and what is varied in it, as TOML."""
+"""Studies: a scene and what is varied in it, as a TOML file, and the table of what is found."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, fields
 from functools import partial
 from itertools import product
@@ -12,8 +12,11 @@ import numpy as np
 
 from comparisons.cases import settings
 from comparisons.cases.case import Case
+from comparisons.cases.measure import Row
 from comparisons.models import TSM, find
 from comparisons.models.options import BRANCHES, ModelError, Options
+from comparisons.output import tabulated
+from comparisons.response import Response
 from comparisons.scene import Scene, built_in_scenes, load_scene, rules
 from comparisons.scene.rules import FieldError, RecordError, Rule, RuleError
 from comparisons.scene.tables import (
@@ -26,12 +29,17 @@ from comparisons.scene.tables import (
     read_text,
     table_values,
 )
+from comparisons.version import version
 
 Axes = dict[settings.Path, tuple[object, ...]]
 """The values of every setting that a run varies, by its place."""
 
 LARGEST, LARGEST_COUNT = 100_000, 10_000
 """Cases of a study, and values of a range."""
+DETAILS = ("moment:", "tip_x:", "tip_y:")
+"""Columns that a table for a reader leaves out, by their beginnings."""
+HIDDEN = {"label", "load_parameter", "cutbacks", "seconds", "repeats", "peak_memory", "version", "message"}
+"""Columns that a table for a reader leaves out; without times it is the same in every run."""
 RANGE: dict[str, Rule] = {
     "from": rules.number,
     "to": rules.number,
@@ -195,3 +203,70 @@ def _range(given: dict[str, Any]) -> tuple[float, ...]:
     return tuple(
         round(value) if whole and isclose(value, round(value), rel_tol=1e-12) else value for value in found
     )
+
+
+def result_rows(rows: Collection[Row]) -> list[dict[str, Any]]:
+    """Return a line for each row: settings that differ, status, last state reached, and cost."""
+    stated = [settings.settings(row.case) for row in rows]
+    answers = [_answers(row.response) for row in rows]
+    varied = _varied(stated)
+    columns = list(dict.fromkeys(name for answer in answers for name in answer))
+    return [
+        {
+            "scene": row.case.scene.name,
+            "model": row.case.found.name,
+            "label": row.label,
+            **{name: _text(own.get(name)) for name in varied},
+            "status": row.response.status,
+            "verdict": row.verdict,
+            **{name: answer.get(name) for name in columns},
+            **row.cost(),
+            "version": version(),
+            "message": row.response.message,
+        }
+        for row, own, answer in zip(rows, stated, answers, strict=True)
+    ]
+
+
+def result_table(rows: list[dict[str, Any]]) -> str:
+    """Return `result_rows` as a table for a reader, with the reasons of the stopped cases below it."""
+    hidden = HIDDEN | ({"scene"} if len({row["scene"] for row in rows}) == 1 else set())
+    names = [name for name in rows[0] if name not in hidden and not name.startswith(DETAILS)]
+    shown = tabulated([{name: row[name] for name in names} for row in rows])
+    stopped = [
+        f"{row['scene']}, {row['label']}: {row['status']}: {row['message']}"
+        for row in rows
+        if row["status"] != "COMPLETED"
+    ]
+    return "\n".join([shown, f"\nversion {version()}", *([""] if stopped else []), *stopped])
+
+
+def _varied(tables: Collection[Mapping[str, object]]) -> list[str]:
+    """Return the settings that differ between cases, a model's options first."""
+    known = {name for table in tables for name in table}
+    differ = (name for name in known if len({repr(table.get(name)) for table in tables}) > 1)
+    return sorted(differ, key=lambda name: ("." in name, name))
+
+
+def _answers(response: Response) -> dict[str, float]:
+    """Return the last state reached."""
+    if not len(response.load_parameter):
+        return {}
+    contacts, tips = response.contacts.items(), response.tips.items()
+    last = {
+        "load_parameter": response.load_parameter[-1],
+        **{f"force:{pair}": one.force[-1] for pair, one in contacts},
+        **{f"arc_position:{pair}": one.arc_position[-1] for pair, one in contacts},
+        **{f"moment:{node}": one.moment[-1] for node, one in response.supports.items()},
+        **{f"tip_x:{beam}": tip[-1, 0] for beam, tip in tips},
+        **{f"tip_y:{beam}": tip[-1, 1] for beam, tip in tips},
+    }
+    return {name: float(value) for name, value in last.items() if np.isfinite(value)}
+
+
+def _text(value: object) -> object:
+    """Return a setting for one cell: ``50x2`` for a mesh, the other lists as text."""
+    if not isinstance(value, list):
+        return value
+    whole = all(isinstance(item, int) for item in value)
+    return ("x" if whole else " ").join(str(item) for item in value)

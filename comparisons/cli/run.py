@@ -143,9 +143,8 @@ def _question(given: "argparse.Namespace") -> int:
 
 def _study(given: "argparse.Namespace") -> int:
     from comparisons.cases.progress import running
-    from comparisons.cases.rows import result_rows, result_table
     from comparisons.cases.run import UNSETTLED
-    from comparisons.cases.study import read_study
+    from comparisons.cases.study import read_study, result_rows, result_table
     from comparisons.output import write_rows
 
     study = read_study(Path(given.suite))
