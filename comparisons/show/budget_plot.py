@@ -67,14 +67,9 @@ def budget_section(budget: Budget, drawn: Path) -> Section:
         {
             "quantity": row["quantity"].replace("_", " "),
             "load parameter": row["load_parameter"],
-            **{
-                name: f"{part:.1e}"
-                for name, part in {
-                    "difference": row["total"],
-                    **row["parts"],
-                    "rest": row["rest_over_total"],
-                }.items()
-            },
+            "difference": row["total"],
+            **row["parts"],
+            "rest": row["rest_over_total"],
         }
         for row in budget_rows(budget)
     ]
