@@ -27,38 +27,25 @@ HEIGHT, DIAGRAM, HISTORY = 3.6, 1.25, 1.9
 DIAGRAMS = (("N", "axial", "force"), ("V", "shear", "force"), ("M", "moment", "moment"))
 
 
-class PictureError(ValueError):
-    """An answer that cannot be drawn: one line."""
-
-
 def plot_answer(response: Response, path: Path) -> None:
     """Draw an answer to `path`, in the format of its suffix; see `picture`."""
     save(picture(response), path)
 
 
 def picture(response: Response, scene: Scene | None = None) -> "Figure":
-    """Return the picture of an answer.
-
-    It shows the deformed shape with supports, pins, loads and contact forces, the section forces along each beam, and the contact forces,
-    without contact the reactions, over the load parameter. Shape and section forces are those of the last load parameter at which a
-    force acts.
-
-    ``response``: the answer. A model that states no section forces has no diagrams. ``scene``: the scene that
-    was solved; needed for an answer that was read from a file. Raises PictureError if the scene is not known,
-    or no load parameter was reached.
-    """
+    """Return the picture that `Response.plot` states; at the last load parameter at which a force acts."""
     scene = scene or response.definition
     if scene is None:
-        raise PictureError("scene: must be given, the answer was read from a file")
+        raise ValueError("scene: must be given, the answer was read from a file")
     if not len(response.load_parameter):
-        raise PictureError(f"{response.scene}: {response.status}, no load parameter was reached")
+        raise ValueError(f"{response.scene}: {response.status}, no load parameter was reached")
     diagrams = DIAGRAMS if response.sections is not None else ()
     heights = (HEIGHT, *(DIAGRAM for _ in diagrams), HISTORY)
     fig: Figure = figure(figsize=(WIDTH, sum(heights)))
     shape, *panels, history = fig.subplots(len(heights), 1, height_ratios=heights)
     k = _loaded(response, scene)
     for axes, (name, words, kind) in zip(panels, diagrams, strict=True):
-        _diagram(axes, response, scene, (name, kind), k)
+        _diagram(axes, response, scene, name, kind, k)
         axes.set_ylabel(f"{words} {name}\n[{unit_names(scene.units)[kind]}]", fontsize="small")
     for axes in panels[:-1]:
         axes.sharex(panels[-1])
@@ -117,14 +104,12 @@ def _shape(axes: "Axes", response: Response, scene: Scene, k: int) -> None:
     sketch.separate(1)
 
 
-def _diagram(axes: "Axes", response: Response, scene: Scene, quantity: tuple[str, str], k: int) -> None:
+def _diagram(axes: "Axes", response: Response, scene: Scene, name: str, kind: str, k: int) -> None:
     assert response.sections is not None, "diagrams are those of a model that states section forces"
-    name, kind = quantity
     least = getattr(round_off(response, scene), kind)
     for number, beam in enumerate(scene.beams):
-        at = response.sections(beam.name, k)
-        colour, values = COLOURS[number % len(COLOURS)], getattr(at, name)
-        values = np.where(np.abs(values) > least, values, 0.0)
+        at, colour = response.sections(beam.name, k), COLOURS[number % len(COLOURS)]
+        values = np.where(np.abs(getattr(at, name)) > least, getattr(at, name), 0.0)
         axes.fill_between(at.arc, values, color=colour, alpha=0.25, linewidth=0.0)
         axes.plot(at.arc, values, color=colour, linewidth=1.2, label=beam.name)
     axes.axhline(0.0, color="0.3", linewidth=0.6)
