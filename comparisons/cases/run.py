@@ -23,8 +23,6 @@ UNSETTLED = (WORKER_LOST, ERROR)
 LOST = "its worker died twice, the second time with this case alone: memory ran out, or a library crashed"
 Results = dict[Case, Row]
 """The row of every case."""
-
-
 Progress = Callable[[int, Collection[Row]], None]
 """Called with the number of cases and the rows that are there, at the start and after each finished case."""
 
