@@ -33,7 +33,7 @@ from comparisons.show.palette import style
 from comparisons.show.panel import mises_panel
 from comparisons.show.plot import nearest_steps, plot_shapes
 from comparisons.show.render import NoOpenGLError, write_picture
-from comparisons.show.table import line, table_csv
+from comparisons.show.table import caption, line, table_csv
 from comparisons.version import versions
 from tsm.elements import TIMOSHENKO, ElementType
 
@@ -75,12 +75,6 @@ MIXED = _beams(tsm.elements.MIXED, 20)
 SOLID, ROD, ELASTICA = (run_of(model, Options()) for model in (models.SOLID, models.ROD, models.ELASTICA))
 EXPORTED = (MIXED, SOLID)
 """The beams and the solid that are exported and rendered."""
-ERRORS = (
-    f"Largest error over all load parameters against the {ROD.label}; forces and moments over their largest, positions "
-    "over the length, friction over the contact forces. Newton iterations and wall seconds of the whole path."
-)
-
-
 DRAWN = tuple(
     sorted((run for run in RUNS if run not in (MIXED, ELASTICA)), key=lambda run: -style(run.label).width)
 )
@@ -94,7 +88,7 @@ APART = 0.5
 
 @dataclass(frozen=True, kw_only=True)
 class Comparison:
-    """Result of a comparison: a row for each run, the budget, who is left out and why by family, and the files written."""
+    """Result of a comparison: rows, the budget, who is left out and why by family, and the files written."""
 
     scene: Scene
     rows: list[Row]
@@ -114,7 +108,7 @@ class Comparison:
 
     @property
     def apart(self) -> list[Row]:
-        """The completed runs on another branch than the reference. The elastica has no stretch and no shear, so it is not judged."""
+        """The completed runs on another branch than the reference, without the elastica, another rod."""
         judged = (row for row in self.rows if row.label != ELASTICA.label and row.response.completed)
         return [row for row in judged if any(row.error("path", name) > APART for name in BRANCH)]
 
@@ -131,7 +125,7 @@ class Comparison:
 
     @property
     def wrong(self) -> list[Row]:
-        """The runs whose answers were refused by the checks or the referee, and the reference if it stopped."""
+        """The runs that were refused by the checks or the referee, and the reference if it stopped."""
         return [
             row for row in self.rows if row.wrong or (row.label == ROD.label and not row.response.completed)
         ]
@@ -201,7 +195,7 @@ def _row(scene: Scene, run: Run, response: Response, reference: Response) -> Row
 
 
 def _cause(case: Case, reference: Response) -> str:
-    """Return the largest part of the error that theory allows, without its formula; empty but for a straight, uniform cantilever along x."""
+    """Return the largest part of the error that theory allows; empty but for a uniform cantilever along x."""
     scene = case.scene
     (beam, *others), ends = scene.beams, [support.node for support in scene.all_supports]
     straight = not others and not any(special_keys(scene)) and beam.direction == (1.0, 0.0)
@@ -245,7 +239,7 @@ def _write_page(found: Comparison, files: list[Path], folder: Path) -> Path:
     vtu = {run.label: f"{run.model}/{run.model}-{{}}.vtm" for run, _ in found.exported}
     shown, states = tracks(responses, ROD.label, scene), states_section(responses)
     sections = [
-        Section("Errors", table(ERRORS, [line(row) for row in found.rows])),
+        Section("Errors", table(caption(ROD.label), [line(row) for row in found.rows])),
         motion_section("Shapes and histories", scene, responses, shown, focus=ROD.label, vtu=vtu),
         *([] if states is None else [states]),
         *([] if found.budget is None else [budget_section(found.budget, folder / "budget.svg")]),
@@ -258,7 +252,7 @@ def _write_page(found: Comparison, files: list[Path], folder: Path) -> Path:
 
 
 def _write_picture(found: Comparison, folder: Path, report: Report) -> Iterator[Path]:
-    """Write and yield the side-by-side picture of the beams and the solid at load parameters that both reached."""
+    """Write and yield the picture of beams and solid side by side at load parameters that both reached."""
     scene, path = found.scene, folder / "side-by-side.png"
     times = min((response.load_parameter for _, response in found.exported), key=len, default=np.zeros(0))
     if len(found.exported) < 2 or not len(times):

@@ -99,7 +99,11 @@ def _shape(axes: "Axes", response: Response, scene: Scene, k: int) -> None:
     sketch.loads(loads, scene.gravity_at(t))
     sketch.symbols()
     entries = {words.partition(" of ")[0]: entry for words, entry in sketch.legend.items()}
-    place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.17), "ncols": 4}
+    place: dict[str, Any] = {
+        "loc": "upper center",
+        "bbox_to_anchor": (0.5, -0.17),
+        "ncols": 5 if len(entries) <= 5 else 4,
+    }
     axes.legend(entries.values(), entries, fontsize="x-small", frameon=False, labelspacing=1.2, **place)
     sketch.separate(1)
 

@@ -9,17 +9,19 @@ from comparisons.output import aligned, csv_text
 from comparisons.quantities import SCOPES, names, table_columns
 
 
-def table_text(rows: Sequence[Row], reference: str) -> str:
-    """Return the table as aligned text; errors are the largest over all load parameters."""
-    told = [line(row) for row in rows]
-    first, *rest = aligned(
-        [list(told[0]), *(list(one.values()) for one in told)], [False] + [True] * (len(told[0]) - 1)
-    )
-    title = (
+def caption(reference: str) -> str:
+    """Return what the table shows."""
+    return (
         f"Largest error over the load parameters reached, against the {reference}; forces and moments relative to their\n"
         "largest, positions to the length, friction to the contact forces; Newton iterations and seconds for the whole path"
     )
-    return "\n".join([title, "", first, "-" * len(first), *rest])
+
+
+def table_text(rows: Sequence[Row], reference: str) -> str:
+    """Return the table as aligned text; errors are the largest over all load parameters."""
+    head, *lines = list(line(rows[0])), *(list(line(row).values()) for row in rows)
+    first, *rest = aligned([head, *lines], [False] + [True] * (len(head) - 1))
+    return "\n".join([caption(reference), "", first, "-" * len(first), *rest])
 
 
 def line(row: Row) -> dict[str, str]:
