@@ -35,9 +35,7 @@ def _places(tables: Table, path: Path, value: object) -> Iterator[tuple[str, Tab
     given: Table = {name[0]: {key: value}} if name else {key: value}
     records = _named(kind, tables.get(kind, [])) if kind in LISTS else {"": tables["scene"]}
     mistakes = list(check_keys({kind: given}, ("scene", *LISTS)))
-    if not records:
-        mistakes.append(FieldError(kind, given, f"the scene has no {kind}"))
-    elif kind == "scene" or name:
+    if records and (kind == "scene" or name):
         known = records if kind in LISTS else () if name else HEAD
         mistakes += (item.within(f"{kind}.") for item in check_keys(given, known))
     if mistakes:
@@ -48,7 +46,10 @@ def _places(tables: Table, path: Path, value: object) -> Iterator[tuple[str, Tab
 
 
 def changed(scene: Scene, changes: Changes) -> Scene:
-    """Return a scene with changed settings, named records last; one `FieldError` for all mistakes."""
+    """Return a scene with changed settings, named records last; one `FieldError` for all mistakes.
+
+    A setting of all records of a kind changes nothing where the scene has none.
+    """
     tables: Table = to_tables(scene)
     stated, mistakes = dict[str, str](), list[FieldError]()
     for path, value in sorted(changes.items(), key=lambda item: len(item[0])):

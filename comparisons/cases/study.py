@@ -18,6 +18,7 @@ from comparisons.models.options import BRANCHES, ModelError, Options
 from comparisons.output import tabulated
 from comparisons.response import Response
 from comparisons.scene import Scene, built_in_scenes, load_scene, rules
+from comparisons.scene.read import LISTS
 from comparisons.scene.rules import FieldError, RecordError, Rule, RuleError
 from comparisons.scene.tables import (
     InputError,
@@ -157,8 +158,13 @@ def _case(scene: Scene, chosen: dict[settings.Path, object], folder: Path) -> Ca
         model = find(own["model"])
         none = f'is no option of model = "{model.name}"'
         mistakes += (FieldError(key, given[key], none) for key in own.keys() - {"model", *model.options})
+    changes = {place: value for place, value in chosen.items() if len(place) > 1}
+    for place, value in changes.items():
+        if place[0] in LISTS and not getattr(scene, f"{place[0]}s"):
+            none = f"the scene has no {place[0]}"
+            mistakes.append(FieldError(place[0], {place[-1]: value}, none))
     try:
-        scene = settings.changed(scene, {place: chosen[place] for place in chosen if len(place) > 1})
+        scene = settings.changed(scene, changes)
     except FieldError as error:
         mistakes += error.mistakes
     if mistakes:

@@ -13,6 +13,7 @@ import pytest
 from comparisons.cases import Case, Row, measure
 from comparisons.cases import run as run_module
 from comparisons.cases.measure import unmeasured
+from comparisons.cases.settings import changed
 from comparisons.files import OutputError
 from comparisons.models import solve
 from comparisons.models.options import Options
@@ -124,3 +125,8 @@ def test_a_case_without_an_answer_has_no_errors():
     row = lost.against(exact, KEPT)
     assert np.isnan([row.error(scope, name) for scope in SCOPES for name in KEPT]).all()
     assert (row.outcome, row.wrong) == ("WORKER_LOST", False)
+
+
+def test_a_change_of_a_kind_that_the_scene_does_not_have_changes_nothing():
+    scene = load_scene("tip-load")
+    assert changed(scene, {("contact", "penalty"): None, ("pin", "radius"): 1.0}) == scene
