@@ -86,33 +86,38 @@ def read_study(path: Path) -> Study:
 
 def _cases(scene: Scene, runs: list[dict[str, Any]], folder: Path, mistakes: list[FieldError]) -> list[Case]:
     """Return the cases of the runs; what is wrong is added to `mistakes`."""
-    axes = [_axes(run, f"run[{i}].", mistakes) for i, run in enumerate(runs)]
-    total = sum(prod(map(len, varied.values())) for varied in axes)
+    axes = list[Axes | None]()
+    for i, run in enumerate(runs):
+        wrong = list[FieldError]()
+        varied = _axes(run, wrong)
+        axes.append(None if wrong else varied)
+        mistakes += (item.within(f"run[{i}].") for item in wrong)
+    total = sum(prod(map(len, one.values())) for one in axes if one is not None)
     if total > LARGEST:
         mistakes.append(FieldError("run", total, f"must be at most {LARGEST} cases"))
         return []
     cases: list[Case] = []
-    for i, varied in enumerate(axes):
-        for chosen in product(*varied.values()):
+    for i, one in enumerate(axes):
+        for chosen in () if one is None else product(*one.values()):
             try:
-                cases.append(_case(scene, dict(zip(varied, chosen, strict=True)), folder))
+                cases.append(_case(scene, dict(zip(one or (), chosen, strict=True)), folder))
             except FieldError as error:
                 mistakes += (item.within(f"run[{i}].") for item in error.mistakes)
     return cases
 
 
-def _axes(run: dict[str, Any], within: str, mistakes: list[FieldError], place: settings.Path = ()) -> Axes:
+def _axes(run: dict[str, Any], mistakes: list[FieldError], place: settings.Path = ()) -> Axes:
     """Return what a run, or a table in it, varies: the values of every setting by its place."""
     axes: Axes = {}
     for key, given in run.items():
         at = (*place, key)
         if isinstance(given, dict) and not RANGE.keys() & given.keys():
-            axes |= _axes(given, within, mistakes, at)
+            axes |= _axes(given, mistakes, at)
             continue
         try:
             axes[at] = values(".".join(at), given)
         except FieldError as error:
-            mistakes += (item.within(within) for item in error.mistakes)
+            mistakes += error.mistakes
     return axes
 
 

@@ -143,6 +143,7 @@ BAD = {
     "run[0].elements = 0: must be a whole number from 1 to 100000": "elements = [1, 0]",
     "run[0].elements = 7.5: must be a whole number": "elements = { from = 5, to = 10, count = 3 }",
     "run[0].elements = []: must not be empty": "elements = []",
+    "run[1].model = []: must not be empty": "[[run]]\nmodel = []",
     'run[0].elements.spacing = "lin": must be one of': 'elements = { from = 5, to = 10, count = 3, spacing = "lin" }',
     "run[0].elements.count = 1: must be at least 2": "elements = { from = 5, to = 6, count = 1 }",
     "run[0].beam.height.from = 0: must be positive in a range": 'beam.height = { from = 0, to = 1, count = 3, spacing = "log" }',
