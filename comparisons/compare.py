@@ -1,8 +1,8 @@
 """One scene through every model: table, pictures and files."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +10,8 @@ import numpy as np
 import tsm
 from comparisons import models
 from comparisons.budget import Budget, error_budget
-from comparisons.cases import Case, Measurement, Row
-from comparisons.cases.rows import reached_errors
+from comparisons.cases import Case, Row
+from comparisons.cases.measure import verdict
 from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.models import Model, certified, find, solve
 from comparisons.models.options import ModelError, Options
@@ -21,16 +21,19 @@ from comparisons.output import Report, json_text
 from comparisons.quantities import event_differences, names
 from comparisons.response import Response
 from comparisons.response.file import as_dict
+from comparisons.response.table import unit_names
 from comparisons.scene import Scene, to_toml
 from comparisons.scene.keys import special_keys
-from comparisons.show.budget_plot import plot_budget, write_budget
-from comparisons.show.compare_report import write_comparison_page
+from comparisons.show.budget_plot import budget_section, plot_budget, write_budget
 from comparisons.show.export import check_series, write_series
-from comparisons.show.findings import BUDGET
+from comparisons.show.findings import BUDGET, findings
+from comparisons.show.motion import motion_section, states_section, tracks
+from comparisons.show.pages import Section, picture, table, write_page
+from comparisons.show.palette import style
 from comparisons.show.panel import mises_panel
 from comparisons.show.plot import nearest_steps, plot_shapes
-from comparisons.show.render import render_panels
-from comparisons.show.table import table_csv
+from comparisons.show.render import NoOpenGLError, write_picture
+from comparisons.show.table import caption, line, table_csv
 from comparisons.version import versions
 from tsm.elements import TIMOSHENKO, ElementType
 
@@ -38,7 +41,7 @@ Watching = Callable[[str], AbstractContextManager[Watch]]
 Staging = Callable[[str], AbstractContextManager[Count]]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Run:
     """One model with its options, whatever the scene."""
 
@@ -69,24 +72,14 @@ RUNS = tuple(
 PAPER = tuple(_beams(TIMOSHENKO, elements) for elements in (10, 20, 50))
 """The paper's element."""
 MIXED = _beams(tsm.elements.MIXED, 20)
-"""The beams that are exported and rendered."""
 SOLID, ROD, ELASTICA = (run_of(model, Options()) for model in (models.SOLID, models.ROD, models.ELASTICA))
-
-
-def _layer(run: Run) -> int:
-    """Layer of a run in a figure, from below: the solid, beams without nodes, beams, exact answers."""
-    model = models.MODELS[run.model]
-    if model.continuum or not model.meshed:
-        return 0 if model.continuum else 3
-    return 1 if model.reference is not None and run.options.element == model.reference.element else 2
-
-
-DRAWN = tuple(sorted((run for run in RUNS if run not in (MIXED, ELASTICA)), key=_layer))
+EXPORTED = (MIXED, SOLID)
+"""The beams and the solid that are exported and rendered."""
+DRAWN = tuple(
+    sorted((run for run in RUNS if run not in (MIXED, ELASTICA)), key=lambda run: -style(run.label).width)
+)
 """The runs whose deflected axes are drawn over each other: the widest line first, the exact rod on top."""
-
 BRANCH = ("force", "moment", "tip")
-WRITTEN = 5
-"""Parts of the files: shapes, stress, budget, VTU files, tables and page."""
 NAMES = ("report.html", "summary.json", "table.csv", "shapes.png", "shapes.svg", "side-by-side.png", "budget.png", "budget.svg", "budget.json")  # fmt: skip
 """The files beside those of ParaView."""
 APART = 0.5
@@ -95,14 +88,27 @@ APART = 0.5
 
 @dataclass(frozen=True, kw_only=True)
 class Comparison:
-    """Result of a comparison: one row for each run, and the files written."""
+    """Result of a comparison: rows, the budget, who is left out and why by family, and the files written."""
 
+    scene: Scene
     rows: list[Row]
-    files: list[Path]
+    budget: Budget | None
+    left_out: Mapping[str, str]
+    files: list[Path] = field(default_factory=list)
+
+    @property
+    def responses(self) -> dict[str, Response]:
+        """The answers by label."""
+        return {row.label: row.response for row in self.rows}
+
+    @property
+    def exported(self) -> list[tuple[Run, Response]]:
+        """The answers of beams and solid that are exported and rendered."""
+        return [(run, self.responses[run.label]) for run in EXPORTED if run.label in self.responses]
 
     @property
     def apart(self) -> list[Row]:
-        """The completed runs on another branch than the reference. The elastica has no stretch and no shear, so it is not judged."""
+        """The completed runs on another branch than the reference, without the elastica, another rod."""
         judged = (row for row in self.rows if row.label != ELASTICA.label and row.response.completed)
         return [row for row in judged if any(row.error("path", name) > APART for name in BRANCH)]
 
@@ -119,11 +125,9 @@ class Comparison:
 
     @property
     def wrong(self) -> list[Row]:
-        """The runs whose answers were refused by the checks or the referee, and the reference if it stopped."""
+        """The runs that were refused by the checks or the referee, and the reference if it stopped."""
         return [
-            row
-            for row in self.rows
-            if row.measured.wrong or (row.label == ROD.label and not row.response.completed)
+            row for row in self.rows if row.wrong or (row.label == ROD.label and not row.response.completed)
         ]
 
 
@@ -151,7 +155,7 @@ def compare(
     if refused is not None:
         raise ModelError(f"compare: errors are measured against the {ROD.label}; {refused}")
     folder = writable_folder(folder, *NAMES)
-    for run in (MIXED, SOLID):
+    for run in EXPORTED:
         check_series(folder / run.model, run.model, scene)
     left_out: dict[str, str] = {}
     answers: dict[Run, Response] = {}
@@ -160,8 +164,9 @@ def compare(
         head = f"[{number}/{len(runs)}] {run.label}"
         try:
             with watching(head) as watch:
-                answers[run] = certified(solve(scene, run.model, run.options, watch), scene)
-            report(f"{head}: {_outcome(answers[run])}")
+                answers[run] = one = certified(solve(scene, run.model, run.options, watch), scene)
+            end = f"{one.wall_seconds:.2f} s" if one.completed else f"{one.status}: {one.message}"
+            report(f"{head}: {end}")
         except ModelError as error:
             report(f"{head}: left out, {error}")
             left_out[run.case(scene).family] = str(error).removeprefix(f"{run.model}: ")
@@ -176,26 +181,21 @@ def compare(
         if budget is None:
             left_out[BUDGET] = lack
             report(f"budget.json: left out, {lack}")
-    with staging("drawing and writing files") as count, alone_in(folder):
-        files = _write_all(scene, rows, budget, left_out, folder, report, count)
-    return Comparison(rows=rows, files=files)
-
-
-def _outcome(response: Response) -> str:
-    stopped = f"{response.status}: {response.message}"
-    return f"{response.wall_seconds:.2f} s" if response.completed else stopped
+    found = Comparison(scene=scene, rows=rows, budget=budget, left_out=left_out)
+    with staging("drawing and writing files"), alone_in(folder):
+        found.files.extend(_write(found, folder, report))
+    return found
 
 
 def _row(scene: Scene, run: Run, response: Response, reference: Response) -> Row:
-    """Return the row of a run with its errors, over the path as far as it came, and their cause."""
-    case = run.case(scene)
-    known = None if response is reference else reached_errors(response, reference, scene, names(mesh=False))
-    cause = _cause(case, reference)
-    return Row(case=case, measured=Measurement.of(response), errors=known, name=run.label, cause=cause)
+    """Return the row of a run with its errors and their cause."""
+    case, judged = run.case(scene), verdict(response)
+    row = Row(case=case, response=response, verdict=judged, name=run.label, cause=_cause(case, reference))
+    return row if response is reference else row.against(reference, names(mesh=False))
 
 
 def _cause(case: Case, reference: Response) -> str:
-    """Return the largest part of the error that theory allows, without its formula; empty but for a straight, uniform cantilever along x."""
+    """Return the largest part of the error that theory allows; empty but for a uniform cantilever along x."""
     scene = case.scene
     (beam, *others), ends = scene.beams, [support.node for support in scene.all_supports]
     straight = not others and not any(special_keys(scene)) and beam.direction == (1.0, 0.0)
@@ -205,64 +205,64 @@ def _cause(case: Case, reference: Response) -> str:
     return max(parts, key=lambda why: parts[why]).partition(":")[0]
 
 
-def _write_all(
-    scene: Scene,
-    rows: list[Row],
-    budget: Budget | None,
-    left_out: Mapping[str, str],
-    folder: Path,
-    report: Report,
-    count: Count,
-) -> list[Path]:
-    responses = {row.label: row.response for row in rows}
+def _write(found: Comparison, folder: Path, report: Report) -> Iterator[Path]:
+    """Write and yield all files, the page first."""
+    scene, responses = found.scene, found.responses
     drawn = {run.label: responses[run.label] for run in DRAWN if run.label in responses}
-    files = [folder / "shapes.png", folder / "shapes.svg"]
-    plot_shapes(scene, drawn, *files)
-    count(1, WRITTEN)
-    files += _write_picture(scene, responses, folder, report)
-    count(2, WRITTEN)
-    if budget is not None:
-        files += [folder / name for name in NAMES[-3:]]
-        plot_budget(budget, *files[-3:-1])
-        write_budget(budget, files[-1])
-    count(3, WRITTEN)
-    series = {}
-    for run in (MIXED, SOLID):
-        if run.label in responses:
-            write_series(writable_folder(folder / run.model), responses[run.label], scene)
-            series[run.label] = folder / run.model / f"{run.model}.pvd"
-    count(4, WRITTEN)
-    write_text(folder / "table.csv", table_csv(rows))
-    files = [folder / "summary.json", folder / "table.csv", *files, *series.values()]
-    files.insert(0, write_comparison_page(scene, rows, budget, files, series, folder, left_out))
+    files = [folder / name for name in ("summary.json", "table.csv", "shapes.png", "shapes.svg")]
+    write_text(files[1], table_csv(found.rows))
+    plot_shapes(scene, drawn, *files[2:])
+    files += _write_picture(found, folder, report)
+    if found.budget is not None:
+        *drawings, numbers = budget = [folder / name for name in NAMES[-3:]]
+        plot_budget(found.budget, *drawings)
+        write_budget(found.budget, numbers)
+        files += budget
+    for run, response in found.exported:
+        write_series(writable_folder(folder / run.model), response, scene)
+        files.append(folder / run.model / f"{run.model}.pvd")
+    files.insert(0, _write_page(found, files, folder))
     summary = {
         "scene": scene.name,
         "scene_file": to_toml(scene),
         "reference": ROD.label,
         "versions": versions(),
         "files": [str(path.relative_to(folder)) for path in files],
-        "runs": [{"label": row.label, **as_dict(row.response), "errors": row.errors} for row in rows],
+        "runs": [{"label": row.label, **as_dict(row.response), "errors": row.errors} for row in found.rows],
     }
-    write_text(folder / "summary.json", json_text(summary))
-    return files
+    write_text(files[1], json_text(summary))
+    yield from files
 
 
-def _write_picture(scene: Scene, responses: dict[str, Response], folder: Path, report: Report) -> list[Path]:
-    """Write the side-by-side picture of the beams and the solid at load parameters that both reached."""
-    both = [responses[run.label] for run in (MIXED, SOLID) if run.label in responses]
-    reached = min((len(response.load_parameter) for response in both), default=0)
-    if len(both) < 2 or reached == 0:
-        report("side-by-side.png: left out, it takes beams and solid")
-        return []
-    ks = nearest_steps(both[0].load_parameter[:reached], scene.times[-1])
-    times = ", ".join(f"{both[0].load_parameter[k]:.3g}" for k in ks)
-    panels = [
-        mises_panel(both[0], scene, ks, f"{MIXED.label}\nt = {times}"),
-        mises_panel(both[1], scene, ks, f"{SOLID.label}\nt = {times}"),
+def _write_page(found: Comparison, files: list[Path], folder: Path) -> Path:
+    scene, responses = found.scene, found.responses
+    vtu = {run.label: f"{run.model}/{run.model}-{{}}.vtm" for run, _ in found.exported}
+    shown, states = tracks(responses, ROD.label, scene), states_section(responses)
+    sections = [
+        Section("Errors", table(caption(ROD.label), [line(row) for row in found.rows])),
+        motion_section("Shapes and histories", scene, responses, shown, focus=ROD.label, vtu=vtu),
+        *([] if states is None else [states]),
+        *([] if found.budget is None else [budget_section(found.budget, folder / "budget.svg")]),
     ]
-    force, length = (unit.strip() for unit in scene.units.split(","))
-    path = folder / "side-by-side.png"
-    sentence = render_panels(panels, f"von Mises stress [{force}/{length}^2]", path)
-    if sentence is not None:
-        report(f"{path.name}: {sentence}")
-    return [path]
+    stress = folder / "side-by-side.png"
+    if stress in files:
+        sections.append(Section("Stress", picture(stress, "Beams and solid, von Mises stress.")))
+    lead = " ".join(findings(scene, found.rows, ROD.label, found.budget, found.left_out))
+    return write_page(folder, f"{scene.name}: beams, solid and exact answers", lead, sections, [scene], files)
+
+
+def _write_picture(found: Comparison, folder: Path, report: Report) -> Iterator[Path]:
+    """Write and yield the picture of beams and solid side by side at load parameters that both reached."""
+    scene, path = found.scene, folder / "side-by-side.png"
+    times = min((response.load_parameter for _, response in found.exported), key=len, default=np.zeros(0))
+    if len(found.exported) < 2 or not len(times):
+        report(f"{path.name}: left out, it takes beams and solid")
+        return
+    ks = nearest_steps(times, scene.times[-1])
+    at = ", ".join(f"{times[k]:.3g}" for k in ks)
+    panels = [mises_panel(one, scene, ks, f"{run.label}\nt = {at}") for run, one in found.exported]
+    try:
+        write_picture(panels, f"von Mises stress [{unit_names(scene.units)['stress']}]", path)
+        yield path
+    except NoOpenGLError as error:
+        report(f"{path.name}: left out, {error}")

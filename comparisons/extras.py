@@ -11,7 +11,7 @@ class Extra(NamedTuple):
 
 
 EXTRAS = {
-    "pyvista": Extra("view", "pictures and windows by VTK; matplotlib draws instead"),
+    "pyvista": Extra("view", "pictures and windows of stressed bodies"),
     "distributed": Extra("cluster", "studies on a Dask cluster (--cluster)"),
     "openseespy": Extra("peers", "--model opensees"),
     "exudyn": Extra("peers", "--model exudyn"),

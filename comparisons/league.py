@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from math import ceil
+from math import ceil, isfinite
 from pathlib import Path
 from typing import Any
 
@@ -11,21 +11,24 @@ import numpy as np
 
 from comparisons.cases import Case, Row
 from comparisons.cases.progress import Runner
-from comparisons.cases.rows import reached_errors
 from comparisons.models import MODELS, ROD, Model, find
 from comparisons.models.options import Options
 from comparisons.models.outside.programs import used
 from comparisons.output import write_numbers, write_rows
 from comparisons.scene import Scene
 from comparisons.show import palette
-from comparisons.show.pages import folded, picture
-from comparisons.show.plot import WIDTH, figure, save
-from comparisons.show.work import draw_legend, logarithmic, rows_table, write_report
+from comparisons.show.pages import Section, folded, picture, table, write_page
+from comparisons.show.plot import WIDTH, draw_legend, figure, logarithmic, save
 
 MOST = 5
 """Largest number of resolutions of a program."""
 QUANTITIES = ("force", "arc", "moment", "tip", "friction")
 """The quantities whose errors are stated."""
+SHOWN = {
+    "setting": "setting", "outcome": "outcome", **{f"error_{name}": name for name in QUANTITIES}, "seconds": "seconds",
+    "process_seconds": "process",
+}  # fmt: skip
+"""The columns that the page shows, and how it calls them."""
 COLUMNS = 2
 """Panels of the diagram beside each other."""
 FLOOR = 1e-14
@@ -92,14 +95,7 @@ def measure_league(
     exact = {name: found[case].response for name, case in references.items()}
     return League(
         scenes=tuple(scenes),
-        rows=[
-            Row(
-                case=case,
-                measured=found[case],
-                errors=reached_errors(found[case].response, exact[case.scene.name], case.scene, QUANTITIES),
-            )
-            for case in cases
-        ],
+        rows=[found[case].against(exact[case.scene.name], QUANTITIES) for case in cases],
         left_out=left_out,
         stopped={name: response.message for name, response in exact.items() if not response.completed},
     )
@@ -118,20 +114,20 @@ def _cases(scene: Scene, name: str, model: Model, most: int) -> Iterator[Case]:
 
 def league_row(row: Row) -> dict[str, Any]:
     """Return a row of the table."""
-    response, measured = row.response, row.measured
+    response = row.response
     return {
         "scene": row.case.scene.name,
         "program": row.family,
         "setting": row.label,
         "outcome": row.outcome,
         **{f"error_{name}": row.error("path", name) for name in QUANTITIES},
-        "seconds": measured.seconds,
-        "process_seconds": measured.process_seconds,
+        "seconds": row.seconds,
+        "process_seconds": row.process_seconds,
         "unknowns": response.unknowns,
         "load_parameters_reached": len(response.load_parameter),
         "status": response.status,
-        "verdict": measured.verdict,
-        "said_success_and_was_wrong": measured.wrong,
+        "verdict": row.verdict,
+        "said_success_and_was_wrong": row.wrong,
         "message": response.message,
     }
 
@@ -175,23 +171,18 @@ def plot_league(league: League, *paths: Path) -> None:
 
 def _draw(axes: Any, program: str, rows: Sequence[Row]) -> None:
     # the seconds of the solution where the system does not count processes
-    whole = [(row.measured.process_seconds, row.measured.seconds) for row in rows]
-    seconds = np.array([process if np.isfinite(process) else own for process, own in whole])
-    errors = np.maximum([row.error("path", "force") for row in rows], FLOOR)
-    seen = np.isfinite(errors) & np.isfinite(seconds)
-    if not seen.any():
-        return
+    seconds = (row.process_seconds if isfinite(row.process_seconds) else row.seconds for row in rows)
+    places = [(x, max(row.error("path", "force"), FLOOR)) for x, row in zip(seconds, rows, strict=True)]
+    seen = [place for place in places if np.isfinite(place).all()]
     style = palette.style(program)
-    own = {"color": style.colour, "marker": style.marker}
-    axes.plot(seconds[seen], errors[seen], linewidth=1.2, label=program, **own)
-    for x, y, row in zip(seconds, errors, rows, strict=True):
-        mark: dict[str, Any] = {}
-        if row.measured.wrong:
-            mark = {"color": "black", "marker": "x", "markersize": 10}
+    own: dict[str, Any] = {"color": style.colour, "marker": style.marker}
+    if seen:
+        axes.plot(*zip(*seen, strict=True), linewidth=1.2, label=program, **own)
+    for place, row in zip(places, rows, strict=True):
+        if row.wrong:
+            axes.plot(*place, "x", color="black", markersize=10, zorder=4)
         elif not row.response.completed:
-            mark = {"markerfacecolor": "white", **own}
-        if mark:
-            axes.plot(x, y, linestyle="none", zorder=4, **mark)
+            axes.plot(*place, linestyle="none", markerfacecolor="white", zorder=4, **own)
 
 
 def summary(league: League) -> list[dict[str, object]]:
@@ -213,38 +204,27 @@ def summary(league: League) -> list[dict[str, object]]:
     return rows
 
 
-def _line(row: Row) -> dict[str, str]:
-    """Return a row for people."""
-    errors = {name: row.error("path", name) for name in QUANTITIES}
-    return {
-        "setting": row.label,
-        "outcome": row.outcome,
-        **{name: "-" if np.isnan(error) else f"{error:.1e}" for name, error in errors.items()},
-        "seconds": f"{row.measured.seconds:.2g}",
-        "process": f"{row.measured.process_seconds:.2g}",
-    }
-
-
 def _write_page(league: League, files: Sequence[Path], folder: Path) -> Path:
-    sections = {
-        "Programs": [rows_table("How the runs of each program ended", summary(league))],
-        "Work and precision": [picture(folder / "league.svg", DIAGRAM)],
-    }
+    sections = [
+        Section("Programs", table("How the runs of each program ended", summary(league))),
+        Section("Work and precision", picture(folder / "league.svg", DIAGRAM)),
+    ]
     for scene in league.scenes:
-        lines = [_line(row) for program in league.programs for row in league.of(scene.name, program)]
+        rows = [league_row(row) for program in league.programs for row in league.of(scene.name, program)]
+        lines = [{words: row[name] for name, words in SHOWN.items()} for row in rows]
         reasons = [
             {"program": who, "reason": why} for name, who, why in league.left_out if name == scene.name
         ]
-        parts = [folded("all runs", rows_table(CAPTION, lines))]
+        html = folded("all runs", table(CAPTION, lines))
         if scene.name in league.stopped:
             end = f"The exact rods end here: {league.stopped[scene.name]}"
-            parts.insert(0, f"<p>{end}. Errors are measured as far as they came.</p>")
+            html = f"<p>{end}. Errors are measured as far as they came.</p>\n{html}"
         if reasons:
-            parts.append(folded("who cannot state it", rows_table("Reasons", reasons)))
-        sections[scene.name] = parts
+            html += "\n" + folded("who cannot state it", table("Reasons", reasons))
+        sections.append(Section(scene.name, html))
     others = ", ".join(model.label for model in used())
     lead = (
         f"{len(league.rows)} runs of {len(league.programs)} programs on {len(league.scenes)} scenes, each against the exact rods"
         f"{f'; programs of others: {others}' if others else ''}. Seconds belong to the machine named below. There is no single score."
     )
-    return write_report(folder, "League", lead, sections, league.scenes, files)
+    return write_page(folder, "League", lead, sections, league.scenes, files)

@@ -50,7 +50,9 @@ def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool] = ()) -> list[s
 
 def cell(value: Any) -> str:
     """Return a value as text: a number in three digits, what is not there as a dash."""
-    return "-" if value is None else f"{value:.3g}" if isinstance(value, float) else str(value)
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return "-"
+    return f"{value:.3g}" if isinstance(value, float) else str(value)
 
 
 def write_numbers(path: Path, numbers: Mapping[str, Any]) -> Path:

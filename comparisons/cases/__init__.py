@@ -1,10 +1,9 @@
-"""Suites: cases, what one of them measures, where many run, the file of their results, their rows, and studies as files."""
+"""Suites: cases, the rows that they become, where they run, files of results, and studies as files."""
 
 from comparisons.cases.case import Case
-from comparisons.cases.measure import Measurement, measure
-from comparisons.cases.rows import Row
+from comparisons.cases.measure import Row, measure
 
-__all__ = ["Case", "Measurement", "Row", "measure"]
+__all__ = ["Case", "Row", "measure"]
 
 
 def __dir__() -> list[str]:

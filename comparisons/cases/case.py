@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from comparisons.models import Model, find
@@ -33,23 +33,17 @@ class Case:
     @property
     def key(self) -> str:
         """SHA-256 of scene, mesh files, model, options and the version of the sources, in hexadecimal digits."""
-        content = {
-            "version": version(),
-            "scene": to_toml(self.scene),
-            "mesh_files": [_digest(beam.solid_mesh_file) for beam in self.scene.beams],
-            "model": self.found.identity,
-            "options": asdict(self.options),
-        }
+        files = [_digest(beam.solid_mesh_file) for beam in self.scene.beams]
+        content = {**self.description, "mesh_files": files, "identity": self.found.identity}
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
     @property
     def description(self) -> dict[str, object]:
         """What the case is, for the file of its result."""
-        options = {name: value for name, value in vars(self.options).items() if value is not None}
         return {
             "scene": to_toml(self.scene),
             "model": self.found.name,
-            "options": options,
+            "options": {name: value for name, value in vars(self.options).items() if value is not None},
             "version": version(),
         }
 

@@ -1,15 +1,17 @@
 """Progress of a sweep on standard error: a progress line on a terminal, lines at milestones elsewhere."""
 
-import math
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import contextmanager
 from functools import partial
+from math import ceil, inf
 from pathlib import Path
+from time import monotonic
 from typing import Any
 
 from comparisons.cases.case import Case
-from comparisons.cases.run import Progress, Results, Tally, run
+from comparisons.cases.measure import Row
+from comparisons.cases.run import COMPLETED, Progress, Results, run
 from comparisons.cases.workers import Workers
 from comparisons.models.progress import REDRAW, bar
 
@@ -29,32 +31,28 @@ def running(folder: Path, workers: Workers, *, quiet: bool = False, **how: Any) 
 def shown(*, quiet: bool = False) -> Iterator[Progress]:
     """Give what shows progress, nothing if `quiet`; an exception ends the line, so that its message starts on a new one."""
     stream, terminal = sys.stderr, sys.stderr.isatty()
-    last = -math.inf
+    began, first, last = monotonic(), 0, -inf
 
-    def show(tally: Tally) -> None:
-        nonlocal last
-        now = tally.seconds if terminal else MILESTONES * tally.done // tally.total
-        if now == last or (terminal and tally.done < tally.total and now - last < REDRAW):
+    def show(total: int, rows: Collection[Row]) -> None:
+        nonlocal first, last
+        done = len(rows)
+        seconds, first = monotonic() - began, first if last > -inf else done
+        now = seconds if terminal else MILESTONES * done // total
+        if now == last or (terminal and done < total and now - last < REDRAW):
             return
-        last = now
-        end = "\n" if tally.done == tally.total else ""
-        drawn = f"\r{bar(tally.done / tally.total)} {line(tally)}\x1b[K{end}"
-        stream.write(drawn if terminal else line(tally) + "\n")
+        failed, last = sum(row.response.status != COMPLETED for row in rows), now
+        text = f"{done} of {total} cases done, {failed} failed"
+        if first < done < total:
+            minutes, left = divmod(ceil(seconds / (done - first) * (total - done)), 60)
+            hours, minutes = divmod(minutes, 60)
+            text += f", {f'{hours}:{minutes:02}' if hours else minutes}:{left:02} left"
+        end = "\n" if done == total else ""
+        stream.write(f"\r{bar(done / total)} {text}\x1b[K{end}" if terminal else f"{text}\n")
         stream.flush()
 
     try:
-        yield (lambda _: None) if quiet else show
+        yield (lambda *_: None) if quiet else show
     except BaseException:
         if terminal:
             stream.write("\n")
         raise
-
-
-def line(tally: Tally) -> str:
-    """Return ``12 of 40 cases done, 1 failed, 1:02:05 left``."""
-    text = f"{tally.done} of {tally.total} cases done, {tally.failed} failed"
-    if math.isnan(tally.left) or tally.done == tally.total:
-        return text
-    minutes, seconds = divmod(math.ceil(tally.left), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{text}, {f'{hours}:{minutes:02}' if hours else minutes}:{seconds:02} left"

@@ -1,72 +1,75 @@
 """The settings of a case by the names of a study file: ``elements``, ``scene.load_parameters``, ``beam.upper.height``."""
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import fields, replace
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from comparisons.cases.case import Case
 from comparisons.output import plain
 from comparisons.scene import LoadSpec, Scene, to_tables
-from comparisons.scene.read import LISTS
+from comparisons.scene.read import HEAD, LISTS
 from comparisons.scene.rules import FieldError, RecordError
+from comparisons.scene.tables import check_keys
 
 Path = tuple[str, ...]
 """Where a setting stands: ``("scene", "load_parameters")``, ``("beam", "height")`` for every beam, ``("beam", "upper", "height")``."""
 Changes = Mapping[Path, object]
-"""New values of settings."""
-
-OWN = {item.name for item in fields(Scene)} - {f"{kind}s" for kind in LISTS}
-"""The keys of the table ``[scene]``."""
+"""New values of settings; None takes a key away."""
+Table = dict[str, Any]
 
 
-def record_names(kind: str, records: Iterable[Mapping[str, Any]]) -> list[str]:
-    """Return the names by which a study addresses records of a kind.
-
-    They are the `name` of a beam, pin or stage, the number of a stage without one, from 2 on, the pair of a contact, the place of a
-    load, and the node of a support, hinge or spring.
-    """
-    name_of: dict[str, Callable[[Mapping[str, Any]], str]] = {
+def _named(kind: str, records: list[Table]) -> dict[str, Table]:
+    """Return records by their names in a study file; the number from 2 on of a stage without one."""
+    name_of = {
         "contact": lambda record: f"{record['node']}->{record['beam']}",
         "load": lambda record: LoadSpec(**record).node,
         **dict.fromkeys(("support", "hinge", "spring"), lambda record: f"{record['beam']}.{record['end']}"),
     }
     if kind in name_of:
-        return [name_of[kind](record) for record in records]
-    return [str(record.get("name") or number) for number, record in enumerate(records, 2)]
+        return {name_of[kind](record): record for record in records}
+    return {str(record.get("name") or number): record for number, record in enumerate(records, 2)}
 
 
-def stated(record: Any) -> dict[str, Any]:
-    """Return the fields of a record."""
-    return {item.name: getattr(record, item.name) for item in fields(record)}
+def _places(tables: Table, path: Path, value: object) -> Iterator[tuple[str, Table]]:
+    """Yield the tables that a setting changes with their places in a scene file; `FieldError` for none."""
+    kind, *name, key = path
+    given: Table = {name[0]: {key: value}} if name else {key: value}
+    records = _named(kind, tables.get(kind, [])) if kind in LISTS else {"": tables["scene"]}
+    mistakes = list(check_keys({kind: given}, ("scene", *LISTS)))
+    if records and (kind == "scene" or name):
+        known = records if kind in LISTS else () if name else HEAD
+        mistakes += (item.within(f"{kind}.") for item in check_keys(given, known))
+    if mistakes:
+        raise RecordError(mistakes)
+    for number, (own, record) in enumerate(records.items()):
+        if not name or own == name[0]:
+            yield kind if kind == "scene" else f"{kind}[{number}]", record
 
 
 def changed(scene: Scene, changes: Changes) -> Scene:
-    """Return `scene` with changed settings. A change for a named record takes precedence over a change for all records of its kind.
+    """Return a scene with changed settings, named records last; one `FieldError` for all mistakes.
 
-    All rules that are broken are raised as one `FieldError`; their keys are the settings'.
+    A setting of all records of a kind changes nothing where the scene has none.
     """
-    own: dict[str, Any] = {path[1]: value for path, value in changes.items() if path[0] == "scene"}
-    mistakes: list[FieldError] = []
-    for kind in {path[0] for path in changes} & LISTS.keys():
-        records = list(getattr(scene, f"{kind}s"))
-        for i, name in enumerate(record_names(kind, map(stated, records))):
-            # the named ones come last
-            paths = sorted(
-                (path for path in changes if path[0] == kind and path[1:-1] in ((), (name,))), key=len
-            )
-            places = {path[-1]: ".".join(path[:-1]) for path in paths}
-            try:
-                records[i] = replace(records[i], **{path[-1]: changes[path] for path in paths})
-            except FieldError as error:
-                mistakes += (item.within(f"{places.get(item.key, kind)}.") for item in error.mistakes)
-        own[f"{kind}s"] = tuple(records)
-    if mistakes:
-        raise RecordError(mistakes)
+    tables: Table = to_tables(scene)
+    stated, mistakes = dict[str, str](), list[FieldError]()
+    for path, value in sorted(changes.items(), key=lambda item: len(item[0])):
+        try:
+            for place, record in _places(tables, path, value):
+                record[path[-1]] = value
+                stated[f"{place}.{path[-1]}"] = ".".join(path)
+                if value is None:
+                    del record[path[-1]]
+        except FieldError as error:
+            mistakes += error.mistakes
+    lists = {f"{kind}s": tables[kind] for kind in LISTS if kind in tables}
     try:
-        return replace(scene, **own)
+        if not mistakes:
+            return Scene(**tables["scene"], **lists)
     except FieldError as error:
-        found = (item.within("scene.") if item.key in OWN else item for item in error.mistakes)
-        raise RecordError(list(found)) from None
+        for item in error.mistakes:
+            key = f"scene.{item.key}" if item.key in HEAD else item.key
+            mistakes.append(FieldError(stated.get(key, key), item.value, item.rule))
+    raise RecordError(mistakes)
 
 
 def settings(case: Case) -> dict[str, object]:
@@ -76,7 +79,7 @@ def settings(case: Case) -> dict[str, object]:
     found |= {f"scene.{key}": value for key, value in tables["scene"].items() if key != "name"}
     for kind in LISTS:
         records = tables.get(kind, [])
-        for name, record in zip(record_names(kind, records), records, strict=True):
+        for name, record in _named(kind, records).items():
             place = kind if len(records) == 1 else f"{kind}.{name}"
             found |= {f"{place}.{key}": value for key, value in record.items()}
     return found

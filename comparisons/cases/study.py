@@ -1,17 +1,22 @@
-"""Study files: a scene, and what is varied in it, as TOML."""
+"""Studies: a scene and what is varied in it, as a TOML file, and the table of what is found."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, fields
+from functools import partial
 from itertools import product
 from math import isclose, prod
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from comparisons.cases import settings
 from comparisons.cases.case import Case
+from comparisons.cases.measure import Row
 from comparisons.models import TSM, find
 from comparisons.models.options import BRANCHES, ModelError, Options
+from comparisons.output import tabulated
+from comparisons.response import Response
 from comparisons.scene import Scene, built_in_scenes, load_scene, rules
 from comparisons.scene.read import LISTS
 from comparisons.scene.rules import FieldError, RecordError, Rule, RuleError
@@ -25,16 +30,17 @@ from comparisons.scene.tables import (
     read_text,
     table_values,
 )
+from comparisons.version import version
 
 Axes = dict[settings.Path, tuple[object, ...]]
 """The values of every setting that a run varies, by its place."""
-Tree = dict[str, "Tree | None"]
-"""The keys of a table, each with those of the table that it is, or None."""
 
 LARGEST, LARGEST_COUNT = 100_000, 10_000
 """Cases of a study, and values of a range."""
-
-
+DETAILS = ("moment:", "tip_x:", "tip_y:")
+"""Columns that a table for a reader leaves out, by their beginnings."""
+HIDDEN = {"label", "load_parameter", "cutbacks", "seconds", "repeats", "peak_memory", "version", "message"}
+"""Columns that a table for a reader leaves out; without times it is the same in every run."""
 RANGE: dict[str, Rule] = {
     "from": rules.number,
     "to": rules.number,
@@ -78,93 +84,61 @@ def read_study(path: Path) -> Study:
     return Study(name=head["name"], repeats=head.get("repeats", 3), cases=tuple(dict.fromkeys(cases)))
 
 
-@contextmanager
-def _noting(mistakes: list[FieldError], place: str = "") -> Iterator[list[FieldError]]:
-    """Give a list of mistakes; add these, and what is raised, to `mistakes` as mistakes within `place`."""
-    own: list[FieldError] = []
-    try:
-        yield own
-    except FieldError as error:
-        own += error.mistakes
-    mistakes += (item.within(place) for item in own)
-
-
 def _cases(scene: Scene, runs: list[dict[str, Any]], folder: Path, mistakes: list[FieldError]) -> list[Case]:
     """Return the cases of the runs; what is wrong is added to `mistakes`."""
-    axes: list[Axes] = []
+    axes = list[Axes | None]()
     for i, run in enumerate(runs):
-        with _noting(mistakes, f"run[{i}].") as wrong:
-            varied = _axes(scene, run, wrong)
-        axes.append({} if wrong else varied)
-    total = sum(prod(map(len, varied.values())) for varied in axes)
+        wrong = list[FieldError]()
+        varied = _axes(run, wrong)
+        axes.append(None if wrong else varied)
+        mistakes += (item.within(f"run[{i}].") for item in wrong)
+    total = sum(prod(map(len, one.values())) for one in axes if one is not None)
     if total > LARGEST:
         mistakes.append(FieldError("run", total, f"must be at most {LARGEST} cases"))
         return []
     cases: list[Case] = []
-    for i, varied in enumerate(axes):
-        for chosen in product(*varied.values()) if varied else ():
-            with _noting(mistakes, f"run[{i}]."):
-                cases.append(_case(scene, dict(zip(varied, chosen, strict=True)), folder))
+    for i, one in enumerate(axes):
+        for chosen in () if one is None else product(*one.values()):
+            try:
+                cases.append(_case(scene, dict(zip(one or (), chosen, strict=True)), folder))
+            except FieldError as error:
+                mistakes += (item.within(f"run[{i}].") for item in error.mistakes)
     return cases
 
 
-def _axes(scene: Scene, run: dict[str, Any], mistakes: list[FieldError]) -> Axes:
-    """Return what a run varies: the values of every setting by its place."""
-    known: Tree = dict.fromkeys(("model", *OPTION_RULES)) | {"scene": dict.fromkeys(settings.OWN)}
-    for kind, record in LISTS.items():
-        keys: Tree = dict.fromkeys(item.name for item in fields(record))
-        records = getattr(scene, f"{kind}s")
-        named = settings.record_names(kind, map(settings.stated, records))
-        known[kind] = {**dict.fromkeys(named, keys), **keys} if records else {}
+def _axes(run: dict[str, Any], mistakes: list[FieldError], place: settings.Path = ()) -> Axes:
+    """Return what a run, or a table in it, varies: the values of every setting by its place."""
     axes: Axes = {}
-    for place, value in _places((), run, known, mistakes):
-        with _noting(mistakes):
-            axes[place] = values(".".join(place), value)
+    for key, given in run.items():
+        at = (*place, key)
+        if isinstance(given, dict) and not RANGE.keys() & given.keys():
+            axes |= _axes(given, mistakes, at)
+            continue
+        try:
+            axes[at] = values(".".join(at), given)
+        except FieldError as error:
+            mistakes += error.mistakes
     return axes
 
 
-def _places(
-    place: settings.Path, given: object, known: Tree, mistakes: list[FieldError]
-) -> Iterator[tuple[settings.Path, object]]:
-    """Yield the values of the table at a place and of the tables in it by their places; keys that are not `known` are mistakes."""
-    name = ".".join(place)
-    if not isinstance(given, dict):
-        mistakes.append(FieldError(name, given, f"must be followed by a key, {name}.KEY"))
-    elif not known:
-        mistakes.append(FieldError(name, given, f"the scene has no {name}"))
-    else:
-        required = () if place else ("model",)
-        mistakes += (item.within(f"{name}.".lstrip(".")) for item in check_keys(given, known, required))
-        for key in (key for key in given if key in known):
-            if (below := known[key]) is None:
-                yield (*place, key), given[key]
-            else:
-                yield from _places((*place, key), given[key], below, mistakes)
-
-
-def _model(value: object, folder: Path) -> str:
-    """Accept a model's name, or a program file ``NAME.toml`` in `folder`, as its path."""
-    name = rules.text(value)
+def _known(value: object, find_it: Callable[[str], str]) -> str:
+    """Return the name of what is found by its name."""
     try:
-        if name.endswith(".toml"):
-            name = str((folder / name).resolve())
-        find(name)
+        return find_it(rules.text(value))
     except ModelError as error:
         raise RuleError(str(error).partition(": ")[2]) from None
+
+
+def _model(name: str, folder: Path) -> str:
+    """Return a model's name, of a program file ``NAME.toml`` in `folder` its path."""
+    name = str((folder / name).resolve()) if name.endswith(".toml") else name
+    find(name)
     return name
-
-
-def _element(value: object) -> str:
-    name = rules.text(value)
-    try:
-        return TSM.element(Options(element=name)).name
-    except ModelError as error:
-        raise RuleError(str(error).partition(": ")[2]) from None
 
 
 OPTION_RULES: dict[str, Rule] = {
     "elements": rules.whole_number,
-    "element": _element,
+    "element": partial(_known, find_it=lambda name: TSM.element(Options(element=name)).name),
     "integration_tolerance": rules.fraction,
     "mesh": rules.mesh_text,
     "branch": rules.choice(*BRANCHES),
@@ -180,16 +154,26 @@ HEAD_RULES: dict[str, Rule] = {"name": rules.name, "scene": rules.text, "repeats
 def _case(scene: Scene, chosen: dict[settings.Path, object], folder: Path) -> Case:
     """Return the case of the chosen settings; raise all mistakes in them."""
     given = {place[0]: value for place, value in chosen.items() if len(place) == 1}
-    own, wrong = table_values(given, {"model": lambda value: _model(value, folder), **OPTION_RULES}, ())
-    mistakes: list[FieldError] = []
+    rules_of: dict[str, Rule] = {
+        "model": partial(_known, find_it=partial(_model, folder=folder)),
+        **OPTION_RULES,
+    }
+    own, mistakes = table_values(given, rules_of, ("model",))
     if "model" in own:
         model = find(own["model"])
         none = f'is no option of model = "{model.name}"'
-        mistakes += (FieldError(key, given[key], none) for key in given.keys() - {"model", *model.options})
-    with _noting(mistakes):
-        scene = settings.changed(scene, {place: chosen[place] for place in chosen if len(place) > 1})
-    if mistakes or wrong:
-        raise RecordError([*mistakes, *wrong])
+        mistakes += (FieldError(key, given[key], none) for key in own.keys() - {"model", *model.options})
+    changes = {place: value for place, value in chosen.items() if len(place) > 1}
+    for place, value in changes.items():
+        if place[0] in LISTS and not getattr(scene, f"{place[0]}s"):
+            none = f"the scene has no {place[0]}"
+            mistakes.append(FieldError(place[0], {place[-1]: value}, none))
+    try:
+        scene = settings.changed(scene, changes)
+    except FieldError as error:
+        mistakes += error.mistakes
+    if mistakes:
+        raise RecordError(mistakes)
     return Case(scene=scene, model=own.pop("model"), options=Options(**own))
 
 
@@ -225,9 +209,75 @@ def _range(given: dict[str, Any]) -> tuple[float, ...]:
         if logarithmic and given[name] <= 0:
             raise FieldError(name, given[name], 'must be positive in a range of spacing = "log"')
 
-    def between(part: float) -> float:
-        value: float = first * (last / first) ** part if logarithmic else first + (last - first) * part
-        whole = isinstance(first, int) and isinstance(last, int)
-        return round(value) if whole and isclose(value, round(value), rel_tol=1e-12) else value
+    found = (np.geomspace if logarithmic else np.linspace)(first, last, count).tolist()
+    whole = isinstance(first, int) and isinstance(last, int)
+    return tuple(
+        round(value) if whole and isclose(value, round(value), rel_tol=1e-12) else value for value in found
+    )
 
-    return (first, *(between(k / (count - 1)) for k in range(1, count - 1)), last)
+
+def result_rows(rows: Collection[Row]) -> list[dict[str, Any]]:
+    """Return a line for each row: settings that differ, status, last state reached, and cost."""
+    stated = [settings.settings(row.case) for row in rows]
+    answers = [_answers(row.response) for row in rows]
+    varied = _varied(stated)
+    columns = list(dict.fromkeys(name for answer in answers for name in answer))
+    return [
+        {
+            "scene": row.case.scene.name,
+            "model": row.case.found.name,
+            "label": row.label,
+            **{name: _text(own.get(name)) for name in varied},
+            "status": row.response.status,
+            "verdict": row.verdict,
+            **{name: answer.get(name) for name in columns},
+            **row.cost(),
+            "version": version(),
+            "message": row.response.message,
+        }
+        for row, own, answer in zip(rows, stated, answers, strict=True)
+    ]
+
+
+def result_table(rows: list[dict[str, Any]]) -> str:
+    """Return `result_rows` as a table for a reader, with the reasons of the stopped cases below it."""
+    hidden = HIDDEN | ({"scene"} if len({row["scene"] for row in rows}) == 1 else set())
+    names = [name for name in rows[0] if name not in hidden and not name.startswith(DETAILS)]
+    shown = tabulated([{name: row[name] for name in names} for row in rows])
+    stopped = [
+        f"{row['scene']}, {row['label']}: {row['status']}: {row['message']}"
+        for row in rows
+        if row["status"] != "COMPLETED"
+    ]
+    return "\n".join([shown, f"\nversion {version()}", *([""] if stopped else []), *stopped])
+
+
+def _varied(tables: Collection[Mapping[str, object]]) -> list[str]:
+    """Return the settings that differ between cases, a model's options first."""
+    known = {name for table in tables for name in table}
+    differ = (name for name in known if len({repr(table.get(name)) for table in tables}) > 1)
+    return sorted(differ, key=lambda name: ("." in name, name))
+
+
+def _answers(response: Response) -> dict[str, float]:
+    """Return the last state reached."""
+    if not len(response.load_parameter):
+        return {}
+    contacts, tips = response.contacts.items(), response.tips.items()
+    last = {
+        "load_parameter": response.load_parameter[-1],
+        **{f"force:{pair}": one.force[-1] for pair, one in contacts},
+        **{f"arc_position:{pair}": one.arc_position[-1] for pair, one in contacts},
+        **{f"moment:{node}": one.moment[-1] for node, one in response.supports.items()},
+        **{f"tip_x:{beam}": tip[-1, 0] for beam, tip in tips},
+        **{f"tip_y:{beam}": tip[-1, 1] for beam, tip in tips},
+    }
+    return {name: float(value) for name, value in last.items() if np.isfinite(value)}
+
+
+def _text(value: object) -> object:
+    """Return a setting for one cell: ``50x2`` for a mesh, the other lists as text."""
+    if not isinstance(value, list):
+        return value
+    whole = all(isinstance(item, int) for item in value)
+    return ("x" if whole else " ").join(str(item) for item in value)

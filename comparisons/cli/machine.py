@@ -7,7 +7,7 @@ from importlib import metadata
 
 from comparisons.extras import EXTRAS
 
-NEEDED = ("numpy", "scipy", "scikit-fem", "meshio", "matplotlib")
+NEEDED = ("numpy", "scipy", "scikit-fem", "meshio", "matplotlib", "jinja2")
 
 
 def examined() -> Iterator[tuple[str, str, str]]:
@@ -29,7 +29,7 @@ def examined() -> Iterator[tuple[str, str, str]]:
     if renders():
         yield "ok", "OpenGL", "off-screen rendering works"
     else:
-        yield "-", "OpenGL", "missing: pictures by matplotlib instead of pyvista"
+        yield "-", "OpenGL", "missing: no picture of stressed bodies, by compare and view"
 
 
 def _version(name: str) -> str | None:

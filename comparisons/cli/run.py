@@ -143,16 +143,15 @@ def _question(given: "argparse.Namespace") -> int:
 
 def _study(given: "argparse.Namespace") -> int:
     from comparisons.cases.progress import running
-    from comparisons.cases.rows import result_rows, result_table
     from comparisons.cases.run import UNSETTLED
-    from comparisons.cases.study import read_study
+    from comparisons.cases.study import read_study, result_rows, result_table
     from comparisons.output import write_rows
 
     study = read_study(Path(given.suite))
     table = f"{study.name}.csv"
     folder = writable_folder(given.out or Path("out/study"), table)
     with running(folder / study.name, workers(given), quiet=given.quiet, repeats=study.repeats) as run_cases:
-        rows = result_rows(run_cases(study.cases))
+        rows = result_rows(run_cases(study.cases).values())
     ends = Counter(row["status"] for row in rows)
     print(result_table(rows))
     print(f"\n{study.name}: {len(rows)} cases: {', '.join(f'{name} {ends[name]}' for name in sorted(ends))}")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from comparisons.cli.options import Command
 from comparisons.cli.outcome import DONE, EPILOG, exit_status, report
 from comparisons.cli.progress import staging, watching
-from comparisons.files import OutputError, writable_folder
+from comparisons.files import writable_folder
 from comparisons.models import SOLID, TSM, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.scene import load_scene
@@ -63,19 +63,15 @@ def _solve(scene: "Scene") -> "list[tuple[str, Response]]":
 
 
 def _present(series: "list[Series]", factor: float, out: Path | None) -> int:
-    from comparisons.show.film import film, write
-    from comparisons.show.render import show_frames
+    from comparisons.show.render import film, show, write_film
 
     shown = film(series, factor)
     if out is None:
         report("opening a window")
-        if not show_frames(shown.frames, shown.scale):
-            raise OutputError("no window could be opened; --out DIR writes pictures instead")
+        show(shown)
         return DONE
     with staging(f"drawing {len(shown.frames)} pictures") as count:
-        files, sentence = write(shown, out, count)
-    if sentence is not None:
-        report(sentence)
+        files = write_film(shown, out, count)
     print("files:", *(f"  {path}" for path in files), sep="\n")
     return DONE
 

@@ -1,19 +1,19 @@
 """The picture of one answer: deformed shape, section forces along the beams, and forces over the load parameter."""
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from comparisons.quantities import forces, size
-from comparisons.response import Array, Response
+from comparisons.response import Response
 from comparisons.response.round_off import round_off
 from comparisons.response.table import unit_names
 from comparisons.scene import Scene
 from comparisons.show import palette
 from comparisons.show.plot import WIDTH, figure, save
-from comparisons.show.sketch import Sketch, axis
+from comparisons.show.sketch import ARROW, Sketch, axis
+from comparisons.show.symbols import LEFT
 from comparisons.version import release
 
 if TYPE_CHECKING:
@@ -24,14 +24,7 @@ COLOURS = (palette.BLUE, palette.ORANGE, palette.GREEN, palette.PURPLE, palette.
 """Colours of the beams, and of the forces, in turn."""
 HEIGHT, DIAGRAM, HISTORY = 3.6, 1.25, 1.9
 """Heights of the shape, of each diagram and of the forces over the load parameter [inch]."""
-ARROW = 0.16
-"""Size of the largest force over the size of the scene."""
 DIAGRAMS = (("N", "axial", "force"), ("V", "shear", "force"), ("M", "moment", "moment"))
-ACTING = {palette.PIN: "contact force on the beam", palette.BLACK: "load"}
-
-
-class PictureError(ValueError):
-    """An answer that cannot be drawn: one line."""
 
 
 def plot_answer(response: Response, path: Path) -> None:
@@ -40,28 +33,19 @@ def plot_answer(response: Response, path: Path) -> None:
 
 
 def picture(response: Response, scene: Scene | None = None) -> "Figure":
-    """Return the picture of an answer.
-
-    It shows the deformed shape with supports, pins, loads and contact forces, the section forces along each beam, and the contact forces,
-    without contact the reactions, over the load parameter. Shape and section forces are those of the last load parameter at which a
-    force acts.
-
-    ``response``: the answer. A model that states no section forces has no diagrams. ``scene``: the scene that
-    was solved; needed for an answer that was read from a file. Raises PictureError if the scene is not known,
-    or no load parameter was reached.
-    """
+    """Return the picture that `Response.plot` states; at the last load parameter at which a force acts."""
     scene = scene or response.definition
     if scene is None:
-        raise PictureError("scene: must be given, the answer was read from a file")
+        raise ValueError("scene: must be given, the answer was read from a file")
     if not len(response.load_parameter):
-        raise PictureError(f"{response.scene}: {response.status}, no load parameter was reached")
+        raise ValueError(f"{response.scene}: {response.status}, no load parameter was reached")
     diagrams = DIAGRAMS if response.sections is not None else ()
     heights = (HEIGHT, *(DIAGRAM for _ in diagrams), HISTORY)
     fig: Figure = figure(figsize=(WIDTH, sum(heights)))
     shape, *panels, history = fig.subplots(len(heights), 1, height_ratios=heights)
     k = _loaded(response, scene)
     for axes, (name, words, kind) in zip(panels, diagrams, strict=True):
-        _diagram(axes, response, scene, (name, kind), k)
+        _diagram(axes, response, scene, name, kind, k)
         axes.set_ylabel(f"{words} {name}\n[{unit_names(scene.units)[kind]}]", fontsize="small")
     for axes in panels[:-1]:
         axes.sharex(panels[-1])
@@ -86,73 +70,50 @@ def _loaded(response: Response, scene: Scene) -> int:
 
 
 def _shape(axes: "Axes", response: Response, scene: Scene, k: int) -> None:
-    t = float(response.load_parameter[k])
-    lines = {beam.name: response.axis_line(beam.name, k) for beam in scene.beams}
-    undeformed = {beam.name: axis(beam)[1] for beam in scene.beams}
-    points = np.concatenate([*(line for _, line in lines.values()), *undeformed.values()])
-    extent = float(np.ptp(points, axis=0).max())
-    sketch = Sketch(axes=axes, scene=scene, size=extent, lines=lines, letters="x-small")
+    t, lines = float(response.load_parameter[k]), {}
+    for beam in scene.beams:
+        arcs, line = response.axis_line(beam.name, k)
+        tangent = np.gradient(line, axis=0)
+        lines[beam.name] = arcs, line, tangent @ LEFT / np.maximum(np.hypot(*tangent.T), 1e-300)[:, None]
     title = " ".join(filter(None, (response.model, response.setting)))
-    sketch.frame(f"{scene.name}, {title}: {response.status}, load parameter {t:.6g}", "medium")
+    title = f"{scene.name}, {title}: {response.status}, load parameter {t:.6g}"
+    sketch = Sketch(axes, scene, lines, title, "x-small")
     for number, beam in enumerate(scene.beams):
-        (dashed,) = axes.plot(*undeformed[beam.name].T, color="0.6", linewidth=0.9, linestyle="--")
-        tangent = np.gradient(lines[beam.name][1], axis=0)
-        normal = tangent @ [[0.0, 1.0], [-1.0, 0.0]] / np.maximum(np.hypot(*tangent.T), 1e-300)[:, None]
-        _, drawn = sketch.body(beam, normal, COLOURS[number % len(COLOURS)], 1.6)
+        (dashed,) = axes.plot(*axis(beam)[1].T, color="0.6", linewidth=0.9, linestyle="--")
+        _, drawn = sketch.body(beam, COLOURS[number % len(COLOURS)], 1.6)
         sketch.legend |= {"undeformed": dashed, beam.name: drawn}
     for pin in scene.pins:
         at = np.array(pin.position(t))
         sketch.disc(at, pin.radius, facecolor=palette.PIN, alpha=0.5)
         (sketch.legend[pin.name],) = axes.plot(*at, ".", color=palette.PIN, markersize=6, zorder=5)
-    found = list(_acting(sketch, response, k))
-    largest = max((float(np.hypot(*force)) for _, force, _, _ in found), default=0.0)
-    for tips, force, colour, words in found:
-        if np.hypot(*force) > 1e-6 * largest:
-            sketch.arrows(tips, ARROW * sketch.size / largest * force, words, colour, 1.3)
-            sketch.named(ACTING[colour], colour, marker=">", markersize=4, linewidth=1.3)
+    vectors = {one: response.contacts[one.pair].vector for one in scene.contacts}
+    acting = {one: vector[k] for one, vector in vectors.items() if vector is not None and vector[k].any()}
+    largest = max((float(np.hypot(*force)) for force in acting.values()), default=0.0)
+    for one, force in acting.items():
+        tip = sketch.at(one.beam, [response.contacts[one.pair].arc_position[k] / scene.beam(one.beam).length])
+        # four significant digits, without an exponent below a million
+        words = f"{float(f'{np.hypot(*force):.4g}'):.6g} {sketch.units['force']}"
+        sketch.arrows(tip, ARROW * sketch.size / largest * force, words, palette.PIN, 1.3)
+        sketch.named("contact force on the beam", palette.PIN, marker=">", markersize=4, linewidth=1.3)
+    loads = [(history.load, history.at(t)) for history in scene.load_histories]
+    sketch.loads(loads, scene.gravity_at(t))
     sketch.symbols()
     entries = {words.partition(" of ")[0]: entry for words, entry in sketch.legend.items()}
-    place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.17), "ncols": 5}
+    place: dict[str, Any] = {
+        "loc": "upper center",
+        "bbox_to_anchor": (0.5, -0.17),
+        "ncols": 5 if len(entries) <= 5 else 4,
+    }
     axes.legend(entries.values(), entries, fontsize="x-small", frameon=False, labelspacing=1.2, **place)
     sketch.separate(1)
 
 
-def _acting(sketch: Sketch, response: Response, k: int) -> Iterator[tuple[Array, Array, str, str]]:
-    """Yield points (n, 2), the force at each, the colour and the value of every contact force, load and weight."""
-    scene, t = sketch.scene, float(response.load_parameter[k])
-    units = unit_names(scene.units)
-
-    def value(force: Array) -> str:
-        # four significant digits, without an exponent below a million
-        return f"{float(f'{np.hypot(*force):.4g}'):.6g} {units['force']}"
-
-    for spec in scene.contacts:
-        contact = response.contacts[spec.pair]
-        if contact.vector is not None and contact.force[k] > 0.0:
-            at = sketch.at(spec.beam, [float(contact.arc_position[k]) / scene.beam(spec.beam).length])
-            yield at, contact.vector[k], palette.PIN, value(contact.vector[k])
-    for history in scene.load_histories:
-        load, force = history.load, np.array(history.at(t)[:2])
-        tips, words, share = sketch.loaded(load), value(force), 1.0
-        if load.force_per_length is not None:  # its resultant in equal parts
-            words = f"{words}/{units['length']}"
-            share = (load.span[1] - load.span[0]) * scene.beam(load.beam).length / len(tips)
-        if force.any():
-            yield tips, share * force, palette.BLACK, words
-    for beam in scene.beams:
-        weight = beam.mass * np.array(scene.gravity_at(t))
-        if weight.any():
-            yield sketch.at(beam.name, [0.5]), weight, palette.BLACK, f"weight {value(weight)}"
-
-
-def _diagram(axes: "Axes", response: Response, scene: Scene, quantity: tuple[str, str], k: int) -> None:
+def _diagram(axes: "Axes", response: Response, scene: Scene, name: str, kind: str, k: int) -> None:
     assert response.sections is not None, "diagrams are those of a model that states section forces"
-    name, kind = quantity
     least = getattr(round_off(response, scene), kind)
     for number, beam in enumerate(scene.beams):
-        at = response.sections(beam.name, k)
-        colour, values = COLOURS[number % len(COLOURS)], getattr(at, name)
-        values = np.where(np.abs(values) > least, values, 0.0)
+        at, colour = response.sections(beam.name, k), COLOURS[number % len(COLOURS)]
+        values = np.where(np.abs(getattr(at, name)) > least, getattr(at, name), 0.0)
         axes.fill_between(at.arc, values, color=colour, alpha=0.25, linewidth=0.0)
         axes.plot(at.arc, values, color=colour, linewidth=1.2, label=beam.name)
     axes.axhline(0.0, color="0.3", linewidth=0.6)

@@ -34,12 +34,7 @@ def findings(
     budget: Budget | None,
     left_out: Mapping[str, str],
 ) -> list[str]:
-    """Return what a comparison found, in sentences.
-
-    The sentences state in this order: what was compared; the largest error of each model against the run
-    labelled `reference`, over all runs of a type of elements, with its cause; runs that stopped; what was
-    left out, by the family of a run or `BUDGET`; who states no stability; what the referee certified.
-    """
+    """Return what a comparison found; `left_out` has reasons by the family of a run, or by `BUDGET`."""
     others = [row for row in rows if row.label != reference]
     found = [_compared(scene, rows, others, reference)]
     for family, own in groupby(others, key=lambda row: row.family):

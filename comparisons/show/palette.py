@@ -25,17 +25,8 @@ def _styles() -> dict[str, Style]:
 
 
 def style(label: str) -> Style:
-    """Return how a run is drawn, by its label.
+    """Return the style of the longest words of a model with which the label of a run begins.
 
-    A model states a style for the first words of a label. Where the words of several styles fit, the longest ones count.
-
-    Raises
-    ------
-    ValueError
-        If the label begins with no model's words.
-
-    Examples
-    --------
     >>> style("TSM mixed, 20 elements").colour == GREEN
     True
     """

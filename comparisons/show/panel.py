@@ -4,8 +4,7 @@ Beams are ribbons of their height, so that beams and solids are shown on one foo
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +13,7 @@ from comparisons.response import CONTACT_STATES, OPEN, SLIPS, Array, Grid, Respo
 from comparisons.scene import Scene
 from comparisons.show.export import CONTACTS, HINGES, POINTS, SUPPORTS, blocks
 from comparisons.show.palette import PIN
-from comparisons.show.symbols import SYMBOL, Segments, fixings, hinge_symbol, placed
+from comparisons.show.symbols import HINGE, LEFT, SYMBOL, Segments, fixings
 
 Body = tuple[Array, Array]
 """Quadrilaterals (m, 4, 2) of a deformed body, and the stress (m, 4) at their corners."""
@@ -72,10 +71,7 @@ class Panel:
         ]
 
     def shapes(self, scale: "Scale") -> Iterator[tuple[str, float, Array]]:
-        """Yield what stands for the pins, from below: colour, opacity and polygons (n, corners, 2) of discs, marks and arrows.
-
-        An arrow ends where a round pin touches.
-        """
+        """Yield colour, opacity and polygons (n, corners, 2) of discs, marks and arrows, from below."""
         lengths = scale.force * np.hypot(*self.forces.T)
         for state in self.shown():
             own, colour = self.states == state, COLOURS[state]
@@ -83,7 +79,7 @@ class Panel:
             yield colour, 0.35, self.pins[discs, None] + self.radii[discs, None, None] * CIRCLE
             yield colour, 1.0, self.pins[own, None] + POINT * scale.half * CIRCLE
             along = self.forces[drawn] / np.hypot(*self.forces[drawn].T)[:, None]
-            axes = lengths[drawn, None, None] * np.stack([along, along @ [[0.0, 1.0], [-1.0, 0.0]]], axis=1)
+            axes = lengths[drawn, None, None] * np.stack([along, along @ LEFT], axis=1)
             tips = self.pins[drawn] + self.radii[drawn, None] * along
             yield colour, 1.0, np.concatenate([tips[:, None] + part @ axes for part in (SHAFT, HEAD)])
 
@@ -104,43 +100,38 @@ def mises_panel(response: Response, scene: Scene, ks: Sequence[int], title: str)
                 direct, bent = data["N"] / area, data["M"] * data["height"] / (2.0 * inertia)
                 data["axial_stress_right"], data["axial_stress_left"] = direct + bent, direct - bent
                 data["shear_stress"] = 1.5 * data["V"] / area
-    panels = [panel(state, title, stress="von_mises") for state in states]
-    whole: dict[str, Any] = {
-        item.name: np.concatenate([getattr(one, item.name) for one in panels])
-        for item in fields(Panel)
-        if item.name != "title"
-    }
-    return Panel(title=title, **{**whole, "forces": 0.0 * whole["forces"]})
+    found = panel(states, title, stress="von_mises")
+    return replace(found, forces=0.0 * found.forces)
 
 
 def panel(
-    grids: Mapping[str, Grid], title: str, factor: float = 1.0, *, stress: str = "axial_stress"
+    states: Sequence[Mapping[str, Grid]], title: str, factor: float = 1.0, *, stress: str = "axial_stress"
 ) -> Panel:
-    """Return the deformed bodies, solids or the ribbons of beams, with contacts, their forces and supports.
-
-    The blocks are those of `comparisons.show.export.blocks`, and the title states the enlargement `factor` of
-    the displacements. A closed contact stays on its beam: it moves as the touched point does. A beam has a
-    von Mises stress where its points have a ``shear_stress``.
-    """
-    structure = [grid for name, grid in grids.items() if name not in POINTS]
+    """Return states, each as its `blocks`, over each other, with displacements enlarged by `factor`."""
+    structure = [grid for grids in states for name, grid in grids.items() if name not in POINTS]
     size = float(np.ptp(np.concatenate([grid.points for grid in structure]), axis=0).max())
     bodies = [
         _solid(grid, stress, factor) if QUARTERS.keys() & grid.cells.keys() else _ribbon(grid, size, factor)
         for grid in structure
     ]
-    none = np.zeros((0, 2))
-    data = grids[CONTACTS].point_data if CONTACTS in grids else {}
-    forces = data.get("contact_force", none)
-    slips = data.get("slip", np.full(len(forces), np.nan))
-    symbols = [placed(symbol, place, SYMBOL * size) for place, symbol in _symbols(grids, factor)]
+    contacts = [grids[CONTACTS].point_data for grids in states if CONTACTS in grids]
+
+    def every(name: str, otherwise: float = 0.0, *more: int) -> Array:
+        parts = [data.get(name, np.full(len(data["radius"]), otherwise)) for data in contacts]
+        return np.concatenate([np.zeros((0, *more)), *parts])
+
+    forces, moved = every("contact_force", 0.0, 2), every("beam_displacement", 0.0, 2)
+    symbols = [
+        place + SYMBOL * size * symbol for grids in states for place, symbol in _symbols(grids, factor)
+    ]
     return Panel(
         title=title if factor == 1.0 else f"{title}, deformation x {factor:g}",
         quads=np.concatenate([quads for quads, _ in bodies]),
         stress=np.concatenate([values for _, values in bodies]),
-        pins=data.get("deformed", none) + (factor - 1.0) * data.get("beam_displacement", none),
-        radii=data.get("radius", np.zeros(0)),
+        pins=every("deformed", 0.0, 2) + (factor - 1.0) * moved,
+        radii=every("radius"),
         forces=forces,
-        states=np.array([_state(*one) for one in zip(forces, slips, strict=True)], dtype=str),
+        states=np.array([_state(*one) for one in zip(forces, every("slip", np.nan), strict=True)], dtype=str),
         supports=np.concatenate([np.zeros((0, 2, 2)), *symbols]),
     )
 
@@ -157,57 +148,45 @@ def _enlarged(grid: Grid, factor: float) -> Array:
 
 
 def _ribbon(grid: Grid, size: float, factor: float) -> Body:
-    """Ribbons of a beam's height about the cubics that have the ends and end tangents of the lines; straight lines without rotations."""
-    data, ends = grid.point_data, grid.cells["line"]
-    before, after, ending = (
-        (points @ [1.0, 1.0j])[ends] for points in (grid.points, data["deformed"], _enlarged(grid, factor))
-    )
-    straight, tangent = (np.repeat(np.diff(points), 2, axis=1) for points in (before, after))
+    """Return the ribbon of a beam's height about the cubics through its points, with their rotations if it has some."""
+    from scipy.interpolate import CubicHermiteSpline, CubicSpline
+
+    steps = np.hypot(*np.diff(grid.points, axis=0).T)
+    arc, own = np.unique(np.append(0.0, np.cumsum(steps)), return_index=True)  # a jump has two points
+    data = {name: values[own] for name, values in grid.point_data.items()}
+    start = CubicSpline(arc, grid.points[own])(arc, 1)
     if "rotation" in data:
-        angles = _end_angles(np.angle(straight[:, 0]))
-        straight = np.abs(straight) * np.exp(1.0j * angles)
-        tangent = np.abs(tangent) * np.exp(1.0j * (angles + data["rotation"][ends]))
-    tangent = tangent + (factor - 1.0) * (tangent - straight)
-    u = np.linspace(0.0, 1.0, PARTS + 1)
-    blends = np.stack([1 - 3 * u**2 + 2 * u**3, 3 * u**2 - 2 * u**3, u - 2 * u**2 + u**3, u**3 - u**2])
-    line = np.concatenate([ending, tangent], axis=1) @ blends
+        cosine, sine = np.cos(data["rotation"])[:, None], np.sin(data["rotation"])[:, None]
+        tangent = cosine * start + sine * start @ LEFT
+    else:
+        tangent = CubicSpline(arc, data["deformed"])(arc, 1)
+    curve = CubicHermiteSpline(arc, _enlarged(grid, factor)[own], start + factor * (tangent - start))
+    count = len(arc) - 1
+    at = np.interp(np.linspace(0.0, count, PARTS * count + 1), np.arange(count + 1), arc)
+    along = curve(at, 1)
+    normal = along @ LEFT / np.hypot(*along.T)[:, None]
 
-    def along(name: str) -> Array:
-        values = data.get(name, np.zeros(len(grid.points)))[ends]
-        return np.asarray((values @ np.stack([1 - u, u]))[..., None])
+    def read(name: str) -> Array:
+        return np.asarray(np.interp(at, arc, data.get(name, 0.0 * arc)))[:, None]
 
-    turn = np.angle(tangent[:, 1:] * tangent[:, :1].conj())
-    normal = 1.0j * np.exp(1.0j * (np.angle(tangent[:, :1]) + turn * u))
-    half = along("height") / 2.0
-    half[half == 0.0] = THIN / 2.0 * size
+    half = np.where(read("height") > 0.0, read("height"), THIN * size) / 2.0
     across = np.linspace(-1.0, 1.0, LAYERS["shear_stress" in data] + 1)
-    points = line[..., None] + half * across * normal[..., None]
-    stress = along("axial_stress_right") * (1 - across) / 2 + along("axial_stress_left") * (1 + across) / 2
+    stress = read("axial_stress_right") * (1 - across) / 2 + read("axial_stress_left") * (1 + across) / 2
     if "shear_stress" in data:
-        stress = np.sqrt(stress**2 + 3.0 * (along("shear_stress") * (1.0 - across**2)) ** 2)
+        stress = np.sqrt(stress**2 + 3.0 * (read("shear_stress") * (1.0 - across**2)) ** 2)
+    points = curve(at)[:, None] + (half * across)[..., None] * normal[:, None]
 
     def corners(values: Array) -> Array:
-        found = (values[:, :-1, :-1], values[:, 1:, :-1], values[:, 1:, 1:], values[:, :-1, 1:])
-        return np.stack(found, axis=-1).reshape(-1, 4)
+        found = (values[:-1, :-1], values[1:, :-1], values[1:, 1:], values[:-1, 1:])
+        return np.stack(found, axis=2).reshape(-1, 4, *values.shape[2:])
 
-    quads = corners(points)
-    return np.stack([quads.real, quads.imag], axis=-1), corners(stress)
-
-
-def _end_angles(chords: Array) -> Array:
-    """Return the angles of an undeformed axis at both ends of every line, shape (e, 2), from those of the lines of an arc."""
-    chords = np.unwrap(chords)
-    between = (chords[1:] + chords[:-1]) / 2.0
-    if not len(between):
-        return np.repeat(chords[:, None], 2, axis=1)
-    first, last = 2.0 * chords[0] - between[0], 2.0 * chords[-1] - between[-1]
-    return np.stack([np.append(first, between), np.append(between, last)], axis=1)
+    return corners(points), corners(stress)
 
 
 def _symbols(grids: Mapping[str, Grid], factor: float) -> Iterator[tuple[Array, Segments]]:
     """Yield the symbols of supports, springs and hinges with their places."""
     for place in _enlarged(grids[HINGES], factor) if HINGES in grids else ():
-        yield place, hinge_symbol()
+        yield place, HINGE
     if SUPPORTS not in grids:
         return
     data = grids[SUPPORTS].point_data

@@ -1,6 +1,6 @@
 """Pictures by matplotlib: what all of them share, and the overlay of deflected shapes."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,7 @@ from comparisons.scene import Scene
 from comparisons.show import palette
 from comparisons.show.symbols import SYMBOL, draw_symbols
 
-SOLID = {"linewidth": 6.0, "alpha": 0.55, "solid_capstyle": "butt"}
+SOLID = {"linewidth": 6.0, "alpha": 0.55, "solid_capstyle": "butt", "zorder": 1.8}
 EXACT = {"linewidth": 1.0}
 BEAMS: tuple[dict[str, Any], ...] = (
     {"marker": "o", "markersize": 7.0, "markerfacecolor": "none"},
@@ -22,8 +22,8 @@ BEAMS: tuple[dict[str, Any], ...] = (
     {"marker": ".", "markersize": 4.0},
     {"marker": "^", "markersize": 4.0},
 )
-CONTINUOUS = {"linewidth": 3.5}
-"""Exact elements, which have no nodes to mark."""
+CONTINUOUS = {"linewidth": 3.5, "zorder": 1.9}
+"""Exact elements, which have no nodes to mark, below the others."""
 FINE = 5
 """Points of an axis for each line of its grid, below which the lines are no elements but pieces of an exact one."""
 SHOWN = (0.2, 0.4, 0.6, 0.8, 1.0)
@@ -62,17 +62,29 @@ def arrow(axes: Any, tail: Array, tip: Array, colour: str, width: float = 1.2) -
     axes.update_datalim([tail, tip])
 
 
+def logarithmic(axes: Any) -> None:
+    """Make both axes of a panel logarithmic, with a grid."""
+    axes.set(xscale="log", yscale="log")
+    axes.grid(visible=True, linewidth=0.3)
+
+
+def draw_legend(fig: Any, panels: Sequence[Any], place: str) -> None:
+    """Draw one legend for all panels: one entry for each label, with a filled marker where it has one."""
+    entries: dict[str, Any] = {}
+    for axes in panels:
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            if label not in entries or entries[label].get_markerfacecolor() == "none":
+                entries[label] = handle
+    fig.legend(list(entries.values()), list(entries), loc=place, ncols=3, fontsize="small", frameon=False)
+
+
 def nearest_steps(load_parameter: Array, last: float = 1.0) -> list[int]:
     """Return the numbers of the load parameters nearest to those of `SHOWN` on the way to `last`, each once."""
     return sorted({int(np.argmin(np.abs(load_parameter - part * last))) for part in SHOWN})
 
 
 def plot_shapes(scene: Scene, responses: dict[str, Response], *paths: Path) -> None:
-    """Draw the deflected axes of all responses over each other, as Fig. 8 of the paper, and the last tip enlarged.
-
-    The responses are by label, in the order of drawing; beams are drawn with the nodes of their elements. The
-    scene gives the pins and their paths.
-    """
+    """Draw axes by label over each other, as Fig. 8 of the paper, with the last tip enlarged."""
     fig = figure(figsize=(WIDTH, 7.4))
     places = fig.subplot_mosaic([["whole", "whole"], ["detail", "legend"]])
     whole, detail = places["whole"], places["detail"]

@@ -1,12 +1,12 @@
-"""Drawings of a scene: beams at their height, supports, arrows with their values, pins; and the drawing of one before it is solved."""
+"""Drawings of a scene: beams at their height, supports, pins, loads as arrows with their values."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
 from math import hypot
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from comparisons.models import MODELS, find
 from comparisons.models.options import ModelError
@@ -17,7 +17,7 @@ from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene
 from comparisons.scene.conditions import LoadSpec
 from comparisons.show import palette
 from comparisons.show.plot import WIDTH, arrow, figure, save
-from comparisons.show.symbols import arc, chain, draw_symbols, legend_symbol
+from comparisons.show.symbols import LEFT, arc, chain, draw_symbols, legend_symbol
 
 BEAM, PIN, SIDE, HELD, LOAD = palette.BLUE, palette.PIN, palette.PURPLE, palette.BLACK, palette.GREEN
 SYMBOL, STROKE, ARROW, TURN = 0.025, 0.012, 0.14, 0.05
@@ -32,15 +32,14 @@ ROW = 11
 """Arrows of a force per length."""
 NAME, WEIGHT = 0.25, 0.65
 """Fractions of the length at which a beam's name and its weight stand."""
-UP = np.array([0.0, 1.0])
+CORNER = np.array([1.0, 1.0])
+"""Way from a moment to its value, which arrows along the axes leave free."""
+Axis = tuple[Array, Array, Array]
+"""Arc lengths (n,), points (n, 2), and unit normals to the left (n, 2)."""
 
 
 def stated(scene: Scene, others: Sequence[str] = ()) -> Iterator[str]:
-    """Yield a line on what the scene has, and one for every model: whether it can state the scene, or why not.
-
-    The `others` are adapters and program files that are asked besides the models of this package and of entry
-    points.
-    """
+    """Yield a line on what the scene has, and one for every model: whether it can state it, or why not."""
     counts = ((len(scene.beams), "beam"), (len(scene.pins), "pin"), (len(scene.contacts), "contact pair"))
     parts = (f"{count} {what}{'' if count == 1 else 's'}" for count, what in counts)
     stages = f" in {1 + len(scene.stages)} stages" if scene.stages else ""
@@ -55,29 +54,21 @@ def stated(scene: Scene, others: Sequence[str] = ()) -> Iterator[str]:
         yield f"  {model.name}: yes" if refused is None else f"  {model.name}: no, {refused}"
 
 
-@dataclass(kw_only=True)
 class Sketch:
-    """A drawing of a scene that grows, of that `size`; a label that moves down in favour of others has -1 beside it.
+    """A drawing of a scene that grows, about axes by beam, deformed or not."""
 
-    The `lines` are arc lengths (n,) and points (n, 2) of the axes by beam, deformed or not.
-    """
-
-    axes: Any
-    scene: Scene
-    size: float
-    lines: dict[str, tuple[Array, Array]]
-    letters: str = "medium"
-    legend: dict[str, Any] = field(default_factory=dict)
-    labels: list[tuple[Any, float]] = field(default_factory=list)
-
-    def frame(self, title: str, size: str = "large") -> None:
-        """Write what the axes show, in equal scales."""
-        length = unit_names(self.scene.units)["length"]
-        self.axes.set_aspect("equal", adjustable="datalim")
-        self.axes.set(xlabel=f"x [{length}]", ylabel=f"y [{length}]")
-        self.axes.set_title(title, fontsize=size)
-        self.axes.margins(0.08)
-        self.axes.grid(visible=True, linewidth=0.3)
+    def __init__(
+        self, axes: Any, scene: Scene, lines: Mapping[str, Axis], title: str, letters: str = "medium"
+    ) -> None:
+        self.axes, self.scene, self.lines, self.letters = axes, scene, lines, letters
+        self.size, self.units = float(np.ptp(_reach(scene, lines), axis=0).max()), unit_names(scene.units)
+        self.legend: dict[str, Any] = {}
+        self.labels: list[tuple[Any, float]] = []  # -1 is beside one that moves down in favour of others
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.set(xlabel=f"x [{self.units['length']}]", ylabel=f"y [{self.units['length']}]")
+        axes.set_title(title, fontsize="large" if letters == "medium" else "medium")
+        axes.margins(0.08)
+        axes.grid(visible=True, linewidth=0.3)
 
     def named(self, words: str, colour: str, **style: Any) -> None:
         """Add a line or marker to the legend."""
@@ -85,30 +76,23 @@ class Sketch:
 
         self.legend.setdefault(words, Line2D([], [], color=colour, **style))
 
-    def body(self, beam: BeamSpec, normal: Array, colour: str, width: float) -> list[Any]:
-        """Draw a beam of its height about its axis with unit normals (n, 2); return outline and axis."""
-        arcs, line = self.lines[beam.name]
-        heights = [beam.height_at(min(s / beam.length, 1.0)) for s in arcs]
-        half = np.array(heights)[:, None] / 2.0 * normal
+    def body(self, beam: BeamSpec, colour: str, width: float) -> list[Any]:
+        """Draw a beam of its height; return outline and axis."""
+        arcs, line, normal = self.lines[beam.name]
+        half = np.array([beam.height_at(min(s / beam.length, 1.0)) for s in arcs])[:, None] / 2.0 * normal
         outline = np.concatenate([line + half, (line - half)[::-1]])
         drawn = self.axes.fill(*outline.T, facecolor=colour, edgecolor=colour, alpha=0.35, linewidth=1.5)
         return [*drawn, *self.axes.plot(*line.T, color=colour, linewidth=width)]
 
-    def at(self, beam: str, parts: Sequence[float]) -> Array:
+    def at(self, beam: str, parts: ArrayLike) -> Array:
         """Return the points (n, 2) of an axis at parts of the undeformed length."""
-        arcs, points = self.lines[beam]
-        arc = self.scene.beam(beam).length * np.array(parts)
+        arcs, points, _ = self.lines[beam]
+        arc = self.scene.beam(beam).length * np.asarray(parts)
         return np.stack([np.interp(arc, arcs, values) for values in points.T], axis=1)
-
-    def loaded(self, load: LoadSpec) -> Array:
-        """Return the points (n, 2) at which the arrows of a load end, more than one of a force per length."""
-        if load.force_per_length is not None:
-            return self.at(load.beam, np.linspace(*load.span, ROW).tolist())
-        return self.at(load.beam, [load.at if load.at is not None else float(load.end == "end")])
 
     def symbols(self) -> None:
         """Draw supports, springs and hinges at the ends of the axes."""
-        lines = {name: points for name, (_, points) in self.lines.items()}
+        lines = {name: points for name, (_, points, _) in self.lines.items()}
         self.legend |= draw_symbols(self.axes, self.scene, lines, SYMBOL * self.size)
 
     def disc(self, at: Array, radius: float | None, **style: Any) -> None:
@@ -119,13 +103,7 @@ class Sketch:
             self.axes.add_patch(Circle(tuple(at), radius, **style))
 
     def arrows(
-        self,
-        tips: Array,
-        vector: Array,
-        words: str,
-        colour: str,
-        width: float,
-        where: Literal["tail", "tip", "beside"] = "tail",
+        self, tips: Array, vector: Array, words: str, colour: str, width: float, *, at_tip: bool = False
     ) -> None:
         """Draw equal arrows to the `tips` (n, 2), more than one with a line through their tails, and write beside the one in the middle."""
         tails = tips - vector
@@ -133,26 +111,70 @@ class Sketch:
             arrow(self.axes, tail, tip, colour, width)
         if len(tips) > 1:
             self.axes.plot(*tails.T, color=colour, linewidth=width)
-        tail, tip = tails[len(tips) // 2], tips[len(tips) // 2]
-        places = {"tail": (tail, -vector), "tip": (tip, vector), "beside": ((tail + tip) / 2, UP[::-1])}
-        self.label(words, *places[where], colour)
+        ends, way = (tips, vector) if at_tip else (tails, -vector)
+        self.label(words, ends[len(tips) // 2], way, colour)
+
+    def loads(
+        self, loads: Sequence[tuple[LoadSpec, Sequence[float]]], gravity: Sequence[float], after: str = ""
+    ) -> None:
+        """Draw loads (force or force per length, and moment) and weights as arrows of one length."""
+        force, named = self.units["force"], "force, arrow not to scale"
+        for load, (*vector, moment) in loads:
+            if load.force_per_length is not None:
+                tips, words = (
+                    self.at(load.beam, np.linspace(*load.span, ROW)),
+                    f"{force}/{self.units['length']}",
+                )
+                self._force(
+                    tips,
+                    vector,
+                    0.9,
+                    f"{hypot(*vector):.6g} {words}{after}",
+                    "force per length, arrows not to scale",
+                )
+                continue
+            tips = self.at(load.beam, [load.at if load.at is not None else float(load.end == "end")])
+            pulls = any(vector) and _pulls(self.scene.beam(load.beam), load.end, vector)
+            self._force(tips, vector, 2.0, f"{hypot(*vector):.6g} {force}{after}", named, pulls=pulls)
+            if moment:
+                self.turn(tips[0], moment, f"{abs(moment):.6g} {self.units['moment']}{after}", LOAD)
+                self.legend.setdefault("moment", legend_symbol(chain(arc(1.0)), LOAD))
+        for beam in (beam for beam in self.scene.beams if beam.density):
+            words = f"weight {hypot(*gravity) * beam.mass:.4g} {force}{after}"
+            self._force(self.at(beam.name, [WEIGHT]), gravity, 2.0, words, named)
+
+    def _force(
+        self,
+        tips: Array,
+        vector: Sequence[float],
+        width: float,
+        words: str,
+        named: str,
+        *,
+        pulls: bool = False,
+    ) -> None:
+        if any(vector):
+            drawn = ARROW / (1 if width > 1.0 else 2) * self.size * _unit(vector)
+            self.arrows(tips + pulls * drawn, drawn, words, LOAD, width, at_tip=pulls)
+            self.named(named, LOAD, marker=">", linewidth=width)
+
+    def turn(self, at: Array, turn: float, words: str, colour: str) -> None:
+        """Draw a moment or a rotation as an arc with its value."""
+        points = at + TURN * self.size * arc(turn)
+        self.axes.plot(*points.T, color=colour, linewidth=2.0)
+        arrow(self.axes, points[-2], points[-1], colour, 2.0)
+        self.label(words, at + TURN * self.size * _unit(CORNER), CORNER, colour)
 
     def label(self, words: str, at: Array, direction: Array, colour: str) -> None:
         """Write beside a place, in the direction given."""
-        x, y = direction / np.hypot(*direction)
-        sides = {
-            "ha": "left" if x > 0.5 else "right" if x < -0.5 else "center",
-            "va": "bottom" if y > 0.5 else "top" if y < -0.5 else "center",
+        x, y = np.round(_unit(direction))
+        sides: dict[str, Any] = {
+            "ha": ("center", "left", "right")[int(x)],
+            "va": ("center", "bottom", "top")[int(y)],
         }
-        style = {
-            "textcoords": "offset points",
-            "color": colour,
-            "fontsize": self.letters,
-            "zorder": 6,
-            **sides,
-        }
-        label = self.axes.annotate(words, at, (7 * x, 7 * y), **style)
-        self.labels.append((label, -1.0 if y < -0.5 else 1.0))
+        style = {"color": colour, "fontsize": self.letters, "zorder": 6, **sides}
+        label = self.axes.annotate(words, at, 7 * _unit(direction), textcoords="offset points", **style)
+        self.labels.append((label, -1.0 if y < 0.0 else 1.0))
 
     def separate(self, rounds: int) -> None:
         """Move labels up or down that lie on others, and let the axes reach around all labels."""
@@ -169,35 +191,36 @@ class Sketch:
             self.axes.autoscale_view()
 
 
-def axis(beam: BeamSpec) -> tuple[Array, Array, Array]:
-    """Return arc lengths (n,), points (n, 2) of the undeformed axis, and the unit vectors (n, 2) to its left there."""
-    left = [_across(beam.tangent(part)) for part in PARTS]
-    return beam.length * np.array(PARTS), np.array([beam.place(part) for part in PARTS]), np.array(left)
+def axis(beam: BeamSpec) -> Axis:
+    """Return the undeformed axis of a beam."""
+    points, tangents = (np.array([read(part) for part in PARTS]) for read in (beam.place, beam.tangent))
+    return beam.length * np.array(PARTS), points, tangents @ LEFT
+
+
+def _reach(scene: Scene, lines: Mapping[str, Axis]) -> Array:
+    """Return points (n, 2) within which beams and pins are."""
+    points = [line for _, line, _ in lines.values()]
+    for pin in scene.pins:
+        points += [np.array(pin.points) + way * (pin.radius or 0.0) for way in (-1.0, 1.0)]
+    return np.concatenate(points)
 
 
 def draw(scene: Scene, path: Path) -> None:
-    """Draw the scene to `path`, in the format of its suffix, with a legend of everything in it.
-
-    Beams and round pins have their true size. The symbols of supports, loads and contact sides have a size of their own; the value of
-    a load stands beside its arrow.
-    """
-    points = np.concatenate([axis(beam)[1] for beam in scene.beams])
-    for pin in scene.pins:
-        reach = pin.radius or 0.0
-        points = np.concatenate([points, np.array(pin.points) - reach, np.array(pin.points) + reach])
-    size = float(np.ptp(points, axis=0).max())
-    width, height = np.maximum(np.ptp(points, axis=0), 0.2 * size) + 0.2 * size
+    """Draw the scene to `path` with a legend of everything in it; beams and pins have their true size."""
+    lines = {beam.name: axis(beam) for beam in scene.beams}
+    extent = np.ptp(_reach(scene, lines), axis=0)
+    width, height = np.maximum(extent, 0.2 * extent.max()) + 0.2 * extent.max()
     fig = figure(figsize=(WIDTH, float(np.clip(0.85 * WIDTH * height / width, 1.6, 6.5)) + 1.4))
-    lines = {beam.name: axis(beam)[:2] for beam in scene.beams}
-    sketch = Sketch(axes=fig.subplots(), scene=scene, size=size, lines=lines)
-    sketch.frame(scene.name)
+    sketch = Sketch(fig.subplots(), scene, lines, scene.name)
     for beam in scene.beams:
         _beam(sketch, beam)
     for contact in scene.contacts:
         _side(sketch, contact)
     sketch.symbols()
     _motions(sketch)
-    _loads(sketch)
+    for stage, loads in enumerate(scene.stage_loads):
+        amounts = [(load, load.amount) for load in loads]
+        sketch.loads(amounts, scene.stage_gravities[stage], _after(stage + 1))
     for pin in scene.pins:
         _pin(sketch, pin)
     place = {"loc": "outside lower center", "ncols": 2, "fontsize": "small", "frameon": False}
@@ -208,18 +231,11 @@ def draw(scene: Scene, path: Path) -> None:
 
 def _beam(sketch: Sketch, beam: BeamSpec) -> None:
     """Draw a beam as its outline, at least a line, with its name and direction."""
-    outline, line = sketch.body(beam, axis(beam)[2], BEAM, 1.0)
+    outline, line = sketch.body(beam, BEAM, 1.0)
     middle, tangent = np.array(beam.place(0.5)), np.array(beam.tangent(0.5))
     arrow(sketch.axes, middle, middle + 0.03 * sketch.size * tangent, BEAM)
-    left = _across(beam.tangent(NAME))
-    loads = [history.load for history in sketch.scene.load_histories]
-    along = [
-        one.force_per_length for one in loads if one.beam == beam.name and one.force_per_length is not None
-    ]
-    taken = {one.side == "left" for one in sketch.scene.contacts if one.beam == beam.name}
-    taken |= {float(np.array(force) @ left) < 0.0 for force in along}
-    clear = -left if taken == {True} else left
-    sketch.label(beam.name, beam.place(NAME) + beam.height_at(NAME) / 2 * clear, clear, BEAM)
+    left = np.array(beam.tangent(NAME)) @ LEFT
+    sketch.label(beam.name, beam.place(NAME) + beam.height_at(NAME) / 2 * left, left, BEAM)
     flat = beam.height is None
     words = "beam: axis, without a height" if flat else "beam, height to scale"
     sketch.legend.setdefault(words, line if flat else outline)
@@ -229,7 +245,7 @@ def _side(sketch: Sketch, contact: ContactSpec) -> None:
     """Draw the surface that a node touches, with strokes on the side from which the node comes."""
     from matplotlib.collections import LineCollection
 
-    _, line, left = axis(sketch.scene.beam(contact.beam))
+    _, line, left = sketch.lines[contact.beam]
     normal, radius = left if contact.side == "left" else -left, sketch.scene.radius(contact)
     offsets = np.array([sketch.scene.offset(contact, part) for part in PARTS]) - radius
     feet = line + offsets[:, None] * normal
@@ -245,72 +261,29 @@ def _motions(sketch: Sketch) -> None:
     scene = sketch.scene
     for support in scene.all_supports:
         at = place = np.array(scene.place(support.node))
-        for stage, (dx, dy, turn) in enumerate(scene.prescribed_motions[support.node].increments, 1):
-            path = np.array([dx, dy])
-            if path.any():
+        for stage, (*path, turn) in enumerate(scene.prescribed_motions[support.node].increments, 1):
+            if any(path):
                 at = at + path
-                words = f"{hypot(dx, dy):.6g} {unit_names(scene.units)['length']}{_after(stage)}"
-                sketch.arrows(at[None], path, words, HELD, 1.2, "tip")
+                words = f"{hypot(*path):.6g} {sketch.units['length']}{_after(stage)}"
+                sketch.arrows(at[None], np.array(path), words, HELD, 1.2, at_tip=True)
             if turn:
-                _turn(sketch, place, turn, f"{abs(turn):.6g} rad{_after(stage)}", HELD)
-            if path.any() or turn:
+                sketch.turn(place, turn, f"{abs(turn):.6g} rad{_after(stage)}", HELD)
+            if any(path) or turn:
                 sketch.named("motion of a support", HELD, marker=">")
 
 
-def _loads(sketch: Sketch) -> None:
-    """Draw the loads of every stage with their values, and the weights of the beams."""
-    scene, units = sketch.scene, unit_names(sketch.scene.units)
-    force = units["force"]
-    for number, load in scene.numbered_loads():
-        after, tips = _after(number + 1), sketch.loaded(load)
-        if load.force_per_length is not None:
-            words = f"{hypot(*load.force_per_length):.6g} {force}/{units['length']}{after}"
-            sketch.arrows(tips, ARROW / 2 * sketch.size * _unit(load.force_per_length), words, LOAD, 0.9)
-            sketch.named("force per length, arrows not to scale", LOAD, marker=">", linewidth=0.9)
-            continue
-        if any(load.force):
-            vector = ARROW * sketch.size * _unit(load.force)
-            words = f"{hypot(*load.force):.6g} {force}{after}"
-            pulls = _pulls(scene, load)
-            sketch.arrows(tips + pulls * vector, vector, words, LOAD, 2.0, "tip" if pulls else "tail")
-            sketch.named("force, arrow not to scale", LOAD, marker=">", linewidth=2.0)
-        if load.moment:
-            _turn(sketch, tips[0], load.moment, f"{abs(load.moment):.6g} {units['moment']}{after}", LOAD)
-            sketch.legend.setdefault("moment", legend_symbol(chain(arc(1.0)), LOAD))
-    for stage, gravity in enumerate(scene.stage_gravities, 1):
-        for beam in scene.beams if any(gravity) else ():
-            if beam.density:
-                words = f"weight {hypot(*gravity) * beam.mass:.4g} {force}{_after(stage)}"
-                vector = ARROW * sketch.size * _unit(gravity)
-                sketch.arrows(sketch.at(beam.name, [WEIGHT]), vector, words, LOAD, 2.0, "beside")
-                sketch.named("force, arrow not to scale", LOAD, marker=">", linewidth=2.0)
-
-
-def _pulls(scene: Scene, load: LoadSpec) -> bool:
+def _pulls(beam: BeamSpec, end: str | None, force: Sequence[float]) -> bool:
     """Whether a force on a beam's end points away from the beam, along which its arrow would lie."""
-    if load.end is None:
+    if end is None:
         return False
-    beam = scene.beam(load.beam)
-    outward = np.array(beam.tangent(1.0)) if load.end == "end" else -np.array(beam.tangent(0.0))
-    return float(_unit(load.force) @ outward) > PULL
-
-
-def _turn(sketch: Sketch, at: Array, turn: float, words: str, colour: str) -> None:
-    """Draw a moment or a rotation as an arc, with its value on the side without the arrow of a force."""
-    scene = sketch.scene
-    ends = [load for load in scene.loads if load.end is not None and load.force[1] < 0.0]
-    above = any(np.array_equal(at, scene.place(load.node)) for load in ends)
-    points = at + TURN * sketch.size * arc(turn)
-    sketch.axes.plot(*points.T, color=colour, linewidth=2.0)
-    arrow(sketch.axes, points[-2], points[-1], colour, 2.0)
-    side = -UP if above else UP
-    sketch.label(words, at + TURN * sketch.size * side, side, colour)
+    outward = np.array(beam.tangent(1.0)) if end == "end" else -np.array(beam.tangent(0.0))
+    return float(_unit(force) @ outward) > PULL
 
 
 def _pin(sketch: Sketch, pin: PinSpec) -> None:
     """Draw a pin with its true radius, and its path."""
     points = np.array(pin.points)
-    behind = _unit(points[0] - points[1]) if len(points) > 1 else -UP
+    behind = _unit(points[0] - points[1]) if len(points) > 1 else np.array([0.0, -1.0])
     for stage in map(np.array, pin.stage_points):
         if len(stage) > 1:
             arrow(sketch.axes, stage[-1] - 0.01 * sketch.size * _unit(stage[-1] - stage[-2]), stage[-1], PIN)
@@ -318,7 +291,7 @@ def _pin(sketch: Sketch, pin: PinSpec) -> None:
     sketch.label(pin.name, points[0] + (pin.radius or 0.0) * behind, behind, PIN)
     sketch.disc(points[0], pin.radius, facecolor=PIN, edgecolor=PIN, alpha=0.35)
     if pin.radius:
-        words = f"pin of radius {pin.radius:.6g} {unit_names(sketch.scene.units)['length']}, to scale"
+        words = f"pin of radius {pin.radius:.6g} {sketch.units['length']}, to scale"
         sketch.named(words, PIN, marker="o", markersize=9, linestyle="none", alpha=0.5)
     else:
         sketch.legend.setdefault("pin, a point", mark)
@@ -335,8 +308,3 @@ def _after(stage: int) -> str:
 
 def _unit(vector: Sequence[float] | Array) -> Array:
     return np.asarray(vector / np.hypot(*vector))
-
-
-def _across(tangent: Sequence[float]) -> Array:
-    """Return the unit vector to the left of a tangent."""
-    return np.array([-tangent[1], tangent[0]])

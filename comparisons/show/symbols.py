@@ -5,8 +5,7 @@ matplotlib and by pyvista, and stand in a legend.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +22,8 @@ SYMBOL = 0.03
 """Size of a symbol over the size of a picture."""
 LARGEST = 13.0
 """Largest size of a symbol in a legend, so that it stays in its row [point]."""
+LEFT = np.array([[0.0, 1.0], [-1.0, 0.0]])
+"""Turns rows of tangents to the left."""
 HATCHES = 5
 """Strokes below a ground."""
 
@@ -55,6 +56,7 @@ _COIL = chain([(0, 0), (0, -0.4), (0.4, -0.6), (-0.4, -1), (0.4, -1.4), (-0.4, -
 _SPRING = np.concatenate([_COIL, _ground(-2.4, 0.7)])
 _ANGLE = np.linspace(0.0, 4.0 * np.pi, 41)
 _SPIRAL = chain((0.25 + 0.15 * _ANGLE / np.pi)[:, None] * np.stack([np.cos(_ANGLE), np.sin(_ANGLE)], axis=1))
+HINGE = chain(0.35 * arc(1.0, points=17, part=1.0))
 SUPPORTS: dict[tuple[str, ...], tuple[str, Segments]] = {
     ("x", "y", "rotation"): ("clamped", _ground(0.0, 1.0)),
     ("x", "y"): ("pinned", np.concatenate([_TRIANGLE, _ground(-1.0, 0.9)])),
@@ -77,10 +79,7 @@ def _turned(segments: Segments, held: tuple[str, ...], away: Array) -> Segments:
 
 
 def fixings(kinds: Iterable[int], away: Array) -> Iterator[tuple[tuple[str, ...], Segments]]:
-    """Yield the symbols at an end by their components: of a support that holds those of kind 1, of a spring against each of kind 2.
-
-    The unit vector `away` (2,) points into the beam; the ground is on the other side.
-    """
+    """Yield the symbols at an end of supports (kind 1) and springs (kind 2); `away` points into the beam."""
     named = list(zip(COMPONENTS, kinds, strict=True))
     held = tuple(name for name, kind in named if kind == 1)
     if held:
@@ -96,18 +95,7 @@ def fixed(scene: Scene) -> NDArray[np.int64]:
     return np.asarray(np.array(kinds)[:, None] * np.array(held).reshape(-1, 3))
 
 
-def hinge_symbol() -> Segments:
-    """Return a small circle."""
-    return chain(0.35 * arc(1.0, points=17, part=1.0))
-
-
-def placed(segments: Segments, at: Array, size: float) -> Segments:
-    """Return segments enlarged to `size` and moved to the node `at`."""
-    return np.asarray(at + size * segments)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Symbol:
+class Symbol(NamedTuple):
     """The symbol of what is at a beam's end: segments (n, 2, 2) of unit size about the node, and its words."""
 
     item: SupportSpec | SpringSpec | HingeSpec
@@ -123,7 +111,7 @@ def end_symbols(scene: Scene) -> list[Symbol]:
     """Return the symbols of the supports, springs and hinges of a scene."""
     units = unit_names(scene.units)
     stiff = f"{units['moment']}/rad"
-    found: list[tuple[SupportSpec | SpringSpec | HingeSpec, str, Segments]] = []
+    found = []
     for one, kinds in zip(scene.holding, fixed(scene), strict=True):
         for names, segments in fixings(kinds, inward(scene, one)):
             words = SUPPORTS[names][0]
@@ -131,23 +119,20 @@ def end_symbols(scene: Scene) -> list[Symbol]:
                 stiffness = dict(zip(COMPONENTS, (*one.stiffness, one.rotation), strict=True))[names[0]]
                 unit = stiff if names == ("rotation",) else f"{units['force']}/{units['length']}"
                 words = f"spring of {stiffness:.6g} {unit} in {names[0]}"
-            found.append((one, words, segments))
+            found.append(Symbol(one, words, segments))
     for hinge in scene.hinges:
         words = f"hinge with a spring of {hinge.stiffness:.6g} {stiff}" if hinge.stiffness else "hinge"
-        found.append((hinge, words, hinge_symbol()))
-    return [Symbol(item=item, words=words, segments=segments) for item, words, segments in found]
+        found.append(Symbol(hinge, words, HINGE))
+    return found
 
 
 def draw_symbols(axes: Any, scene: Scene, lines: Mapping[str, Array], size: float) -> dict[str, Any]:
-    """Draw the symbols of supports, springs and hinges at their ends; return their entries in a legend.
-
-    The `lines` (m, 2) are the deformed axes by beam. The `size` of a symbol is a length. The axes reach around the symbols.
-    """
+    """Draw the symbols at the ends of axes (m, 2) by beam; return their entries in a legend."""
     from matplotlib.collections import LineCollection
 
     symbols = end_symbols(scene)
     for one in symbols:
-        drawn = placed(one.segments, one.at(lines[one.item.beam]), size)
+        drawn = one.at(lines[one.item.beam]) + size * one.segments
         axes.add_collection(LineCollection(list(drawn), colors=palette.BLACK, linewidths=1.0, zorder=4))
         axes.update_datalim(drawn.reshape(-1, 2))
     return {one.words: legend_symbol(one.segments) for one in symbols}

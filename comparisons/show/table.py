@@ -9,32 +9,33 @@ from comparisons.output import aligned, csv_text
 from comparisons.quantities import SCOPES, names, table_columns
 
 
-def table_text(rows: Sequence[Row], reference: str) -> str:
-    """Return the table as aligned text; errors are the largest over all load parameters."""
-    head = header()
-    first, *rest = aligned([head, *map(cells, rows)], [False] + [True] * (len(head) - 1))
-    title = (
+def caption(reference: str) -> str:
+    """Return what the table shows."""
+    return (
         f"Largest error over the load parameters reached, against the {reference}; forces and moments relative to their\n"
         "largest, positions to the length, friction to the contact forces; Newton iterations and seconds for the whole path"
     )
-    return "\n".join([title, "", first, "-" * len(first), *rest])
 
 
-def header() -> tuple[str, ...]:
-    """Return the names of the columns, the quantities that have one in the middle."""
-    middle = (row.words for row in table_columns().values())
-    return "model", "unknowns", *middle, "stable", "iterations", "seconds"
+def table_text(rows: Sequence[Row], reference: str) -> str:
+    """Return the table as aligned text; errors are the largest over all load parameters."""
+    head, *lines = list(line(rows[0])), *(list(line(row).values()) for row in rows)
+    first, *rest = aligned([head, *lines], [False] + [True] * (len(head) - 1))
+    return "\n".join([caption(reference), "", first, "-" * len(first), *rest])
 
 
-def cells(row: Row) -> tuple[str, ...]:
-    """Return a run as text under `header`."""
-    # a dash where the run or the scene does not have the quantity
-    errors = [np.nan if row.errors is None else row.errors["path"][name] for name in table_columns()]
-    shown = ["-" if np.isnan(value) else f"{value:.1e}" for value in errors]
+def line(row: Row) -> dict[str, str]:
+    """Return a run for people; a dash stands where the run or the scene does not have a quantity."""
     response = row.response
-    label = row.label if response.completed else f"{row.label} ({response.status})"
-    iterations, seconds = str(response.iterations), f"{response.wall_seconds:.3f}"
-    return label, str(response.unknowns), *shown, row.stable, iterations, seconds
+    errors = {one.words: row.error("path", name) for name, one in table_columns().items()}
+    return {
+        "model": row.label if response.completed else f"{row.label} ({response.status})",
+        "unknowns": str(response.unknowns),
+        **{words: "-" if np.isnan(value) else f"{value:.1e}" for words, value in errors.items()},
+        "stable": row.stable,
+        "iterations": str(response.iterations),
+        "seconds": f"{response.wall_seconds:.3f}",
+    }
 
 
 def table_csv(rows: Sequence[Row]) -> str:

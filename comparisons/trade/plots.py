@@ -8,8 +8,7 @@ import numpy as np
 
 from comparisons.models import MODELS, ROD, SOLID
 from comparisons.show import palette
-from comparisons.show.plot import WIDTH, figure, save
-from comparisons.show.work import draw_legend, logarithmic
+from comparisons.show.plot import WIDTH, draw_legend, figure, logarithmic, save
 from comparisons.trade.trade import MESHED, Line, Trade, front
 
 SHOWN = "force"

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from comparisons.cases import Case, Measurement
+from comparisons.cases import Case, Row
 from comparisons.errors import Errors, errors
 from comparisons.models import ROD
 from comparisons.quantities import forces, moments, scales, size
@@ -15,7 +15,7 @@ from comparisons.scene import Scene
 from comparisons.trade.settings import beams, limit_cases
 from tsm.elements import EXACT
 
-Measured = Mapping[Case, Measurement]
+Measured = Mapping[Case, Row]
 ROUND_OFF = 2.0**-52
 """Least uncertainty of a reference, also where two answers are equal."""
 

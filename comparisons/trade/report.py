@@ -10,8 +10,7 @@ from comparisons.models import SOLID, TSM
 from comparisons.output import tabulated, write_numbers, write_rows
 from comparisons.quantities import KEPT, SCOPES
 from comparisons.scene import to_toml
-from comparisons.show.pages import definitions, folded, picture
-from comparisons.show.work import rows_table, write_report
+from comparisons.show.pages import Section, definitions, folded, picture, table, write_page
 from comparisons.trade.plots import SHOWN, plot_work, short
 from comparisons.trade.trade import COSTS, MESHED, TARGETS, Line, Trade, cheapest, front, orders
 
@@ -61,21 +60,22 @@ def _write_page(trade: Trade, settings: list[Line], files: Sequence[Path], folde
     shown = [{name.replace("_", " "): row[name] for name in SETTING} for row in settings]
     caption = "Seconds: processor time of one thread from the scene to the checked answer, median of repeats."
     sections = {
-        "Cheapest settings": [rows_table(*cheapest_lines(trade, scope)) for scope in SCOPES],
+        "Cheapest settings": [table(*cheapest_lines(trade, scope)) for scope in SCOPES],
         "Work and precision": [
             picture(folder / f"{scope}-{cost}.svg", f"Error of {SHOWN}, {STATES[scope]}, against {cost}.")
             for scope, cost in product(SCOPES, COSTS)
         ],
-        "Orders of convergence": [rows_table(f"error of {SHOWN} over the path", order_lines(trade))],
+        "Orders of convergence": [table(f"error of {SHOWN} over the path", order_lines(trade))],
         "All settings": [
             definitions(references),
-            folded("table of all settings", rows_table(caption, shown)),
+            folded("table of all settings", table(caption, shown)),
             folded("settings without a solution", definitions(stopped(trade))),
         ],
     }
     lead = f"{len(trade.rows)} settings of beams and solid; {len(stopped(trade))} without a solution."
     title = f"{trade.scene.name}: what accuracy costs"
-    return write_report(folder, title, lead, sections, [trade.scene], files)
+    parts = [Section(name, "\n".join(markup)) for name, markup in sections.items()]
+    return write_page(folder, title, lead, parts, [trade.scene], files)
 
 
 def _setting(row: Row) -> Line:

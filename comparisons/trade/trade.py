@@ -1,7 +1,7 @@
 """The trade-off of a scene: every setting with its cost and errors, the cheapest for an accuracy, fronts and orders."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, isfinite, nan
 from typing import Any
 
@@ -68,7 +68,7 @@ def measure_trade(scene: Scene, run: Runner, *, quick: bool = False) -> Trade:
     for case in cases:
         response, own = measured[case].response, limit if case.found.continuum else reference
         errors, own_errors = (None if one is None else one.errors(response) for one in (reference, own))
-        rows.append(Row(case=case, measured=measured[case], errors=errors, own_errors=own_errors))
+        rows.append(replace(measured[case], errors=errors, own_errors=own_errors))
     return Trade(scene=scene, rows=rows, reference=reference, limit=limit)
 
 
@@ -87,7 +87,7 @@ def cheapest(trade: Trade, scope: str, quantity: str, target: float) -> Line:
             return max(filter(isfinite, errors), default=inf)
 
         good = (row for row in trade.of_model(model, scope) if error(row) <= target)
-        return min(good, key=lambda row: row.measured.seconds, default=None)
+        return min(good, key=lambda row: row.seconds, default=None)
 
     doubt = trade.uncertainty(SOLID.name, scope, quantity)
     beams, there = least(TSM.name, False), least(SOLID.name, False, True)
@@ -109,12 +109,12 @@ def _named(name: str, row: Row | None) -> Line:
     return {
         name: row and row.label,
         f"{name}_load_steps": row and row.case.scene.load_parameters,
-        f"{name}_seconds": row and row.measured.seconds,
+        f"{name}_seconds": row and row.seconds,
     }
 
 
 def _ratio(slow: Row | None, fast: Row | None) -> float | None:
-    return slow.measured.seconds / fast.measured.seconds if slow and fast else None
+    return slow.seconds / fast.seconds if slow and fast else None
 
 
 def front(trade: Trade, model: str, scope: str, quantity: str, cost: str) -> list[Line]:

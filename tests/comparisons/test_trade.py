@@ -15,7 +15,7 @@ from comparisons.cli import main
 from comparisons.models import MODELS
 from comparisons.models.options import Options
 from comparisons.quantities import KEPT, SCOPES
-from comparisons.response import ContactHistory, SupportHistory
+from comparisons.response import ContactHistory, Response, SupportHistory
 from comparisons.response.axis import STATIONS, SampledAxes
 from comparisons.scene import built_in_scenes, load_scene
 from comparisons.trade.fits import convergence, pareto, power_law
@@ -65,7 +65,7 @@ def response_of(h, order=2.0):
     axis = np.ones((5, 101, 2)) * (1.0 + off * STATIONS)[:, None]
     arc = np.where(s < 2.0, np.nan, 0.5 + off * s)
     return replace(
-        unmeasured("COMPLETED", "").response,
+        Response(status="COMPLETED", message=""),
         load_parameter=TIMES,
         contacts={PAIR: ContactHistory(force=s * (1.0 + off), arc_position=arc, gap=0.0 * s)},
         supports={
@@ -132,10 +132,10 @@ def test_the_cases_of_a_sweep_are_complete_and_once():
 
 def point(case, seconds, error, own, status="COMPLETED"):
     """A case with known seconds, unknowns and errors."""
-    made = unmeasured(status, "")
-    response = replace(made.response, status=status, unknowns=round(100 * seconds))
-    measured = replace(made, response=response, seconds=seconds)
-    return Row(case=case, measured=measured, errors=table_of(error), own_errors=table_of(own))
+    response = Response(status=status, message="", unknowns=round(100 * seconds))
+    return Row(
+        case=case, response=response, seconds=seconds, errors=table_of(error), own_errors=table_of(own)
+    )
 
 
 def traded(points):
@@ -181,7 +181,7 @@ def test_orders_and_exponents_of_families_and_no_reference_where_the_rods_stop()
     assert reference.uncertainty["path"]["force"] < 1e-10
     scene = load_scene("double-beam")
     with pytest.raises(NoReferenceError, match="double-beam: the exact rods stopped: gone"):
-        best_reference(scene, dict.fromkeys(reference_cases(scene), unmeasured("LOST", "gone")))
+        best_reference(scene, {case: unmeasured(case, "LOST", "gone") for case in reference_cases(scene)})
 
 
 @pytest.mark.slow

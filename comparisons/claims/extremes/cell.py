@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from comparisons.cases.case import Case
-from comparisons.cases.measure import Measurement
+from comparisons.cases.measure import Row
 from comparisons.cases.run import COMPLETED, UNSETTLED
 from comparisons.claims.claim import Allowance, Finding, Verdict, decided
 from comparisons.errors import difference
@@ -24,8 +24,8 @@ INVARIANT = 1e-12
 NEXT_TERM = 1.05
 """Error of a roll-up over its first neglected term, with all further terms."""
 
-Results = Mapping[Case, Measurement]
-"""Measurements by case."""
+Results = Mapping[Case, Row]
+"""Rows by case."""
 LARGEST = 0.2
 """Largest allowed error for any model; an answer with a larger error should have stopped."""
 
@@ -195,7 +195,7 @@ class Judgement:
     """
 
     cell: Cell
-    own: Measurement
+    own: Row
     findings: tuple[Finding, ...]
     verdict: Verdict
 

@@ -17,9 +17,8 @@ from comparisons.cases.workers import Workers
 from comparisons.claims.claim import Verdict
 from comparisons.claims.extremes.axes import AXES, matrix
 from comparisons.claims.extremes.cell import Judgement, judged
-from comparisons.files import write_text
 from comparisons.output import Row, write_numbers, write_rows
-from comparisons.show.pages import Section, page, provenance
+from comparisons.show.pages import Section, write_page
 
 MARKS = {Verdict.RIGHT: "", Verdict.STOPPED: "■ ", Verdict.WITHDRAWN: "□ ", Verdict.WRONG: "✗ "}
 """Marks that distinguish the verdicts without colour."""
@@ -152,8 +151,8 @@ def write(folder: Path, judgements: Sequence[Judgement], *, quick: bool) -> tupl
     numbers = {"quick": quick, "verdicts": counts(judgements), "cells": rows}
     tables = (write_rows(folder / "extremes.csv", rows), write_numbers(folder / "extremes.json", numbers))
     part = ", a part of the matrix (quick)" if quick else ""
-    whole = [*sections(judgements), *provenance((), tables, folder)[1:]]
-    write_text(html, page("Where it holds, where it stops", f"{counted(judgements)}{part}.", whole))
+    lead = f"{counted(judgements)}{part}."
+    write_page(folder, "Where it holds, where it stops", lead, sections(judgements), (), tables, html.name)
     return html, *tables
 
 

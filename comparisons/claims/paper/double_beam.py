@@ -19,7 +19,7 @@ from comparisons.output import Report, Row
 from comparisons.response import Array, Response
 from comparisons.scene import Scene, load_scene
 from comparisons.show import palette
-from comparisons.show.pages import motion_section, tracks
+from comparisons.show.motion import motion_section, tracks
 
 FINER = 10
 """Load parameters of the picture per load parameter of the scene."""

@@ -15,7 +15,8 @@ from comparisons.output import Report, Row
 from comparisons.quantities import KEPT, SCOPES
 from comparisons.response import Response
 from comparisons.scene import Scene, load_scene
-from comparisons.show.pages import Section, motion_section, tracks
+from comparisons.show.motion import motion_section, tracks
+from comparisons.show.pages import Section
 from comparisons.show.plot import nearest_steps, plot_shapes
 
 READINGS = {

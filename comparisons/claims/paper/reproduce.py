@@ -12,7 +12,7 @@ from comparisons.claims.paper.figures import FIGURES
 from comparisons.claims.paper.ks_shapes import ks_shapes
 from comparisons.files import writable_folder, write_text
 from comparisons.output import Report
-from comparisons.show.pages import Section, picture, provenance, table, write_page
+from comparisons.show.pages import Section, picture, table, write_page
 
 STUDIES: dict[str, Callable[..., Study]] = {
     "fig7a": cantilever_shapes,
@@ -44,10 +44,9 @@ def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[
     for figure, study in found.items():
         sections += [_pictures(figure, study, folder), *study.moving]
     scenes = dict.fromkeys(scene for study in found.values() for scene in study.scenes)
-    sections += provenance(scenes, files, folder)
     settings = "coarse settings" if quick else "full settings"
     lead = f"{', '.join(found)}: reproduced with {settings}, and the claims that they bear on."
-    page = write_page(folder, "The paper's figures and claims", lead, sections)
+    page = write_page(folder, "The paper's figures and claims", lead, sections, scenes, files)
     stopped = [
         f"{figure}: {one}" for figure, study in found.items() for one in study.numbers.get("stopped", ())
     ]
@@ -61,7 +60,8 @@ def _claims(judgements: Sequence[Judgement]) -> Section:
     ]
     caption = f"{counted(judgements)}. Every number is computed by the run that wrote this page."
     header = ("", "where", "claim", "verdict", "number", "why")
-    return Section(title="Claims", html=table(caption, header, rows, prose=True))
+    lines = [dict(zip(header, row, strict=True)) for row in rows]
+    return Section(title="Claims", html=table(caption, lines, prose=True))
 
 
 def _pictures(figure: str, study: Study, folder: Path) -> Section:

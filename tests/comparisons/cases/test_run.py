@@ -1,7 +1,6 @@
 """What no command can bring about alone: a worker's exception, a result that is no result, the key and the measurement of a case."""
 
 import pickle
-import sys
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
@@ -11,11 +10,10 @@ import numpy as np
 import pytest
 
 # not public: a worker's exception cannot be brought about from outside, nor systems without /proc
-from comparisons.cases import Case, Measurement, Row, measure, memory
+from comparisons.cases import Case, Row, measure
 from comparisons.cases import run as run_module
 from comparisons.cases.measure import unmeasured
-from comparisons.cases.rows import reached_errors
-from comparisons.cases.workers import Workers
+from comparisons.cases.settings import changed
 from comparisons.files import OutputError
 from comparisons.models import solve
 from comparisons.models.options import Options
@@ -36,15 +34,12 @@ def measured():
 @contextmanager
 def thread():
     with ThreadPoolExecutor(1) as executor:
-        yield executor
-
-
-THREAD = Workers(width=1, start=thread)
+        yield executor, 1
 
 
 def test_a_case_that_raises_is_listed_and_done_again(tmp_path, monkeypatch):
     cases = [CASE, replace(CASE, options=Options(elements=4)), CASE]
-    right, reported = run_module.solve, list[run_module.Tally]()
+    right, reported = run_module.solve, []
 
     def raising(key, case, **how):
         if case == CASE:
@@ -52,19 +47,19 @@ def test_a_case_that_raises_is_listed_and_done_again(tmp_path, monkeypatch):
         return right(key, case, **how)
 
     monkeypatch.setattr(run_module, "solve", raising)
-    found = run_module.run(cases, tmp_path, THREAD, repeats=0)
+    found = run_module.run(cases, tmp_path, thread, repeats=0)
     assert next((one.response.status, one.response.message) for one in found.values()) == (
         "ERROR",
         "ZeroDivisionError: a bug in two lines",
     )
     monkeypatch.undo()
-    again = run_module.run(cases, tmp_path, THREAD, repeats=0, progress=reported.append)
+    again = run_module.run(
+        cases, tmp_path, thread, repeats=0, progress=lambda total, rows: reported.append((len(rows), total))
+    )
     assert [one.response.status for one in again.values()] == ["COMPLETED"] * 2
-    # on a slow machine the beat reports the same tally again
-    assert list(dict.fromkeys((one.done, one.total) for one in reported)) == [(1, 2), (2, 2)]
-    assert (reported[-1].left, reported[-1].failed) == (0, 0)
+    assert reported == [(1, 2), (2, 2)]
     monkeypatch.setattr(run_module, "solve", None)
-    kept = run_module.run(cases, tmp_path, THREAD)
+    kept = run_module.run(cases, tmp_path, thread)
     assert [one.to_json() for one in kept.values()] == [one.to_json() for one in again.values()]
     with pytest.raises(RuntimeError, match="another version"):
         right("0" * 64, CASE, repeats=1, process=False)
@@ -76,7 +71,7 @@ def test_a_file_that_is_no_result_is_one_line_and_left_alone(content, measured, 
     file.write_bytes(measured.to_json().encode()[:40] if content is None else content)
     before = file.read_bytes()
     with pytest.raises(OutputError, match=r"\.json: is damaged: delete it, and the case is solved again$"):
-        run_module.run([CASE], tmp_path, THREAD)
+        run_module.run([CASE], tmp_path, thread)
     assert (file.read_bytes(), list(tmp_path.iterdir())) == (before, [file])
 
 
@@ -119,22 +114,19 @@ def test_a_measurement_is_the_response_and_comes_back_as_it_was(measured):
     refused, untimed = measure(replace(CASE, options=Options(mesh=(2, 1)))), measure(CASE, repeats=0)
     assert (refused.response.status, refused.verdict, untimed.verdict) == ("REFUSED", "", "")
     for one in (measured, refused, untimed):
-        again = Measurement.from_json(one.to_json())
+        again = Row.from_json(one.case, one.to_json())
         assert again.to_json() == one.to_json() == pickle.loads(pickle.dumps(one)).to_json()  # noqa: S301
         types = [[type(value) for value in vars(each.response).values()] for each in (again, one)]
         assert types[0] == types[1]
 
 
 def test_a_case_without_an_answer_has_no_errors():
-    lost, exact = unmeasured("WORKER_LOST", "gone"), solve(KS, "rod")
-    errors = reached_errors(lost.response, exact, KS, KEPT)
-    row = Row(case=CASE, measured=lost, errors=errors)
+    lost, exact = unmeasured(CASE, "WORKER_LOST", "gone"), solve(KS, "rod")
+    row = lost.against(exact, KEPT)
     assert np.isnan([row.error(scope, name) for scope in SCOPES for name in KEPT]).all()
-    assert (row.outcome, row.measured.wrong) == ("WORKER_LOST", False)
+    assert (row.outcome, row.wrong) == ("WORKER_LOST", False)
 
 
-def test_peak_memory_without_proc_and_resource(tmp_path, monkeypatch):
-    """As on Windows: a rise is not seen."""
-    monkeypatch.setattr(memory, "CLEAR", tmp_path / "none" / "clear_refs")
-    monkeypatch.setitem(sys.modules, "resource", None)
-    assert memory.with_peak_memory(lambda: "done") == ("done", 0)
+def test_a_change_of_a_kind_that_the_scene_does_not_have_changes_nothing():
+    scene = load_scene("tip-load")
+    assert changed(scene, {("contact", "penalty"): None, ("pin", "radius"): 1.0}) == scene

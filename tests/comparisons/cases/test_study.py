@@ -143,6 +143,7 @@ BAD = {
     "run[0].elements = 0: must be a whole number from 1 to 100000": "elements = [1, 0]",
     "run[0].elements = 7.5: must be a whole number": "elements = { from = 5, to = 10, count = 3 }",
     "run[0].elements = []: must not be empty": "elements = []",
+    "run[1].model = []: must not be empty": "[[run]]\nmodel = []",
     'run[0].elements.spacing = "lin": must be one of': 'elements = { from = 5, to = 10, count = 3, spacing = "lin" }',
     "run[0].elements.count = 1: must be at least 2": "elements = { from = 5, to = 6, count = 1 }",
     "run[0].beam.height.from = 0: must be positive in a range": 'beam.height = { from = 0, to = 1, count = 3, spacing = "log" }',
@@ -151,7 +152,8 @@ BAD = {
     'run[0].mesh = "25x2": is no option of model = "tsm"': 'mesh = "25x2"',
     "run[1].mesh = 25: must be NXxNY": '[[run]]\nmodel = "solid"\nmesh = [25]',
     'run[1].model = "fem": must be one of': '[[run]]\nmodel = "fem"',
-    "run[0].scene = 3: must be followed by a key, scene.KEY": "scene = 3",
+    "run[0].scene = 3: unknown key": "scene = 3",
+    "run[0].scene.units = {a = 3}: unknown key": "scene.units.a = 3",
     "run[0].load = {moment = 1}: the scene has no load": "load.moment = 1",
     "run[0].contact[0].beam = ": 'beam.name = "other"',
     "run = 1000000: must be at most 100000 cases": "elements = { from = 1, to = 10000, count = 10000 }\n"

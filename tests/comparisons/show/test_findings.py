@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from comparisons.budget import PARTS, Budget
-from comparisons.cases import Measurement, Row
+from comparisons.cases import Row
 from comparisons.compare import ROD, Run, _row, run_of
 from comparisons.models import ELASTICA, SOLID, TSM, certified, solve
 from comparisons.models.options import Options
@@ -57,7 +57,7 @@ def told(rows: list[Row], made: Budget | None = None, left_out: dict[str, str] |
 def changed(rows: list[Row], number: int, **fields: object) -> list[Row]:
     """Return rows of which one has another response."""
     response = replace(rows[number].response, **fields)
-    other = replace(rows[number], measured=Measurement(response=response))
+    other = replace(rows[number], response=response)
     return [*rows[:number], other, *rows[number + 1 :]]
 
 

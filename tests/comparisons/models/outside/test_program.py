@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from comparisons.cases import Case, Measurement, measure
+from comparisons.cases import Case, Row, measure
 from comparisons.cli import main
 from comparisons.models import find, solve
 from comparisons.models.options import ModelError, Options
@@ -188,7 +188,7 @@ def test_studies_and_comparisons_have_it_and_see_a_changed_program(program, tmp_
     key, found = Case(scene=KS, model=file).key, measure(Case(scene=KS, model=file), repeats=1)
     assert (found.response.status, found.verdict) == ("COMPLETED", "CERTIFIED")
     assert found.seconds > 0.005, "the processor time of the child process counts"
-    assert Measurement.from_json(found.to_json()).response.reported_success
+    assert Row.from_json(found.case, found.to_json()).response.reported_success
     program("contact['gap'] = [0.0 for _ in range(5)]")
     assert Case(scene=KS, model=file).key != key
     assert main(["compare", str(tmp_path / "ks.toml"), "--with", file, "--out", str(out), "--quiet"]) == 0

@@ -10,7 +10,8 @@ from matplotlib.image import imread
 
 from comparisons.models import solve
 from comparisons.scene import SupportSpec, read_scene
-from comparisons.show.pages import Section, motion_section, page
+from comparisons.show.motion import motion_section
+from comparisons.show.pages import Section, page
 from tests.comparisons.show.pages.conftest import Browser
 from tests.comparisons.show.specimen import SPECIMEN
 

@@ -14,7 +14,8 @@ from comparisons.compare import RUNS
 from comparisons.errors import error_histories, errors
 from comparisons.models import MODELS, solve
 from comparisons.scene import read_scene
-from comparisons.show.pages import Section, motion_section, page, table, tracks
+from comparisons.show.motion import motion_section, tracks
+from comparisons.show.pages import Section, page, table
 from tests.comparisons.show.pages.conftest import KS
 from tests.comparisons.show.pages.markup import block, check_alone
 
@@ -93,7 +94,9 @@ def test_a_page_is_alone_and_begins_with_the_findings(compared):
 
 def test_text_is_escaped_and_data_cannot_end_the_script():
     sections = [
-        Section(title="A & B <x>", html=table("<c>", ("<h>", "n"), [("<r>", 0.123456), ("s", None)])),
+        Section(
+            title="A & B <x>", html=table("<c>", [{"<h>": "<r>", "n": 0.123456}, {"<h>": "s", "n": None}])
+        ),
         Section(title="data", html="", data={"text": "</script><b>", "nan": np.array([np.nan, 1.0])}),
     ]
     html = page("<t>", "a < b", sections)

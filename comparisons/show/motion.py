@@ -1,19 +1,19 @@
-"""Shapes under a slider and histories beside them: the data of a section that moves, and its markup."""
+"""Sections of a page about answers: shapes under a slider with histories, bands of stick and slip."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from string import Template
+from itertools import groupby
 from typing import Any
 
 import numpy as np
 
 from comparisons.errors import error_columns
 from comparisons.quantities import QUANTITIES, size
-from comparisons.response import Array, Response
+from comparisons.response import CONTACT_STATES, SLIPS, Array, Response
 from comparisons.response.table import unit_names
 from comparisons.scene import Scene
 from comparisons.show import palette
-from comparisons.show.pages.page import Section, markup, part, scrolling, text
+from comparisons.show.pages import Section, piece, rendered
 from comparisons.show.symbols import SYMBOL, end_symbols
 
 POINTS = 61
@@ -26,23 +26,14 @@ DASHES = ("7 3", "2 3", "9 3 2 3", "12 3", "5 2 1 2 1 2", "3 2", "9 2 2 2 2 2", 
 """Dashes of the lines of runs, which distinguish runs without colour."""
 INKS = {palette.BLACK: "var(--ink)", palette.GREY: "var(--grey)"}
 """Colours of the page that are light on a dark screen, in place of black and grey."""
-SWATCH = (
-    '<label class="switch"><input type="checkbox" checked data-switch="{}"><svg class="swatch" viewBox="0 0 40 10" aria-hidden="true">'
-    '<line x1="1" y1="5" x2="39" y2="5" style="stroke:{colour};stroke-width:{width};stroke-dasharray:{dash}"/></svg>{}</label>'
-)
-CHART = (
-    '<figure><figcaption>{title}</figcaption><svg class="chart" data-track="{}" data-kind="{}" tabindex="0" role="img" '
-    'aria-label="{title} against the load parameter"></svg></figure>'
-)
+HATCH = "repeating-linear-gradient(135deg,#16181d 0 1px,{} 1px 5px)"
+STATES = {**CONTACT_STATES, SLIPS[-1]: HATCH.format(CONTACT_STATES[SLIPS[-1]])}
+"""Backgrounds of the bands; one is hatched, which distinguishes it in grey print."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Track:
-    """A quantity over s load parameters: values (s,) by the label of the run, nan where it has none.
-
-    The `errors` (s,) are the distance from the reference, empty without one, and `error_title` says what they
-    are.
-    """
+    """A quantity over s load parameters: values (s,) by run, nan for none, and errors (s,)."""
 
     title: str
     unit: str
@@ -52,11 +43,7 @@ class Track:
 
 
 def tracks(responses: Mapping[str, Response], reference: str, scene: Scene) -> list[Track]:
-    """Return the quantities that are drawn, with errors against the label `reference`.
-
-    The errors are those of `comparisons.errors`. A scene without contact has the forces of its supports. What
-    vanishes in all responses is left out.
-    """
+    """Return the quantities that act in some response, with errors against `reference`."""
     units = unit_names(scene.units)
     shown = {label: response for label, response in responses.items() if len(response.load_parameter)}
     found = []
@@ -100,14 +87,10 @@ def motion_section(
     focus: str,
     vtu: Mapping[str, str] | None = None,
 ) -> Section:
-    """Return a section with the deformed axes under a slider, a switch for each run, and histories.
-
-    The labels of runs begin with a model's name. The tip of the run `focus` is enlarged. `vtu` has the path
-    of the VTU files by label; ``{}`` in it is replaced by the number of the load parameter, from 1.
-    """
+    """Return axes under a slider, switches, histories, the tip of the run `focus`, and links of `vtu`."""
     times = max((one.load_parameter for one in responses.values()), key=len)
     if not len(times):
-        return Section(title=title, html="<p>No run reached a load parameter.</p>")
+        return Section(title, "<p>No run reached a load parameter.</p>")
     labels = dict.fromkeys([*responses, *(label for track in shown for label in track.values)])
     # the wide solid below, the exact answers on top
     ordered = sorted(labels, key=lambda label: -palette.style(label).width)
@@ -150,7 +133,8 @@ def motion_section(
         "tracks": shown,
         "vtu": vtu or {},
     }
-    return Section(title=title, html=_markup(runs, shown, len(times)), data=data)
+    html = rendered("motion", runs=runs, tracks=shown, last=len(times) - 1)
+    return Section(title, html.rstrip("\n"), data)
 
 
 def _axis(scene: Scene, response: Response, beam: str, k: int) -> Array:
@@ -179,24 +163,34 @@ def _lines(scene: Scene, response: Response, decimals: int) -> list[list[Array]]
     return [[thinned(*response.axis_line(beam.name, k)) for beam in scene.beams] for k in steps]
 
 
-def _markup(runs: Sequence[Mapping[str, Any]], shown: Sequence[Track], steps: int) -> str:
-    """Return the frame that the script fills: switches, slider, drawings, charts and the table of values."""
-    # every track has a chart and a column of its values, and of its errors where there are some
-    columns = []
-    for number, track in enumerate(shown):
-        titled = f"{track.title} [{track.unit}]"
-        columns.append((number, "values", titled, titled))
-        if track.errors:
-            columns.append((number, "errors", "error", f"{track.title}, {track.error_title}"))
-    cells = "".join(f'<td data-track="{number}" data-kind="{kind}">-</td>' for number, kind, _, _ in columns)
-    rows = ((f' data-run="{number}"', run["label"], cells) for number, run in enumerate(runs))
-    table = markup(["model", *(name for _, _, name, _ in columns)], rows, "values")
-    bands = any(kind == "errors" for _, kind, _, _ in columns)
-    template = Template(part("motion.html"))
-    return template.substitute(
-        last=steps - 1,
-        switches="\n".join(SWATCH.format(k, text(run["label"]), **run) for k, run in enumerate(runs)),
-        table=scrolling("values at the load parameter of the slider", table),
-        charts="\n".join(CHART.format(k, kind, title=text(title)) for k, kind, _, title in columns),
-        bands="; bands reach from a model to the reference" if bands else "",
-    ).rstrip("\n")
+def states_section(responses: Mapping[str, Response]) -> Section | None:
+    """Return a section with one band for each run and contact with friction; None without friction."""
+    bands = {
+        f"{label}, {pair}" if len(response.contacts) > 1 else label: band(response, pair)
+        for label, response in responses.items()
+        for pair, contact in response.contacts.items()
+        if contact.friction is not None and len(response.load_parameter)
+    }
+    if not bands:
+        return None
+    last = max(parts[-1][2] for parts in bands.values())
+    return Section("Stick and slip", piece("states", bands, STATES, last))
+
+
+def band(response: Response, pair: str) -> list[tuple[str, float, float]]:
+    """Return the states of a contact in their order, each with the load parameters between which it lasts."""
+    contact, times = response.contacts[pair], response.load_parameter
+    assert contact.friction is not None, "a band belongs to a contact with friction"
+    events = [event for event in response.events or () if event.pair == pair and event.kind != "pass-through"]
+    located = sorted(event.load_parameter for event in events)
+    parts: list[tuple[str, float, float]] = []
+    begin, last = 0.0, 0
+    for state, same in groupby(contact.friction.states(contact.force)):
+        last += len(list(same))
+        end = float(times[-1])
+        if last < len(times):
+            between = [t for t in located if times[last - 1] <= t <= times[last]]
+            end = between[-1] if between else float(np.mean(times[last - 1 : last + 1]))
+        parts.append((state, begin, end))
+        begin = end
+    return parts

@@ -1,0 +1,121 @@
+"""The page: style, script, data and sections in one file that loads nothing; the markup stands in templates."""
+
+import base64
+import json
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from comparisons.files import write_text
+from comparisons.output import cell, plain
+from comparisons.scene import Scene, to_toml
+from comparisons.version import machine, versions
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+    from markupsafe import Markup
+
+FOLDER = Path(__file__).with_name("templates")
+NAME = "report.html"
+TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
+
+
+class Section(NamedTuple):
+    """A part of a page: its heading, which no other section has, and the markup below it.
+
+    The `data` are what a script shows, JSON's types, arrays or records; the script finds them as
+    ``DATA[ident]``.
+    """
+
+    title: str
+    html: str
+    data: Any = None
+
+    @property
+    def ident(self) -> str:
+        """The section's anchor: its title in lower case, with hyphens."""
+        return re.sub(r"[^a-z0-9]+", "-", self.title.lower()).strip("-")
+
+
+@cache
+def _templates() -> "Environment":
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    found = Environment(
+        loader=FileSystemLoader(FOLDER),
+        autoescape=True,
+        trim_blocks=True,
+        keep_trailing_newline=True,
+        undefined=StrictUndefined,
+    )
+    found.filters["cell"] = cell
+    return found
+
+
+def rendered(name: str, **values: Any) -> "Markup":
+    """Return the markup of a template, whose values are escaped."""
+    from markupsafe import Markup
+
+    return Markup(_templates().get_template(f"{name}.html.jinja").render(values))  # noqa: S704 - escaped by the template
+
+
+def piece(name: str, *values: Any) -> "Markup":
+    """Return the markup of a macro of ``pieces.html.jinja``, whose values are escaped."""
+    found: Markup = getattr(_templates().get_template("pieces.html.jinja").module, name)(*values)
+    return found.strip()
+
+
+def page(title: str, lead: str, sections: Sequence[Section]) -> str:
+    """Return sections of different titles, below a title and a lead, as one HTML file that loads nothing."""
+    idents = [section.ident for section in sections]
+    if len(set(idents)) < len(idents):
+        raise ValueError(f"sections = {idents}: must have different titles")
+    data = {section.ident: plain(section.data) for section in sections if section.data is not None}
+    text = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+    style, script = ((FOLDER / name).read_text(encoding="utf-8") for name in ("style.css", "script.js"))
+    return rendered("page", title=title, lead=lead, style=style, script=script, data=text, sections=sections)
+
+
+def write_page(
+    folder: Path,
+    title: str,
+    lead: str,
+    sections: Iterable[Section],
+    scenes: Iterable[Scene],
+    files: Iterable[Path],
+    name: str = NAME,
+) -> Path:
+    """Write a `page` that ends with scenes, versions, machine and links to files; return its file."""
+    inputs = [folded(f"{scene.name}.toml", piece("code", to_toml(scene))) for scene in scenes]
+    closing = [
+        *([Section("Input", "\n".join(inputs))] if inputs else []),
+        Section("Versions and machine", definitions({**versions(), **machine()})),
+        Section("Files", piece("links", [path.relative_to(folder).as_posix() for path in files])),
+    ]
+    write_text(folder / name, page(title, lead, [*sections, *closing]))
+    return folder / name
+
+
+def table(caption: str, rows: Sequence[Mapping[str, Any]], *, prose: bool = False) -> str:
+    """Return rows of equal keys as a table with a caption; the cells of `prose` break their lines."""
+    return piece("table", caption, rows, prose) if rows else "<p>None.</p>"
+
+
+def picture(path: Path, caption: str) -> str:
+    """Return an SVG or PNG file as an image: markup of two SVGs in one page would share names and styles."""
+    content = base64.b64encode(path.read_bytes()).decode("ascii")
+    return piece("picture", caption, f"data:{TYPES[path.suffix]};base64,{content}")
+
+
+def definitions(terms: Mapping[str, Any]) -> str:
+    """Return names and what they are as a list."""
+    return piece("definitions", terms)
+
+
+def folded(summary: str, inner: str) -> str:
+    """Return markup that opens on demand."""
+    from markupsafe import Markup
+
+    return piece("folded", summary, Markup(inner))  # noqa: S704 - markup of this module
