@@ -2,31 +2,30 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
 from comparisons.cases.case import Case
-from comparisons.claims.claim import Allowance
-from comparisons.claims.extremes.cell import Against, Cell, Circle
+from comparisons.claims.extremes.cell import Against, Allowance, Cell, circle
 from comparisons.claims.extremes.scenes import (
-    beam_case,
+    beam,
     beams,
     cantilever,
-    cell,
     cycles,
     everything,
     exact_answers,
-    exact_rod,
     half_circle,
     kinds,
     pushed,
     raised,
+    rod,
     rolled_up,
     sheared,
     solid,
-)
+)  # fmt: skip
 from comparisons.models import SOLID
 from comparisons.models.options import Options
 from comparisons.scene import load_scene
@@ -35,44 +34,12 @@ from tsm.elements import MIXED, TIMOSHENKO, ClosedForm
 MESH = (50, 2)
 COARSE = (25, 2)
 HALF_CIRCLE = "the half circle of Konyukhov and Schweizerhof"
-TARGET = Allowance(error=1e-6, why="the target for 40 elements up to L/h = 1e5")
-UNITS = Allowance(error=1e-9, why="units do not matter")
+TARGET = Allowance(1e-6, "the target for 40 elements up to L/h = 1e5")
+UNITS = Allowance(1e-9, "units do not matter")
 CUT_BACK = 100
 """Cycles of what cuts back several steps in each."""
-Cells = Callable[[bool], Iterator[Cell]]
-"""The cells of an axis, fewer if quick."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Axis:
-    """One axis of the matrix: its name in the files, its title with the range, what is solved, and its cells."""
-
-    name: str
-    title: str
-    scene: str
-    cells: Cells
-
-
-AXES: list[Axis] = []
-"""In the order of the report."""
-
-
-def axis(name: str, title: str, scene: str) -> Callable[[Cells], Cells]:
-    """Mark the function that yields the cells of an axis."""
-
-    def marked(cells: Cells) -> Cells:
-        AXES.append(Axis(name=name, title=title, scene=scene, cells=cells))
-        return cells
-
-    return marked
-
-
-def matrix(*, quick: bool = False) -> list[Cell]:
-    """Return the cells of all axes."""
-    return [replace(one, axis=axis.name) for axis in AXES for one in axis.cells(quick)]
-
-
-@axis("units", "units: lengths 1e-9 to 1e6, E 1e-6 to 1e15", HALF_CIRCLE)
 def _units(quick: bool) -> Iterator[Cell]:
     plain = list(everything("", half_circle(cantilever()), 10, COARSE))
     lengths = (1e-9, 1.0, 1e6) if quick else (1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e6)
@@ -84,7 +51,6 @@ def _units(quick: bool) -> Iterator[Cell]:
             yield one.also(Against(case=unit.case, name="itself at L = 1, E = 1", allowed=UNITS))
 
 
-@axis("slenderness", "slenderness L/h", HALF_CIRCLE + "; beams of 40 elements")
 def _slenderness(quick: bool) -> Iterator[Cell]:
     fourth = {kind.name for kind in kinds() if isinstance(kind, ClosedForm) and kind.order >= 4}
     for slenderness in (2, 50, 1e3, 1e5, 1e6) if quick else (2, 5, 10, 20, 50, 100, 1e3, 1e4, 1e5, 1e6):
@@ -92,10 +58,9 @@ def _slenderness(quick: bool) -> Iterator[Cell]:
         mesh = MESH if slenderness <= 1e3 and not (quick and slenderness == 1e3) else None
         for one in everything(f"{slenderness:g}", scene, 40, mesh):
             promised = one.row in fourth and 50 <= slenderness <= 1e5
-            yield one.also(Against(case=exact_rod(scene), allowed=TARGET)) if promised else one
+            yield one.also(rod(scene, TARGET)) if promised else one
 
 
-@axis("shear", "shear Psi/l0^2", HALF_CIRCLE + "; beams of 20 elements")
 def _shear(quick: bool) -> Iterator[Cell]:
     elements = 20
     powers = (-14, -4, 0, 4) if quick else (-14, -11, -8, -6, -4, -2, -1, 0, 1, 2, 3, 4)
@@ -105,20 +70,17 @@ def _shear(quick: bool) -> Iterator[Cell]:
         yield from everything(column, scene, elements)
 
 
-@axis("elements", "number of elements", HALF_CIRCLE)
 def _elements(quick: bool) -> Iterator[Cell]:
     scene = half_circle(cantilever())
     yield from exact_answers("1", scene)
     for count in (1, 2, 5, 50) if quick else (1, 2, 3, 5, 10, 20, 50, 200, 1000, 5000):
         yield from beams(f"{count}", scene, count, only=kinds(meshed=True))
         for kind in kinds(meshed=False) if count <= 1000 else ():
-            case = beam_case(scene, kind, None)
-            yield cell(kind.name, f"{count}", replace(case, options=replace(case.options, elements=count)))
+            yield beam(f"{count}", scene, kind, Options(elements=count))
         if 2 <= count <= 1000:
             yield solid(f"{count}", scene, (count, 2))
 
 
-@axis("ratio", "longest over shortest of 20 elements", HALF_CIRCLE)
 def _ratio(quick: bool) -> Iterator[Cell]:
     for power in (3, 6) if quick else (1, 2, 3, 4, 5, 6):
         growth = np.logspace(0, power, 20)
@@ -128,7 +90,6 @@ def _ratio(quick: bool) -> Iterator[Cell]:
             yield from beams(f"1e{power}, fine at {where}", scene, None, only=kinds(meshed=True))
 
 
-@axis("contact", "contact position, l an element", "a pin that lifts the beam a little; beams of 10 elements")
 def _contact(quick: bool) -> Iterator[Cell]:
     """A pin beside a node in the middle, beside the clamp, beside the tip, in parts of one of ten elements."""
     elements = 10
@@ -153,36 +114,32 @@ def _contact(quick: bool) -> Iterator[Cell]:
         yield from everything(column, scene, elements)
 
 
-@axis("load-step", "load steps for the whole path", HALF_CIRCLE + "; beams of 20 elements")
 def _load_step(quick: bool) -> Iterator[Cell]:
     for steps in (1, 5, 100) if quick else (1, 2, 5, 10, 100, 1000, 10_000):
         scene = half_circle(cantilever(), steps=steps)
         yield from everything(f"{steps}", scene, 20, COARSE)
         for kind in (MIXED, TIMOSHENKO) if steps <= 1000 else ():
-            yield cell(f"{kind.name}, 200 elements", f"{steps}", beam_case(scene, kind, 200))
+            yield beam(f"{steps}", scene, kind, Options(elements=200), f"{kind.name}, 200 elements")
 
 
-@axis("penalty", "penalty over the default", HALF_CIRCLE)
 def _penalty(quick: bool) -> Iterator[Cell]:
-    beam, width = cantilever(), 1 / 50
+    strip, width = cantilever(), 1 / 50
     for surface in ("axis", "face"):
-        plain = Case(scene=half_circle(beam, surface=surface), model=SOLID.name, options=Options(mesh=MESH))
+        plain = Case(scene=half_circle(strip, surface=surface), model=SOLID.name, options=Options(mesh=MESH))
         for power in (-6, -2, 0, 12) if quick else (-6, -5, -4, -3, -2, -1, 0, 2, 4, 6, 8, 10, 12):
-            penalty = 10.0**power * 25.0 * beam.youngs_modulus * width
-            scene = half_circle(beam, surface=surface, penalty=penalty)
-            softness = 10 * beam.EI / penalty
-            allowed = Allowance(error=4 * 10 * softness + 1e-6, why="what the penalty lets the beam give way")
+            penalty = 10.0**power * 25.0 * strip.youngs_modulus * width
+            scene = half_circle(strip, surface=surface, penalty=penalty)
+            softness = 10 * strip.EI / penalty
+            allowed = Allowance(4 * 10 * softness + 1e-6, "what the penalty lets the beam give way")
             check = Against(case=plain, name="itself with the default penalty", allowed=allowed)
             yield solid(f"1e{power}", scene, MESH, check, row=f"{SOLID.name}, {surface}")
 
 
-@axis("poissons-ratio", "Poisson's ratio", HALF_CIRCLE)
 def _poissons_ratio(quick: bool) -> Iterator[Cell]:
     for nu in (-0.9, 0.0, 0.4999) if quick else (-0.9, -0.5, -0.1, 0.0, 0.3, 0.45, 0.49, 0.499, 0.4999):
         yield from everything(f"{nu:g}", half_circle(cantilever(poissons_ratio=nu)), 20, MESH)
 
 
-@axis("depth", "depth", "up to slip-off, past the limit point, roll-up by an end moment")
 def _depth(_: bool) -> Iterator[Cell]:
     places = {
         "4.1, slip-off at .99 of the way": (load_scene("cantilever-critical-area"), 18),
@@ -192,13 +149,11 @@ def _depth(_: bool) -> Iterator[Cell]:
     for column, (scene, elements) in places.items():
         yield from everything(column, scene, elements, None if scene.beams[0].height is None else MESH)
     for turns, kind in product((1, 2), kinds()):
-        case = beam_case(rolled_up(cantilever(), turns), kind, 40 * turns)
-        yield cell(kind.name, f"roll-up, {turns}", case, Circle())
+        options = Options(elements=40 * turns if kind.meshed else 1)
+        one = beam(f"roll-up, {turns}", rolled_up(cantilever(), turns), kind, options)
+        yield replace(one, against=(), law=circle)
 
 
-@axis(
-    "time", "cycles of touch and release", "a pin that lifts the beam by L/10 and leaves it, again and again"
-)
 def _time(quick: bool) -> Iterator[Cell]:
     unknown = [kind for kind in kinds() if kind.contact_unknowns]
     for count in (1, 20) if quick else (1, 20, 100, 1000, 10_000):
@@ -207,3 +162,38 @@ def _time(quick: bool) -> Iterator[Cell]:
         yield from exact_answers(column, scene)
         if count <= CUT_BACK:
             yield solid(column, scene, COARSE)
+
+
+class Axis(NamedTuple):
+    """One axis of the matrix: its title with the range, what is solved, and its cells, fewer if quick."""
+
+    title: str
+    scene: str
+    cells: Callable[[bool], Iterator[Cell]]
+
+
+AXES = {
+    "units": Axis("units: lengths 1e-9 to 1e6, E 1e-6 to 1e15", HALF_CIRCLE, _units),
+    "slenderness": Axis("slenderness L/h", HALF_CIRCLE + "; beams of 40 elements", _slenderness),
+    "shear": Axis("shear Psi/l0^2", HALF_CIRCLE + "; beams of 20 elements", _shear),
+    "elements": Axis("number of elements", HALF_CIRCLE, _elements),
+    "ratio": Axis("longest over shortest of 20 elements", HALF_CIRCLE, _ratio),
+    "contact": Axis(
+        "contact position, l an element", "a pin that lifts the beam a little; beams of 10 elements", _contact
+    ),
+    "load-step": Axis("load steps for the whole path", HALF_CIRCLE + "; beams of 20 elements", _load_step),
+    "penalty": Axis("penalty over the default", HALF_CIRCLE, _penalty),
+    "poissons-ratio": Axis("Poisson's ratio", HALF_CIRCLE, _poissons_ratio),
+    "depth": Axis("depth", "up to slip-off, past the limit point, roll-up by an end moment", _depth),
+    "time": Axis(
+        "cycles of touch and release",
+        "a pin that lifts the beam by L/10 and leaves it, again and again",
+        _time,
+    ),
+}
+"""By the names in the files, in the order of the report."""
+
+
+def matrix(*, quick: bool = False) -> list[Cell]:
+    """Return the cells of all axes."""
+    return [replace(one, axis=name) for name, axis in AXES.items() for one in axis.cells(quick)]

@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from comparisons.cases.case import Case
-from comparisons.claims.extremes.cell import Against, Cell, Check, Energy
+from comparisons.claims.extremes.cell import Against, Allowance, Cell, energy
 from comparisons.models import MODELS, ROD, SOLID, TSM
 from comparisons.models.options import Options
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene
@@ -41,11 +41,6 @@ def sheared(psi: float) -> BeamSpec:
     return _clamped(shear_modulus=second_moment / psi / h**2, area=h**2, second_moment=second_moment)
 
 
-def rigid_in_shear(beam: BeamSpec) -> BeamSpec:
-    """Return `beam` as an Euler-Bernoulli element sees it, rigid in shear."""
-    return replace(beam, poissons_ratio=None, shear_modulus=1e9 * beam.youngs_modulus)
-
-
 def pushed(beam: BeamSpec, *path: Point, steps: int, **contact: Any) -> Scene:
     """Return `beam` under a pin that follows `path` from below; `contact` goes to `ContactSpec`."""
     return Scene(
@@ -68,15 +63,10 @@ def raised(beam: BeamSpec, x: float, lift: float, *, steps: int = 10) -> Scene:
     return pushed(beam, (x, 0.0), (x, lift), steps=steps)
 
 
-def rolled_up(beam: BeamSpec, turns: int, *, steps: int = 8) -> Scene:
+def rolled_up(beam: BeamSpec, turns: int) -> Scene:
     """Return `beam` under a moment at its tip that bends it to `turns` circles."""
-    moment = 2 * math.pi * turns * beam.EI / beam.length
-    return Scene(
-        name="rolled-up",
-        load_parameters=steps,
-        beams=(beam,),
-        loads=(LoadSpec(beam="beam", end="end", moment=moment),),
-    )
+    load = LoadSpec(beam="beam", end="end", moment=2 * math.pi * turns * beam.EI / beam.length)
+    return Scene(name="rolled-up", load_parameters=8, beams=(beam,), loads=(load,))
 
 
 def cycles(beam: BeamSpec, count: int) -> Scene:
@@ -92,52 +82,51 @@ def kinds(*, meshed: bool | None = None) -> list[ElementType]:
     return [kind for kind in found if meshed in (None, kind.meshed)]
 
 
-def exact_rod(scene: Scene) -> Case:
-    """Return the exact rod on `scene`."""
-    return Case(scene=scene, model=ROD.name)
+def rod(scene: Scene, allowed: Allowance | None = None) -> Against:
+    """Return the comparison with the exact rod on `scene`."""
+    return Against(case=Case(scene=scene, model=ROD.name), allowed=allowed)
 
 
-def beam_case(scene: Scene, kind: ElementType, elements: int | None) -> Case:
-    """Return TSM on `scene`; elements without a mesh are one per beam, None leaves the others to the scene."""
-    options = Options(element=kind.name, elements=elements if kind.meshed else 1)
-    return Case(scene=scene, model=TSM.name, options=options)
-
-
-def against_rod(case: Case) -> Against:
-    """Return the comparison of a TSM or solid case with the exact rod of the same shear stiffness."""
-    scene = case.scene
-    if case.model == TSM.name and not TSM.element(case.options).sheared:
-        scene = replace(scene, beams=tuple(rigid_in_shear(beam) for beam in scene.beams))
-    return Against(case=exact_rod(scene))
-
-
-def cell(row: str, column: str, case: Case, *checks: Check) -> Cell:
-    """Return the cell of a case, by default against the rod."""
-    return Cell(row=row, column=column, case=case, checks=checks or (against_rod(case),))
+def beam(column: str, scene: Scene, kind: ElementType, options: Options, row: str = "") -> Cell:
+    """Return the cell of TSM, against the rod of the same shear stiffness: that of an Euler-Bernoulli element is rigid in shear."""
+    case, stiff = Case(scene=scene, model=TSM.name, options=replace(options, element=kind.name)), scene
+    if not kind.sheared:
+        rigid = (
+            replace(one, poissons_ratio=None, shear_modulus=1e9 * one.youngs_modulus) for one in scene.beams
+        )
+        stiff = replace(scene, beams=tuple(rigid))
+    return Cell(row=row or kind.name, column=column, case=case, against=(rod(stiff),))
 
 
 def beams(
     column: str, scene: Scene, elements: int | None, *, only: Iterable[ElementType] | None = None
 ) -> Iterator[Cell]:
-    """Yield the cells of TSM, and of other models of beams with a mesh as they are, against the rod."""
+    """Yield the cells of TSM, and of other models of beams with a mesh as they are, against the rod.
+
+    Elements without a mesh are one per beam; None leaves the number of the others to the scene.
+    """
     for kind in kinds() if only is None else only:
-        yield cell(kind.name, column, beam_case(scene, kind, elements))
+        yield beam(column, scene, kind, Options(elements=elements if kind.meshed else 1))
     for model in MODELS.values():
         if model.meshed and not model.continuum and model is not TSM:
-            yield cell(model.name, column, Case(scene=scene, model=model.name))
+            case = Case(scene=scene, model=model.name)
+            yield Cell(row=model.name, column=column, case=case, against=(rod(scene),))
 
 
-def solid(column: str, scene: Scene, mesh: tuple[int, int], *checks: Check, row: str = SOLID.name) -> Cell:
+def solid(
+    column: str, scene: Scene, mesh: tuple[int, int], against: Against | None = None, row: str = SOLID.name
+) -> Cell:
     """Return the cell of the solid, by default against the rod."""
-    return cell(row, column, Case(scene=scene, model=SOLID.name, options=Options(mesh=mesh)), *checks)
+    case = Case(scene=scene, model=SOLID.name, options=Options(mesh=mesh))
+    return Cell(row=row, column=column, case=case, against=(against or rod(scene),))
 
 
 def exact_answers(column: str, scene: Scene) -> Iterator[Cell]:
-    """Yield the cells of the models without a mesh: against their energy, and against the rod."""
-    rod = Against(case=exact_rod(scene))
+    """Yield the cells of the models without a mesh: by their energy, and against the rod."""
     for model in (one for one in MODELS.values() if not one.meshed):
-        checks = (Energy(rigid=not model.rod), *(() if model is ROD else (rod,)))
-        yield cell(model.name, column, Case(scene=scene, model=model.name), *checks)
+        others = () if model is ROD else (rod(scene),)
+        case = Case(scene=scene, model=model.name)
+        yield Cell(row=model.name, column=column, case=case, against=others, law=energy)
 
 
 def everything(

@@ -1,37 +1,33 @@
 """The answers of a model to a problem: what is read from them, and the lines that they add to the problem's picture."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from comparisons.claims.claim import StoppedError
-from comparisons.claims.manual.problem import Problem, Reading, Trial, varied
+from comparisons.claims.manual.problem import Line, Problem, Quantity, Trial, varied
 from comparisons.models import solve
 from comparisons.models.options import Options
-from comparisons.response import Array, Response
+from comparisons.response import Response
 from comparisons.response.axis import STATIONS, axes_at_stations
 from comparisons.response.table import table
 from comparisons.scene import Scene
 
 ANSWER = "exact answer"
-"""Style of curves of the exact answer, which no model computed."""
+"""Style of lines of the exact answer, which no model computed."""
 
 
-class Curve(NamedTuple):
-    """A line of a picture; its style also is its label, and rows of nan part its points (n, 2) into pieces."""
-
-    style: str
-    points: Array
+class StoppedError(RuntimeError):
+    """A solution that stopped before it had an answer: its status and sentence."""
 
 
 class Answers:
-    """A model at a problem, and the curves that it adds to the picture."""
+    """A model at a problem, and the lines that it adds to the picture."""
 
     def __init__(self, problem: Problem, trial: Trial) -> None:
         self.trial, self.scene, self.shown = trial, trial.scene, problem.picture.shown
-        self.curves: list[Curve] = []
+        self.lines: list[Line] = []
 
     def solved(
         self, scene: Scene | None = None, *, draw: bool = True, options: Options | None = None
@@ -40,19 +36,16 @@ class Answers:
         scene = scene or self.scene
         response = answered(scene, self.trial.key, options or self.trial.options)
         if draw:
-            self.curves.append(deflected(scene, response, self.trial.model, self.shown))
+            self.lines.extend(deflected(scene, response, self.trial.model, self.shown))
         return response
 
-    def draw(self, *lines: Array | Sequence[Sequence[float]], style: str = "") -> None:
-        """Draw lines of points (n, 2) that are not joined, by default in the style of the model."""
-        self.curves.append(pieces(style or self.trial.model, lines))
+    def draw(self, *lines: ArrayLike, style: str = "") -> None:
+        """Draw lines of points (n, 2), by default in the style of the model."""
+        self.lines.extend((style or self.trial.model, np.asarray(line, dtype=float)) for line in lines)
 
 
 def answered(scene: Scene, model: str, options: Options | None = None) -> Response:
-    """Return the response of a model to a scene.
-
-    Raises StoppedError if it is not complete and checked.
-    """
+    """Return the response of a model to a scene; one that is not complete and checked is a `StoppedError`."""
     response = solve(scene, model, options)
     if not response.completed:
         raise StoppedError(f"{response.status}: {response.message}")
@@ -62,20 +55,17 @@ def answered(scene: Scene, model: str, options: Options | None = None) -> Respon
 def readings(problem: Problem, answers: Answers) -> list[float]:
     """Read every quantity from the answer to the problem's scene, with what each changes in it."""
     found: dict[str, Response] = {}
-    values = []
-    for reading in problem.readings:
-        key = repr(reading.changes)
-        if key not in found:
-            found[key] = answers.solved(varied(answers.scene, reading.changes))
-        values.append(reading.times * _read(found[key], reading))
-    return values
+    for one in problem.quantities:
+        if repr(one.changes) not in found:
+            found[repr(one.changes)] = answers.solved(varied(answers.scene, one.changes))
+    return [one.times * _read(found[repr(one.changes)], one) for one in problem.quantities]
 
 
-def _read(response: Response, reading: Reading) -> float:
-    found = value(response, reading.words, reading.at)
-    if reading.since is not None:
-        found -= value(response, reading.words, reading.since)
-    return found / _read(response, reading.over) if reading.over else found
+def _read(response: Response, quantity: Quantity) -> float:
+    found = value(response, quantity.read, quantity.at)
+    if quantity.since is not None:
+        found -= value(response, quantity.read, quantity.since)
+    return found / _read(response, quantity.over) if quantity.over else found
 
 
 def value(response: Response, words: str, at: float) -> float:
@@ -90,7 +80,7 @@ def value(response: Response, words: str, at: float) -> float:
     if what == "event":
         kind, pair, number = more
         located = [
-            one.load_parameter for one in response.events or () if (one.kind, one.pair) == (kind, pair)
+            one.load_parameter for one in response.events or () if [one.kind, one.pair] == [kind, pair]
         ]
         return float(next(iter(located[int(number) :]), np.nan))
     k = step(response, at)
@@ -111,21 +101,15 @@ def step(response: Response, load_parameter: float) -> int:
     return k
 
 
-def deflected(scene: Scene, response: Response, style: str, shown: Sequence[float] = (1.0,)) -> Curve:
-    """Return the deflected axes of all beams at some load parameters as one curve."""
-    at = [(beam.name, step(response, t)) for beam in scene.beams for t in shown]
-    return pieces(style, (response.axis_line(name, k)[1] for name, k in at))
+def deflected(
+    scene: Scene, response: Response, style: str, shown: Sequence[float] = (1.0,)
+) -> Iterator[Line]:
+    """Yield the deflected axes of all beams at some load parameters."""
+    for beam in scene.beams:
+        yield from ((style, response.axis_line(beam.name, step(response, t))[1]) for t in shown)
 
 
-def pieces(style: str, lines: Iterable[Array | Sequence[Sequence[float]]]) -> Curve:
-    """Return lines that are not joined as one curve."""
-    parted = [
-        part for line in lines for part in (np.asarray(line, dtype=np.float64), np.full((1, 2), np.nan))
-    ]
-    return Curve(style, np.concatenate(parted[:-1]))
-
-
-def undeformed(scene: Scene) -> tuple[Curve, ...]:
-    """Return the undeformed axes and the paths of the pins."""
-    axes = pieces("undeformed", ([beam.start, beam.end] for beam in scene.beams))
-    return (axes, pieces("path of the pin", (pin.points for pin in scene.pins))) if scene.pins else (axes,)
+def undeformed(scene: Scene) -> Iterator[Line]:
+    """Yield the undeformed axes and the paths of the pins."""
+    yield from (("undeformed", np.array([beam.start, beam.end])) for beam in scene.beams)
+    yield from (("path of the pin", np.array(pin.points)) for pin in scene.pins)

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from comparisons.claims.claim import Quantity
-from comparisons.claims.manual.problem import Problem, read_problem
+from comparisons.claims.manual.problem import Problem, Quantity, read_problem
 from comparisons.files import writable_folder, write_text
 from comparisons.output import Report, json_text
 from comparisons.scene import to_tables
@@ -57,9 +56,8 @@ def _quantity(quantity: Quantity, uncertainty: float) -> dict[str, Any]:
 
     Of zero they are the decimals, in parts of the quantity's scale.
     """
-    scale = abs(quantity.exact) if quantity.scale is None else quantity.scale
-    size = abs(quantity.exact) or scale
-    error = uncertainty * scale
+    size = abs(quantity.exact) or quantity.size
+    error = uncertainty * quantity.size
     digits = MOST_DIGITS if error == 0.0 else min(MOST_DIGITS, max(0, math.floor(-math.log10(error / size))))
     return {"name": quantity.name, "value": quantity.exact, "digits": digits, "uncertainty": error}
 

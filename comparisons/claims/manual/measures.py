@@ -6,9 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.claims.claim import Quantity, StoppedError
-from comparisons.claims.manual.answers import ANSWER, Answers, answered, readings, undeformed
-from comparisons.claims.manual.problem import Problem, varied
+from comparisons.claims.manual.answers import ANSWER, Answers, StoppedError, answered, readings, undeformed
+from comparisons.claims.manual.problem import Problem, Quantity, varied
 from comparisons.claims.solid.peers import solved
 from comparisons.models import ROD, SOLID
 from comparisons.models.solid import to_solid
@@ -197,7 +196,7 @@ def invariance(problem: Problem, answers: Answers) -> Sequence[float]:
     other = read_scene(problem.settings["other"], problem.name)
     pair = answers.scene.contacts[0].pair
     first, second = answers.solved(draw=False), answers.solved(other)
-    answers.curves.extend(undeformed(other))
+    answers.lines.extend(undeformed(other))
     forces = [response.contacts[pair].force for response in (first, second)]
     moments = [np.abs(next(iter(one.supports.values())).moment) for one in (first, second)]
     return [float(np.abs(b - a).max() / np.abs(a).max()) for a, b in (forces, moments)]

@@ -1,5 +1,6 @@
 """The problems of the verification manual: each is one TOML file of the folder ``problems``."""
 
+import math
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -7,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from comparisons.cases.settings import changed
-from comparisons.claims.claim import Allowance, Judgement, Quantity
+from comparisons.claims.finding import Finding
 from comparisons.models.options import Options
+from comparisons.response import Array
 from comparisons.scene import InputError, Scene, built_in_scenes, load_scene, read_scene
 
 FOLDER = Path(__file__).parent / "problems"
@@ -20,13 +22,15 @@ ORDER = (
     "timoshenko-order", "thin-strips", "penalty-slope", "locking", "energy-balance", "objectivity", "mirror", "reversal",
 )  # fmt: skip
 """The problems in the order of the manual; those that are not named follow by name."""
+Line = tuple[str, Array]
+"""A line of a picture: its style, which also is its label, and its points, shape (n, 2)."""
 Changes = Mapping[str, Any]
 """New values of a scene's settings by the names of a study file, ``contact.friction``."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Picture:
-    """The picture of a problem: labels of the axes, by default places; load parameters whose axes are drawn; a model whose answer is the exact one.
+    """What is drawn: labels of the axes, by default places; load parameters whose axes are drawn; a model whose answer is the exact one.
 
     `guide` is the order of a line for the eye and its first value, where both axes are logarithmic.
     """
@@ -38,18 +42,39 @@ class Picture:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Reading:
-    """Where an answer has a quantity: its words, as `answers.value` takes them, a load parameter, a factor, and changes of the scene.
+class Quantity:
+    """A number with its exact value, and where an answer has it.
 
-    What it is at the load parameter `since` is taken away, and it is divided by what is `over` which it stands.
+    Attributes
+    ----------
+    name : str
+        With the unit, unless the quantity is dimensionless.
+    exact, scale : float
+        The exact value, and what its error is divided by, the magnitude of the exact value if None.
+    read : str
+        The words of `comparisons.claims.manual.answers.value`; empty where a measure finds the number.
+    at, times, changes
+        A load parameter, a factor, and changes of the scene.
+    since : float, optional
+        A load parameter; what the quantity is there is taken away.
+    over : Quantity, optional
+        What it is divided by.
     """
 
-    words: str = ""
+    name: str = ""
+    exact: float = math.nan
+    scale: float | None = None
+    read: str = ""
     at: float = 1.0
     times: float = 1.0
     changes: Changes = field(default_factory=dict)
     since: float | None = None
-    over: "Reading | None" = None
+    over: "Quantity | None" = None
+
+    @property
+    def size(self) -> float:
+        """What its error is divided by."""
+        return abs(self.exact) if self.scale is None else self.scale
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,8 +89,8 @@ class Trial:
         For `comparisons.models.solve`.
     scene : Scene
         What the model solves.
-    allowance : Allowance
-        Allowed error of every quantity.
+    allowed, why
+        Allowed error of every quantity, and its reason.
     """
 
     model: str
@@ -73,7 +98,8 @@ class Trial:
     key: str
     options: Options
     scene: Scene
-    allowance: Allowance
+    allowed: float
+    why: str
 
     @property
     def label(self) -> str:
@@ -99,16 +125,13 @@ class Problem:
         Bound of the error of the exact values, over their scales.
     scene : Scene
         What is solved, or what the scenes that are solved follow from.
-    quantities, readings : tuple
-        What is compared, and where an answer has it.
-    trials : tuple of Trial
-        The models.
+    quantities, trials : tuple
+        What is compared, and the models.
     picture : Picture
         What is drawn.
-    measure : str
-        Name of a function of `comparisons.claims.manual.measures` that finds the values; by default they are read from the answer.
-    settings : mapping
-        For that function.
+    measure, settings
+        Name of a function of `comparisons.claims.manual.measures` that finds the values, and what it takes; by default they are read from
+        the answer.
     """
 
     name: str
@@ -119,7 +142,6 @@ class Problem:
     uncertainty: float
     scene: Scene
     quantities: tuple[Quantity, ...]
-    readings: tuple[Reading, ...]
     trials: tuple[Trial, ...]
     picture: Picture
     measure: str = "readings"
@@ -127,11 +149,37 @@ class Problem:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Judgement:
+    """The answer of a model: its findings, one for each quantity, and wall time [s]; `stopped` says why there is no answer."""
+
+    trial: Trial
+    findings: tuple[Finding, ...]
+    seconds: float
+    stopped: str = ""
+
+    @property
+    def passed(self) -> bool:
+        """Whether every error is within what is allowed."""
+        return all(one.holds for one in self.findings)
+
+    @property
+    def worst(self) -> Finding:
+        """The finding with the largest error, the first that is not a number if one is not."""
+        return max(self.findings, key=lambda one: one.share)
+
+    @property
+    def failure(self) -> str | None:
+        """Why the answer fails, with its numbers; None if it is right."""
+        return self.stopped or (None if self.passed else self.worst.failure)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Case:
-    """A problem with a judgement for every model."""
+    """A problem, the judgement on every model, and the lines that the answers add to its picture."""
 
     problem: Problem
     judgements: tuple[Judgement, ...]
+    lines: tuple[Line, ...]
 
     @property
     def passed(self) -> bool:
@@ -157,24 +205,18 @@ def read_problem(path: Path) -> Problem:
     """
     table = tomllib.loads(path.read_text(encoding="utf-8"))
     scene = _scene(table.pop("scene"), table.pop("changes", {}), path)
-    rows, trials = table.pop("quantities"), table.pop("trials")
     return Problem(
         name=path.stem,
         scene=scene,
-        quantities=tuple(
-            Quantity(name=row.pop("name"), exact=row.pop("exact"), scale=row.pop("scale", None))
-            for row in rows
-        ),
-        readings=tuple(map(_reading, rows)),
-        trials=tuple(_trial(row, scene, path) for row in trials),
+        quantities=tuple(map(_quantity, table.pop("quantities"))),
+        trials=tuple(_trial(row, scene, path) for row in table.pop("trials")),
         picture=Picture(**table.pop("picture", {})),
         **table,
     )
 
 
-def _reading(row: dict[str, Any]) -> Reading:
-    over = _reading(row.pop("over")) if "over" in row else None
-    return Reading(words=row.pop("read", ""), over=over, **row)
+def _quantity(row: dict[str, Any]) -> Quantity:
+    return Quantity(**row | {"over": _quantity(row["over"])} if "over" in row else row)
 
 
 def _scene(stated: str, changes: Changes, path: Path) -> Scene:
@@ -189,19 +231,13 @@ def varied(scene: Scene, changes: Changes) -> Scene:
 
 def _trial(row: dict[str, Any], scene: Scene, path: Path) -> Trial:
     key, _, element = row["model"].partition(" ")
-    elements, mesh = row.get("elements"), row.get("mesh")
+    elements, mesh, changes = row.pop("elements", None), row.pop("mesh", None), row.pop("changes", {})
     beams = f"{elements} elements a beam" if elements else "1 element a beam" if element else ""
+    strip: Any = tuple(map(int, mesh.split("x"))) if mesh else None
+    row.setdefault("setting", f"{mesh} elements" if mesh else beams)
+    own = _scene(row.pop("scene"), changes, path) if "scene" in row else varied(scene, changes)
     return Trial(
-        model=row["model"],
-        setting=row.get("setting", f"{mesh} elements" if mesh else beams),
-        key=key,
-        options=Options(
-            element=element or None,
-            elements=elements,
-            mesh=tuple(map(int, mesh.split("x"))) if mesh else None,  # type: ignore[arg-type]
-        ),
-        scene=varied(_scene(row["scene"], {}, path) if "scene" in row else scene, row.get("changes", {})),
-        allowance=Allowance(error=row["allowed"], why=row["why"]),
+        key=key, options=Options(element=element or None, elements=elements, mesh=strip), scene=own, **row
     )
 
 
