@@ -26,6 +26,7 @@ class Panel:
 
 def draw(panels: Sequence[Panel], *paths: Path, tall: float, title: str = "", columns: int = 2) -> None:
     """Draw panels beside each other, each `tall` inches high, with one legend below them."""
+    columns = min(columns, len(panels))
     rows = -(-len(panels) // columns)
     fig = figure(figsize=(WIDTH, 1.3 + tall * rows))
     grid = fig.subplots(rows, columns, squeeze=False)

@@ -21,12 +21,10 @@ def pareto(cost: ArrayLike, error: ArrayLike) -> list[int]:
     [0, 2]
     """
     costs, errors = np.asarray(cost, dtype=float), np.asarray(error, dtype=float)
-    best, front = np.inf, []
-    for k in np.lexsort((errors, costs)):
-        if np.isfinite(costs[k]) and errors[k] < best:
-            best = errors[k]
-            front.append(int(k))
-    return front
+    rising = np.lexsort((errors, costs))
+    rising = rising[np.isfinite(costs[rising]) & np.isfinite(errors[rising])]
+    before = np.minimum.accumulate(np.append(np.inf, errors[rising]))
+    return [int(k) for k in rising[errors[rising] < before[:-1]]]
 
 
 class Fit(NamedTuple):
@@ -35,39 +33,38 @@ class Fit(NamedTuple):
     It is fitted to `points` points from x = `first` to `last`; `scatter` is the largest ``|ln y - ln y_fit|``.
     """
 
-    exponent: float
-    first: float
-    last: float
-    points: int
-    scatter: float
+    exponent: float | None = None
+    points: int = 0
+    first: float | None = None
+    last: float | None = None
+    scatter: float | None = None
 
 
-def power_law(x: Sequence[float], y: Sequence[float]) -> Fit | None:
-    """Return the power law through the points; None if they are fewer than three or not positive."""
+def power_law(x: Sequence[float], y: Sequence[float]) -> Fit:
+    """Return the power law through the points, without an exponent if they are fewer than three or not positive."""
     if len(x) < FEWEST or not (min(x) > 0.0 and min(y) > 0.0):
-        return None
+        return Fit()
     lx, ly = np.log(x), np.log(y)
     exponent, constant = np.polyfit(lx, ly, 1)
     scatter = float(np.abs(ly - exponent * lx - constant).max())
-    return Fit(float(exponent), float(min(x)), float(max(x)), len(x), scatter)
+    return Fit(float(exponent), len(x), float(min(x)), float(max(x)), scatter)
 
 
-def convergence(resolution: Sequence[float], error: Sequence[float], floor: float) -> Fit | None:
+def convergence(resolution: Sequence[float], error: Sequence[float], floor: float) -> Fit:
     """Return the power law of an error over rising resolution, fitted in the asymptotic range; the order is minus the exponent.
 
     The first error below `floor` and all later errors are left out. The local order of two successive meshes is the slope between
     them. The asymptotic range is the longest run of meshes whose local orders are at least nine tenths of the median positive local
-    order. This excludes chance on coarse meshes and round-off on fine ones. The four finest points of the range are fitted. The result
-    is None for fewer than three points.
+    order. This excludes chance on coarse meshes and round-off on fine ones. The four finest points of the range are fitted. There is no
+    exponent for fewer than three points.
     """
     x, y = np.asarray(resolution, dtype=float), np.asarray(error, dtype=float)
-    below = np.flatnonzero(~(y > floor))
-    x, y = (values[: below[0] if len(below) else None] for values in (x, y))
+    above = np.logical_and.accumulate(y > floor)
+    x, y = x[above], y[above]
     local = -np.diff(np.log(y)) / np.diff(np.log(x))
     if not (local > 0.0).any():
-        return None
+        return Fit()
     falling = np.flatnonzero(local >= STEADY * np.median(local[local > 0.0]))
-    runs = np.split(falling, np.flatnonzero(np.diff(falling) > 1) + 1)
-    run = max(reversed(runs), key=len)
+    run = max(reversed(np.split(falling, np.flatnonzero(np.diff(falling) > 1) + 1)), key=len)
     chosen = slice(max(run[0], run[-1] + 2 - MOST), run[-1] + 2)
     return power_law(list(x[chosen]), list(y[chosen]))

@@ -57,14 +57,17 @@ def plot_work(trade: Trade, scope: str, cost: str, folder: Path) -> list[Path]:
 
 def _draw(axes: Any, trade: Trade, scope: str, cost: str, *, own: bool) -> None:
     """Draw every completed setting, the families in the order of the legend; what is uncertain bounds errors from below."""
-    models = [model.name for model in MODELS.values() if model.meshed or not model.rod]
-    shown = [row for model in models for row in trade.of_model(model, scope)]
+    shown = [
+        row
+        for model in MODELS.values()
+        if model.meshed or not model.rod
+        for row in trade.of_model(model.name, scope)
+    ]
     order = [words for model in MODELS.values() for words in model.styles()]
     for row in sorted(
         shown, key=lambda row: max(k for k, words in enumerate(order) if row.family.startswith(words))
     ):
-        style, spent = palette.style(row.family), row.spent(cost)
-        error = row.error(scope, SHOWN, own=own)
+        style, spent, error = palette.style(row.family), row.spent(cost), row.error(scope, SHOWN, own=own)
         if not (np.isfinite(error) and spent > 0):
             continue
         floor = trade.uncertainty(row.case.model if own else ROD.name, scope, SHOWN)
@@ -85,43 +88,28 @@ def _mark_uncertainty(axes: Any, doubt: float) -> None:
 
 
 def _draw_front(axes: Any, points: Sequence[Line], model: str) -> None:
-    """Draw a front, and name its points: to their left, or at the right-hand edge where others of the model are around."""
-    axes.plot(
-        [one["spent"] for one in points], [one["own_error"] for one in points],
-        color=MODELS[model].colour, linewidth=1.6, drawstyle="steps-post", zorder=1,
-    )  # fmt: skip
-    low, high = np.log(axes.get_ylim())
-    last = -np.inf
-    for one in reversed(_distinct(points)):
-        height = float((np.log(one["own_error"]) - low) / (high - low))
-        place, words = (one["spent"], one["own_error"]), {"va": "center", "fontsize": "small"}
-        if MODELS[model].continuum:
-            last = max(height, last + APART)
-            line = {"arrowstyle": "-", "color": "0.7", "linewidth": 0.6, "shrinkB": 4, "relpos": (0.0, 0.5)}
-            axes.annotate(
-                short(one), place, (1.03, last), textcoords="axes fraction", arrowprops=line, **words
-            )
-        elif height > last + APART:
-            last = height
-            ground = {"facecolor": "white", "alpha": 0.7, "linewidth": 0.0, "pad": 0.5}
-            axes.annotate(
-                short(one), place, (-7, 0), textcoords="offset points", ha="right", bbox=ground, **words
-            )
+    """Draw a front, and name its points: to their left, or at the right-hand edge where others of the model are around.
 
-
-def _distinct(points: Sequence[Line]) -> list[Line]:
-    """Return the points of a front without those that are hardly better than a cheaper one."""
-    kept: list[Line] = []
+    A point that is hardly better than a cheaper one has no name of its own.
+    """
+    spent, errors = ([one[name] for one in points] for name in ("spent", "own_error"))
+    axes.plot(spent, errors, color=MODELS[model].colour, linewidth=1.6, drawstyle="steps-post", zorder=1)
+    named: list[Line] = []
     for one in points:
-        if not kept or ALIKE * one["own_error"] < kept[-1]["own_error"]:
-            kept.append(one)
-    return kept
-
-
-def short(row: Line, name: str = "") -> str | None:
-    """Return a setting of a row in a few words, its load steps in brackets; None if there is none."""
-    label, steps = (row[f"{name}_{key}".strip("_")] for key in ("" if name else "label", "load_steps"))
-    if label is None:
-        return None
-    setting = label.partition(" ")[2] or label
-    return f"{setting.replace('tolerance', 'tol')} [{steps}]"
+        if not named or ALIKE * one["own_error"] < named[-1]["own_error"]:
+            named.append(one)
+    low, high = np.log(axes.get_ylim())
+    last, edge = -np.inf, MODELS[model].continuum
+    line = {"arrowstyle": "-", "color": "0.7", "linewidth": 0.6, "shrinkB": 4, "relpos": (0.0, 0.5)}
+    ground = {"facecolor": "white", "alpha": 0.7, "linewidth": 0.0, "pad": 0.5}
+    for one in reversed(named):
+        place = (one["spent"], one["own_error"])
+        height = float((np.log(place[1]) - low) / (high - low))
+        if not edge and height <= last + APART:
+            continue
+        last = max(height, last + APART)
+        where = (1.03, last) if edge else (-7, 0)
+        how: dict[str, Any] = {"textcoords": "axes fraction", "arrowprops": line}
+        if not edge:
+            how = {"textcoords": "offset points", "ha": "right", "bbox": ground}
+        axes.annotate(one["setting"], place, where, va="center", fontsize="small", **how)

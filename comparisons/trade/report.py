@@ -12,23 +12,37 @@ from comparisons.quantities import KEPT, SCOPES
 from comparisons.scene import to_toml
 from comparisons.show.pages import definitions, folded, picture
 from comparisons.show.work import rows_table, write_report
-from comparisons.trade.plots import SHOWN, plot_work, short
-from comparisons.trade.trade import COSTS, MESHED, TARGETS, Line, Trade, cheapest, front, orders
+from comparisons.trade.plots import SHOWN, plot_work
+from comparisons.trade.trade import COSTS, MESHED, TARGETS, THERE, Line, Trade, cheapest, front, orders
 
 SETTING = (
     "label", "load_steps", "status", "unknowns", "iterations", "seconds", "own_error_end_force", "own_error_path_force",
     "error_path_force",
 )  # fmt: skip
-"""Columns of the table of all settings; ``trade.csv`` has all."""
+CHEAPEST = (
+    "target", TSM.name, f"{TSM.name}_seconds", SOLID.name, f"{SOLID.name}_seconds", "ratio", THERE, f"{THERE}_seconds",
+    "ratio_against_reference",
+)  # fmt: skip
+ORDER = (
+    "family", "order", "order_points", "order_from", "order_to", "cost_exponent", "cost_exponent_points", "cost_exponent_from",
+    "cost_exponent_to",
+)  # fmt: skip
+"""Columns of the tables for people; the files have all."""
 STATES = {"end": "at the end", "path": "largest over the path"}
+SECONDS = "processor time of one thread from the scene to the checked answer, median of repeats"
+
+
+def shown(rows: Sequence[Line], columns: Sequence[str]) -> list[Line]:
+    """Return some columns of rows, with blanks in their names."""
+    return [{name.replace("_", " "): row[name] for name in columns} for row in rows]
 
 
 def write_trade(trade: Trade, folder: Path) -> list[Path]:
     """Write the tables, the diagrams and the page; return the files, the page first."""
     settings = [_setting(row) for row in trade.rows]
     uncertainty = trade.reference.uncertainty
-    told = ((scope, name) for scope, name in product(SCOPES, KEPT) if isfinite(uncertainty[scope][name]))
-    cheap = [cheapest(trade, *of, target) for of in told for target in TARGETS]
+    stated = [of for of in product(SCOPES, KEPT) if isfinite(uncertainty[of[0]][of[1]])]
+    cheap = [cheapest(trade, *of, target) for of, target in product(stated, TARGETS)]
     fitted = {quantity: list(orders(trade, quantity)) for quantity in KEPT}
     references = {"error": trade.reference, "own_error of the solid": trade.limit}
     numbers = {
@@ -55,25 +69,21 @@ def write_trade(trade: Trade, folder: Path) -> list[Path]:
 
 
 def _write_page(trade: Trade, settings: list[Line], files: Sequence[Path], folder: Path) -> Path:
-    references = {"errors against": trade.reference.sentence}
-    if trade.limit is not None:
-        references["own errors of the solid against"] = trade.limit.sentence
-    shown = [{name.replace("_", " "): row[name] for name in SETTING} for row in settings]
-    caption = "Seconds: processor time of one thread from the scene to the checked answer, median of repeats."
+    reasons = stopped(trade)
     sections = {
-        "Cheapest settings": [rows_table(*cheapest_lines(trade, scope)) for scope in SCOPES],
+        "Cheapest settings": [rows_table(*table) for table in _cheapest(trade)],
         "Work and precision": [
             picture(folder / f"{scope}-{cost}.svg", f"Error of {SHOWN}, {STATES[scope]}, against {cost}.")
             for scope, cost in product(SCOPES, COSTS)
         ],
-        "Orders of convergence": [rows_table(f"error of {SHOWN} over the path", order_lines(trade))],
+        "Orders of convergence": [rows_table(*_orders(trade))],
         "All settings": [
-            definitions(references),
-            folded("table of all settings", rows_table(caption, shown)),
-            folded("settings without a solution", definitions(stopped(trade))),
+            definitions(_references(trade)),
+            folded("table of all settings", rows_table(f"Seconds: {SECONDS}.", shown(settings, SETTING))),
+            folded("settings without a solution", definitions(reasons)),
         ],
     }
-    lead = f"{len(trade.rows)} settings of beams and solid; {len(stopped(trade))} without a solution."
+    lead = f"{len(trade.rows)} settings of beams and solid; {len(reasons)} without a solution."
     title = f"{trade.scene.name}: what accuracy costs"
     return write_report(folder, title, lead, sections, [trade.scene], files)
 
@@ -98,57 +108,29 @@ def _setting(row: Row) -> Line:
         **row.cost(),
         **{
             f"{'own_' * own}error_{scope}_{quantity}": row.error(scope, quantity, own=own)
-            for own in (False, True)
-            for scope in SCOPES
-            for quantity in KEPT
+            for own, scope, quantity in product((False, True), SCOPES, KEPT)
         },
     }
 
 
-def cheapest_lines(trade: Trade, scope: str) -> tuple[str, list[Line]]:
-    """Return a title, and the cheapest settings of one scope as rows for people."""
-    titles = {
+def _cheapest(trade: Trade) -> list[tuple[str, list[Line]]]:
+    """Return a title and the cheapest settings of every scope."""
+    places = {
         "end": f"at the load parameter {trade.reference.end:g}, any number of load steps",
         "path": f"the largest over all {trade.scene.load_parameters} load parameters",
     }
-    title = f"cheapest for an error of {SHOWN}, {titles[scope]}"
-    return title, [_line(cheapest(trade, scope, SHOWN, target)) for target in TARGETS]
+    rows = {scope: [cheapest(trade, scope, SHOWN, target) for target in TARGETS] for scope in SCOPES}
+    return [(f"cheapest for an error of {SHOWN}, {places[of]}", shown(rows[of], CHEAPEST)) for of in SCOPES]
 
 
-def _line(row: Line) -> Line:
-    told = row["limit_uncertainty"] <= row["target"]
-    beams, solid, there = TSM.name, SOLID.name, "solid_against_reference"
-    return {
-        "error": row["target"],
-        "TSM": short(row, beams),
-        "seconds": row[f"{beams}_seconds"],
-        "solid, its own limit": short(row, solid) if told else "not told",
-        "its seconds": row[f"{solid}_seconds"],
-        "ratio": row["ratio"],
-        "solid, the reference": short(row, there),
-        "and its seconds": row[f"{there}_seconds"],
-        "ratio there": row["ratio_against_reference"],
-    }
+def _orders(trade: Trade) -> tuple[str, list[Line]]:
+    title = f"orders over elements and cost exponents over unknowns, error of {SHOWN} over the path"
+    return title, shown(list(orders(trade, SHOWN)), ORDER)
 
 
-def order_lines(trade: Trade) -> list[Line]:
-    """Return the orders and cost exponents with what they are fitted to as rows for people."""
-    return [
-        {
-            "family": row["family"],
-            "order": row["order"],
-            "points": row["order_points"],
-            "elements": _range(row, "order"),
-            "cost exponent": row["cost_exponent"],
-            "its points": row["cost_exponent_points"],
-            "unknowns": _range(row, "cost_exponent"),
-        }
-        for row in orders(trade, SHOWN)
-    ]
-
-
-def _range(row: Line, name: str) -> str | None:
-    return None if row[name] is None else f"{row[f'{name}_from']:g} to {row[f'{name}_to']:g}"
+def _references(trade: Trade) -> dict[str, str]:
+    limit = trade.limit.sentence if trade.limit else "not known: a solid that it is extrapolated from stopped"
+    return {"errors against": trade.reference.sentence, "the solid's own limit": limit}
 
 
 def stopped(trade: Trade) -> dict[str, str]:
@@ -162,27 +144,19 @@ def stopped(trade: Trade) -> dict[str, str]:
 
 def summary(trade: Trade) -> str:
     """Return what a person reads of a trade-off: references, cheapest settings, orders, and what stopped."""
-    limit = trade.limit.sentence if trade.limit else "not known: a solid that it is extrapolated from stopped"
-    lines = order_lines(trade)
     reasons = stopped(trade)
-    return "\n\n".join(
-        [
-            f"""{trade.scene.name}: {len(trade.rows)} settings
-errors against: {trade.reference.sentence}
-the solid's own limit: {limit}
-seconds: processor time of one thread from the scene to the checked answer, median of repeats after a warm-up
--: no setting does it; not told: the limit is known less well than that; [n]: n load steps""",
-            *(
-                f"{title}\n\n{tabulated(rows)}"
-                for title, rows in (cheapest_lines(trade, scope) for scope in SCOPES)
-            ),
-            f"orders of convergence and cost exponents, error of {SHOWN} over the path",
-            tabulated(lines) if lines else "no family has three settings",
-            "\n".join(
-                [
-                    f"{len(reasons)} of {len(trade.rows)} settings without a solution:",
-                    *(f"  {name}: {reason}" for name, reason in reasons.items()),
-                ]
-            ),
-        ]
-    )
+    head = [
+        f"{trade.scene.name}: {len(trade.rows)} settings",
+        *(f"{name}: {what}" for name, what in _references(trade).items()),
+        f"seconds: {SECONDS} after a warm-up",
+        "-: no setting does it, or the solid's own limit is known less well than that; [n]: n load steps",
+    ]
+    tables = [
+        f"{title}\n\n{tabulated(rows) if rows else 'none'}"
+        for title, rows in [*_cheapest(trade), _orders(trade)]
+    ]
+    ends = [
+        f"{len(reasons)} of {len(trade.rows)} settings without a solution:",
+        *(f"  {name}: {why}" for name, why in reasons.items()),
+    ]
+    return "\n\n".join(["\n".join(head), *tables, "\n".join(ends)])

@@ -10,12 +10,7 @@ from comparisons.cases.progress import Runner
 from comparisons.models import MODELS, SOLID, TSM
 from comparisons.scene import Scene
 from comparisons.trade.fits import Fit, convergence, pareto, power_law
-from comparisons.trade.reference import (
-    Reference,
-    best_reference,
-    reference_cases,
-    solid_limit,
-)
+from comparisons.trade.reference import Reference, best_reference, reference_cases, solid_limit
 from comparisons.trade.settings import chains, sweep_cases
 
 Line = dict[str, Any]
@@ -24,6 +19,8 @@ TARGETS = (5e-2, 1e-2, 1e-3, 1e-4, 1e-5)
 COSTS = ("seconds", "iterations", "unknowns")
 MESHED = tuple(model.name for model in MODELS.values() if model.meshed)
 """The models that have a Pareto front."""
+THERE = "solid_against_reference"
+"""The solid whose error against the reference counts, too."""
 LARGEST = 4
 """Number of the largest settings of a family to which the cost exponent is fitted; the cost of small settings does not depend on size."""
 ABOVE = 3.0
@@ -72,6 +69,12 @@ def measure_trade(scene: Scene, run: Runner, *, quick: bool = False) -> Trade:
     return Trade(scene=scene, rows=rows, reference=reference, limit=limit)
 
 
+def short(row: Row) -> str:
+    """Return a setting in a few words, its load steps in brackets."""
+    setting = row.label.partition(" ")[2] or row.label
+    return f"{setting.replace('tolerance', 'tol')} [{row.case.scene.load_parameters}]"
+
+
 def cheapest(trade: Trade, scope: str, quantity: str, target: float) -> Line:
     """Return the settings of TSM and of the solid with the least seconds for an error of at most `target`, as a row.
 
@@ -90,31 +93,18 @@ def cheapest(trade: Trade, scope: str, quantity: str, target: float) -> Line:
         return min(good, key=lambda row: row.measured.seconds, default=None)
 
     doubt = trade.uncertainty(SOLID.name, scope, quantity)
-    beams, there = least(TSM.name, False), least(SOLID.name, False, True)
-    solid = least(SOLID.name, True) if doubt <= target else None
-    return {
-        "scope": scope,
-        "quantity": quantity,
-        "target": target,
-        **_named(TSM.name, beams),
-        **_named(SOLID.name, solid),
-        "ratio": _ratio(solid, beams),
-        "limit_uncertainty": doubt,
-        **_named("solid_against_reference", there),
-        "ratio_against_reference": _ratio(there, beams),
+    found = {
+        TSM.name: least(TSM.name, False),
+        SOLID.name: least(SOLID.name, True) if doubt <= target else None,
+        THERE: least(SOLID.name, False, True),
     }
-
-
-def _named(name: str, row: Row | None) -> Line:
-    return {
-        name: row and row.label,
-        f"{name}_load_steps": row and row.case.scene.load_parameters,
-        f"{name}_seconds": row and row.measured.seconds,
-    }
-
-
-def _ratio(slow: Row | None, fast: Row | None) -> float | None:
-    return slow.measured.seconds / fast.measured.seconds if slow and fast else None
+    line: Line = {"scope": scope, "quantity": quantity, "target": target, "limit_uncertainty": doubt}
+    for name, row in found.items():
+        line |= {name: row and short(row), f"{name}_seconds": row and row.measured.seconds}
+    for name, ratio in ((SOLID.name, "ratio"), (THERE, "ratio_against_reference")):
+        slow, fast = line[f"{name}_seconds"], line[f"{TSM.name}_seconds"]
+        line[ratio] = slow / fast if slow and fast else None
+    return line
 
 
 def front(trade: Trade, model: str, scope: str, quantity: str, cost: str) -> list[Line]:
@@ -125,17 +115,9 @@ def front(trade: Trade, model: str, scope: str, quantity: str, cost: str) -> lis
     rows, doubt = trade.of_model(model, scope), trade.uncertainty(model, scope, quantity)
     costs = [row.spent(cost) for row in rows]
     errors = [max(row.error(scope, quantity, own=True), doubt) for row in rows]
+    of = {"model": model, "scope": scope, "quantity": quantity, "cost": cost}
     return [
-        {
-            "model": model,
-            "scope": scope,
-            "quantity": quantity,
-            "cost": cost,
-            "label": rows[k].label,
-            "load_steps": rows[k].case.scene.load_parameters,
-            "spent": costs[k],
-            "own_error": errors[k],
-        }
+        {**of, "setting": short(rows[k]), "spent": costs[k], "own_error": errors[k]}
         for k in pareto(costs, errors)
     ]
 
@@ -148,25 +130,23 @@ def orders(trade: Trade, quantity: str) -> Iterator[Line]:
     rows = {row.case: row for model in MESHED for row in trade.of_model(model, "path")}
     for chain in chains(rows):
         case, known = chain[0], [rows[one] for one in chain]
-        doubt = trade.uncertainty(case.model, "path", quantity)
+        floor = ABOVE * trade.uncertainty(case.model, "path", quantity)
         errors = [row.error("path", quantity, own=True) for row in known]
-        sizes = [row.resolution for row in known]
-        order = convergence(sizes, errors, ABOVE * doubt) if isfinite(doubt) else None
-        costs = ([row.spent(cost) for row in known[-LARGEST:]] for cost in ("unknowns", "seconds"))
+        order = convergence([row.resolution for row in known], errors, floor)
+        unknowns, seconds = (
+            [row.spent(cost) for row in known[-LARGEST:]] for cost in ("unknowns", "seconds")
+        )
         given = [contact for contact in case.scene.contacts if contact.penetration is not None]
         yield {
             "family": case.family + (f", penetration {given[0].penetration:g}" if given else ""),
             "settings": len(chain),
-            **_stated("order", order, -1.0),
-            **_stated("cost_exponent", power_law(*costs), 1.0),
+            "order": None if order.exponent is None else -order.exponent,
+            **_range("order", order),
+            "cost_exponent": (cost := power_law(unknowns, seconds)).exponent,
+            **_range("cost_exponent", cost),
         }
 
 
-def _stated(name: str, fit: Fit | None, sign: float) -> Line:
-    return {
-        name: fit and sign * fit.exponent,
-        f"{name}_points": fit.points if fit else 0,
-        f"{name}_from": fit and fit.first,
-        f"{name}_to": fit and fit.last,
-        f"{name}_scatter": fit and fit.scatter,
-    }
+def _range(name: str, fit: Fit) -> Line:
+    columns = (f"{name}_{key}" for key in ("points", "from", "to", "scatter"))
+    return dict(zip(columns, fit[1:], strict=True))

@@ -45,7 +45,7 @@ def test_fronts_and_orders():
     assert [tuple(points[k]) for k in pareto(*points.T)] == best
     assert pareto([np.nan, 1.0, 2.0], [0.0, np.nan, 0.5]) == [2]
     for y in ([1.0, 2.0], [1.0, 0.0, 2.0]):
-        assert power_law([1.0, 2.0, 4.0][: len(y)], y) is None
+        assert power_law([1.0, 2.0, 4.0][: len(y)], y).exponent is None
     spoilt = N**-4.0
     spoilt[0], spoilt[4] = 1.1e-4, spoilt[3] / 1.5
     cases = [(order, 7.0 * N**-order, (10.0, 80.0, 4)) for order in (1.0, 2.0, 4.0)]
@@ -55,7 +55,7 @@ def test_fronts_and_orders():
         assert (fit.first, fit.last, fit.points) == where
     unknown = [0.1, 0.01, np.nan, np.nan, np.nan]
     for error, uncertainty in ((N**-4.0, 1e-4), (N**1.0, 0.0), (unknown, 0.0)):
-        assert convergence(list(N), list(error), uncertainty) is None
+        assert convergence(list(N), list(error), uncertainty).exponent is None
 
 
 def response_of(h, order=2.0):

@@ -44,7 +44,7 @@ def draw_case(case: Case, path: Path) -> None:
         marks = {"marker": "o", "markersize": 10, "linewidth": 1.5} if found else {}
         lines.append((*points.T, {**STYLES[style], **marks, "label": style}))
     panel = Panel(title=problem.title, lines=lines, settings={"xlabel": x, "ylabel": y, **scales, **shape})
-    draw([panel], path, tall=3.6, columns=1)
+    draw([panel], path, tall=3.6)
 
 
 def _exact(case: Case) -> Iterator[Line]:

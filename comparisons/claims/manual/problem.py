@@ -30,46 +30,31 @@ Changes = Mapping[str, Any]
 
 @dataclass(frozen=True, kw_only=True)
 class Picture:
-    """What is drawn: labels of the axes, by default places; load parameters whose axes are drawn; a model whose answer is the exact one.
+    """What is drawn."""
 
-    `guide` is the order of a line for the eye and its first value, where both axes are logarithmic.
-    """
-
-    axes: Sequence[str] = ()
-    shown: Sequence[float] = (1.0,)
-    exact: str = ""
-    guide: Sequence[float] = ()
+    axes: Sequence[str] = ()  #: Labels of the axes, by default places.
+    shown: Sequence[float] = (1.0,)  #: Load parameters whose deflected axes are drawn.
+    exact: str = ""  #: A model whose answer is the exact one.
+    guide: Sequence[
+        float
+    ] = ()  #: Order of a line for the eye and its first value, where both axes are logarithmic.
 
 
 @dataclass(frozen=True, kw_only=True)
 class Quantity:
-    """A number with its exact value, and where an answer has it.
+    """A number with its exact value, and where an answer has it."""
 
-    Attributes
-    ----------
-    name : str
-        With the unit, unless the quantity is dimensionless.
-    exact, scale : float
-        The exact value, and what its error is divided by, the magnitude of the exact value if None.
-    read : str
-        The words of `comparisons.claims.manual.answers.value`; empty where a measure finds the number.
-    at, times, changes
-        A load parameter, a factor, and changes of the scene.
-    since : float, optional
-        A load parameter; what the quantity is there is taken away.
-    over : Quantity, optional
-        What it is divided by.
-    """
-
-    name: str = ""
+    name: str = ""  #: With the unit, unless the quantity is dimensionless.
     exact: float = math.nan
-    scale: float | None = None
-    read: str = ""
-    at: float = 1.0
-    times: float = 1.0
-    changes: Changes = field(default_factory=dict)
-    since: float | None = None
-    over: "Quantity | None" = None
+    scale: float | None = None  #: What its error is divided by, the magnitude of the exact value if None.
+    read: str = (
+        ""  #: The words of `comparisons.claims.manual.answers.value`; empty where a measure finds the number.
+    )
+    at: float = 1.0  #: A load parameter.
+    times: float = 1.0  #: A factor.
+    changes: Changes = field(default_factory=dict)  #: What is changed in the scene.
+    since: float | None = None  #: A load parameter; what the quantity is there is taken away.
+    over: "Quantity | None" = None  #: What it is divided by.
 
     @property
     def size(self) -> float:
@@ -79,27 +64,15 @@ class Quantity:
 
 @dataclass(frozen=True, kw_only=True)
 class Trial:
-    """A model that is put to a problem.
+    """A model that is put to a problem."""
 
-    Attributes
-    ----------
-    model, setting : str
-        Model with its element, and resolution.
-    key, options
-        For `comparisons.models.solve`.
-    scene : Scene
-        What the model solves.
-    allowed, why
-        Allowed error of every quantity, and its reason.
-    """
-
-    model: str
-    setting: str
-    key: str
+    model: str  #: Model with its element.
+    setting: str  #: Resolution.
+    key: str  #: Name of the model for `comparisons.models.solve`.
     options: Options
-    scene: Scene
-    allowed: float
-    why: str
+    scene: Scene  #: What the model solves.
+    allowed: float  #: Allowed error of every quantity.
+    why: str  #: The reason of this bound.
 
     @property
     def label(self) -> str:
@@ -109,43 +82,21 @@ class Trial:
 
 @dataclass(frozen=True, kw_only=True)
 class Problem:
-    """A problem with an exact answer.
+    """A problem with an exact answer."""
 
-    Attributes
-    ----------
-    name, title : str
-        A short name without spaces, and a title.
-    purpose : str
-        What a wrong answer would show.
-    statement : str
-        The problem with its sizes and units.
-    source : str
-        Where the exact value comes from: literature with author and year, or the closed form.
-    uncertainty : float
-        Bound of the error of the exact values, over their scales.
-    scene : Scene
-        What is solved, or what the scenes that are solved follow from.
-    quantities, trials : tuple
-        What is compared, and the models.
-    picture : Picture
-        What is drawn.
-    measure, settings
-        Name of a function of `comparisons.claims.manual.measures` that finds the values, and what it takes; by default they are read from
-        the answer.
-    """
-
-    name: str
+    name: str  #: A short name without spaces.
     title: str
-    purpose: str
-    statement: str
-    source: str
-    uncertainty: float
-    scene: Scene
-    quantities: tuple[Quantity, ...]
-    trials: tuple[Trial, ...]
+    purpose: str  #: What a wrong answer would show.
+    statement: str  #: The problem with its sizes and units.
+    source: str  #: Where the exact value comes from: literature with author and year, or the closed form.
+    uncertainty: float  #: Bound of the error of the exact values, over their scales.
+    scene: Scene  #: What is solved, or what the scenes that are solved follow from.
+    quantities: tuple[Quantity, ...]  #: What is compared.
+    trials: tuple[Trial, ...]  #: The models.
     picture: Picture
+    #: Name of a function of `comparisons.claims.manual.measures` that finds the values; by default they are read from the answer.
     measure: str = "readings"
-    settings: Mapping[str, Any] = field(default_factory=dict)
+    settings: Mapping[str, Any] = field(default_factory=dict)  #: What this function takes.
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,10 +4,10 @@ Two measurements: the smallest l_i/l with equilibrium before every beam node, by
 floor of the unbalanced force against l_i/l, which no tolerance can pass.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import partial
-from itertools import groupby, product
-from typing import Any, Literal
+from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -37,11 +37,15 @@ RATIOS = 10.0 ** -np.arange(1.0, 16.5, 0.5)
 FITTED = (1e-13, 1e-2)
 """Ratios of the fitted slopes: below, a ratio has no digits left; above, it is no small one."""
 
-_ENDS: tuple[Literal["start", "end"], ...] = ("start", "end")
-_FLOOR_CASES = (
-    *((element, end, PSI) for element in (*LABELS, turned_frame.NAME) for end in _ENDS),
-    (TIMOSHENKO, _ENDS[1], PRINTED_SHEAR_PSI),
+_FLOORS: tuple[dict[str, Any], ...] = (
+    *(
+        {"element": one, "end": end, "psi": PSI}
+        for one in (*LABELS, turned_frame.NAME)
+        for end in ("start", "end")
+    ),
+    {"element": TIMOSHENKO, "end": "end", "psi": PRINTED_SHEAR_PSI},
 )
+"""Where the floor of the unbalanced force is measured."""
 
 
 def lifted(start: float) -> Scene:
@@ -52,9 +56,7 @@ def lifted(start: float) -> Scene:
 def critical_areas(*, quick: bool, report: Report) -> Study:
     """Measure both; `quick` takes fewer starting positions, tolerances and samples."""
     tolerances = TOLERANCES[::3] if quick else TOLERANCES
-    shown = _shown(tolerances)
-    areas: list[Row] = []
-    curves: list[Row] = []
+    shown, areas, curves = _shown(tolerances), list[Row](), list[Row]()
     for tolerance in tolerances:
         report(f"approach to the nodes at tolerance {tolerance:.0e}")
         for element, start in product(LABELS, STARTS[::4] if quick else STARTS):
@@ -63,40 +65,32 @@ def critical_areas(*, quick: bool, report: Report) -> Study:
             for way in approaches(to_structure(scene, element=element), tolerance):
                 place = {"element": element, "start": start, "node": way.node}
                 areas.append({"element": element, "tolerance": tolerance, **place, "smallest": way.smallest})
-                if tolerance == shown:
-                    curve = zip(way.load_parameter * travel, way.ratio, strict=True)
-                    curves += ({**place, "displacement": d, "ratio": ratio} for d, ratio in curve)
+                curve = zip(way.load_parameter * travel, way.ratio, strict=True) if tolerance == shown else ()
+                curves += ({**place, "displacement": d, "ratio": ratio} for d, ratio in curve)
     report("floor of the unbalanced force")
-    floors = list(_floors(samples=8 if quick else 50))
+    floors = [
+        {
+            **of,
+            "ratio": ratio,
+            "floor": force_floor(of["element"], ratio, of["end"], of["psi"], samples=8 if quick else 50),
+        }
+        for of, ratio in product(_FLOORS, RATIOS)
+    ]
     numbers = measured(areas, floors)
+    title = f"How near to a beam node equilibrium is found, tolerance {shown:.0e} EI/L$^2$;\na large mark is the last equilibrium"
     return Study(
         tables={"fig7b": curves, "fig7b-tolerance": areas, "fig7b-floor": floors},
         numbers=numbers,
         pictures={
-            "fig7b": partial(
-                draw,
-                _curves(curves),
-                tall=2.3,
-                title=f"How near to a beam node equilibrium is found, tolerance {shown:.0e} EI/L$^2$;\n"
-                "a large mark is the last equilibrium",
-            ),
-            "fig7b-tolerance": partial(draw, [_areas(numbers["critical_area"])], tall=4.5, columns=1),
-            "fig7b-floor": partial(
-                draw, [_drawn_floors(floors, numbers["slopes_of_the_floor"])], tall=4.5, columns=1
-            ),
+            "fig7b": partial(draw, _curves(curves), tall=2.3, title=title),
+            "fig7b-tolerance": partial(draw, [_areas(numbers["critical_area"])], tall=4.5),
+            "fig7b-floor": partial(draw, [_drawn_floors(floors, numbers["slopes_of_the_floor"])], tall=4.5),
         },
     )
 
 
 def _shown(tolerances: tuple[float, ...]) -> float:
     return min(tolerances, key=lambda tolerance: abs(np.log(tolerance / SHOWN_TOLERANCE)))
-
-
-def _floors(samples: int) -> Iterator[Row]:
-    """Yield the floor of the unbalanced force, relative to the contact force, at one end of the element over `RATIOS`."""
-    for (element, end, psi), ratio in product(_FLOOR_CASES, RATIOS):
-        floor = force_floor(element, ratio, end=end, Psi=psi, samples=samples)
-        yield {"element": element, "end": end, "psi": psi, "ratio": ratio, "floor": floor}
 
 
 def measured(areas: list[Row], floors: list[Row]) -> dict[str, Any]:
@@ -113,7 +107,6 @@ def measured(areas: list[Row], floors: list[Row]) -> dict[str, Any]:
     }
     return {
         "tolerance_of_the_curves": _shown(tolerances),
-        "wanted_tolerance_of_the_curves": SHOWN_TOLERANCE,
         "critical_area": critical,
         "printed": PRINTED,
         "tolerance_for_the_printed": {
@@ -125,8 +118,7 @@ def measured(areas: list[Row], floors: list[Row]) -> dict[str, Any]:
 
 
 def _spread(areas: list[Row], element: str, tolerance: float) -> dict[str, float]:
-    own = [row["smallest"] for row in areas if (row["element"], row["tolerance"]) == (element, tolerance)]
-    found = np.nan_to_num(own, nan=1.0)
+    found = np.nan_to_num(column(areas, "smallest", element=element, tolerance=tolerance), nan=1.0)
     return {"smallest": found.min(), "median": float(np.median(found)), "largest": found.max()}
 
 
@@ -143,33 +135,35 @@ def _slopes(floors: list[Row]) -> dict[str, list[float]]:
     """Slopes of the straight lines fitted to the logarithms of the floors in section 4.1, one per end of the element."""
     low, high = FITTED
     slopes: dict[str, list[float]] = {}
-    for case in (case for case in _FLOOR_CASES if PSI in case):
-        own = [row for row in floors if (row["element"], row["end"], row["psi"]) == case]
-        own = [row for row in own if low * (1.0 - 1e-9) < row["ratio"] < high * (1.0 + 1e-9)]
-        slope = np.polyfit(np.log(column(own, "ratio")), np.log(column(own, "floor")), 1)[0]
-        slopes.setdefault(case[0], []).append(float(slope))
+    for of in (of for of in _FLOORS if of["psi"] == PSI):
+        ratio, floor = (column(floors, name, **of) for name in ("ratio", "floor"))
+        fitted = (low * (1.0 - 1e-9) < ratio) & (ratio < high * (1.0 + 1e-9))
+        slope = np.polyfit(np.log(ratio[fitted]), np.log(floor[fitted]), 1)[0]
+        slopes.setdefault(of["element"], []).append(float(slope))
     return slopes
 
 
 def _curves(curves: list[Row]) -> list[Panel]:
     """l_i/l against the displacement of the pin, one panel per starting position."""
     lines: dict[float, list[Line]] = {}
-    for (element, start, _), rows in groupby(
-        curves, key=lambda row: (row["element"], row["start"], row["node"])
-    ):
-        way = list(rows)
-        displacement, ratio = column(way, "displacement"), column(way, "ratio")
+    for element, start, node in dict.fromkeys((row["element"], row["start"], row["node"]) for row in curves):
+        of = {"element": element, "start": start, "node": node}
+        displacement, ratio = (column(curves, name, **of) for name in ("displacement", "ratio"))
         last, order = int(np.argmin(ratio)), list(LABELS).index(element)
         mark = {
             "markersize": (13, 8, 8, 7)[order],
             "markeredgecolor": "black",
             "linestyle": "none",
-            "label": LABELS[element],
+            "zorder": 4,
         }
         lines.setdefault(start, []).extend(
             [
                 (displacement, ratio, {**line(element), "marker": None, "linewidth": 3.2 - 0.7 * order}),
-                (displacement[last], max(ratio[last], NEAREST), {**line(element), **mark, "zorder": 4}),
+                (
+                    displacement[last],
+                    max(ratio[last], NEAREST),
+                    {**line(element), **mark, "label": LABELS[element]},
+                ),
             ]
         )
     settings = {
@@ -188,14 +182,11 @@ def _areas(areas: Mapping[str, Mapping[str, Mapping[str, float]]]) -> Panel:
     beside = tolerances[-1] / 10.0, tolerances[-1] / 100.0
     for element, label in LABELS.items():
         faint = {"color": line(element)["color"], "linewidth": 0.8}
-        low, middle, high = (
-            [max(one[name], NEAREST) for one in areas[element].values()]
-            for name in ("smallest", "median", "largest")
-        )
-        lines += [(tolerances, low, faint), (tolerances, high, faint)]
-        lines.append((tolerances, middle, {**line(element), "label": label}))
-        for edge in PRINTED.get(element, ()):
-            lines.append((beside, [edge, edge], {**faint, "linewidth": 3.0, "label": "printed in the paper"}))
+        styles = {"smallest": faint, "largest": faint, "median": {**line(element), "label": label}}
+        for name, style in styles.items():
+            lines.append((tolerances, [max(one[name], NEAREST) for one in areas[element].values()], style))
+        printed = {**faint, "linewidth": 3.0, "label": "printed in the paper"}
+        lines += [(beside, [edge, edge], printed) for edge in PRINTED.get(element, ())]
     settings = {
         "xscale": "log", "yscale": "log", "ylim": (NEAREST / 3.0, 2.0), "xlim": (tolerances[0] * 2.5, beside[1]),
         "xlabel": "tolerance on the unbalanced force [EI/L$^2$]", "ylabel": "smallest $l_i/l$ with equilibrium",
@@ -207,27 +198,16 @@ def _areas(areas: Mapping[str, Mapping[str, Mapping[str, float]]]) -> Panel:
 
 def _drawn_floors(floors: list[Row], slopes: Mapping[str, list[float]]) -> Panel:
     """The floor of the unbalanced force against l_i/l with the fitted slopes."""
+    stiff = {"marker": "v", "linestyle": "-.", "label": f"{LABELS[TIMOSHENKO]}, printed G of section 4.2"}
     lines: list[Line] = []
-    for element, psi in ((name, psi) for name in LABELS for psi in (PSI, PRINTED_SHEAR_PSI)):
-        own = [row for row in floors if (row["element"], row["end"], row["psi"]) == (element, "end", psi)]
+    for of in (of for of in _FLOORS if of["end"] == "end" and of["element"] in LABELS):
+        element = of["element"]
         slope = f"slope {round(float(np.mean(slopes[element])), 2) + 0.0:.2f}"
-        style = {
-            **line(element),
-            "markersize": 8 if element == SIMPLE else 5,
-            "label": f"{LABELS[element]}: {slope}",
-        }
-        if psi != PSI:
-            style |= {
-                "marker": "v",
-                "linestyle": "-.",
-                "label": f"{LABELS[element]}, printed G of section 4.2",
-            }
-        if own:
-            lines.append((column(own, "ratio"), column(own, "floor"), style))
-    lines += [
-        ([edge, edge], [1e-16, 1.0], {"color": "0.6", "linestyle": ":", "label": "fitted between"})
-        for edge in FITTED
-    ]
+        plain = {"markersize": 8 if element == SIMPLE else 5, "label": f"{LABELS[element]}: {slope}"}
+        style = {**line(element), **(plain if of["psi"] == PSI else stiff)}
+        lines.append((column(floors, "ratio", **of), column(floors, "floor", **of), style))
+    fitted = {"color": "0.6", "linestyle": ":", "label": "fitted between"}
+    lines += [([edge, edge], [1e-16, 1.0], fitted) for edge in FITTED]
     return Panel(
         title="What round-off leaves of the unbalanced force, section of 4.1",
         lines=lines,

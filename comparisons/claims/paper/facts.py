@@ -1,6 +1,6 @@
 """What the figures of [P] tell of its claims: by figure, the numbers that bounds and sentences of ``claims.toml`` name."""
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from itertools import pairwise
 from typing import Any
 
@@ -49,26 +49,33 @@ def of_lifts(found: Study) -> Facts:
 
 def of_critical_areas(found: Study) -> Facts:
     """Critical areas by formulation and tolerance, and slopes of the floors before both ends."""
-    areas, takes = found.numbers["critical_area"], found.numbers["tolerance_for_the_printed"]
+    numbers, rows = found.numbers, found.tables["fig7b-tolerance"]
+    areas, takes, slopes = (
+        numbers[name] for name in ("critical_area", "tolerance_for_the_printed", "slopes_of_the_floor")
+    )
     tolerances = list(areas[SIMPLE])
     smallest, median, largest = (
         {name: np.array([one[part] for one in by.values()]) for name, by in areas.items()}
         for part in ("smallest", "median", "largest")
     )
+    # at the tolerances at which the Euler-Bernoulli contact still moves
     usable = median[SIMPLE] < MOVES
-    ways = _ways(found, {at for at, moves in zip(tolerances, usable, strict=True) if moves})
+    moves = {float(at) for at, one in zip(tolerances, usable, strict=True) if one}
+    ways: dict[str, dict[tuple[float, ...], float]] = {name: {} for name in LABELS}
+    for row in rows:
+        if float(f"{row['tolerance']:.0e}") in moves and np.isfinite(row["smallest"]):
+            ways[row["element"]][row["tolerance"], row["start"], row["node"]] = row["smallest"]
     smaller, gain = {}, {}
     for above, below in pairwise(PRINTED):
         pairs = [area > ways[below][way] for way, area in ways[above].items() if way in ways[below]]
-        smaller[above] = sum(pairs), len(pairs), np.divide(sum(pairs), len(pairs))
+        smaller[above] = _part(pairs)
         factors = median[above][usable] / np.maximum(median[below][usable], NEAREST)
         printed = float(np.sqrt(np.prod(PRINTED[above]) / np.prod(PRINTED[below])))
         gain[above] = factors.min(), factors.max(), printed, factors.min() / printed, factors.max() / printed
-    passed = {name: _passed(found, name) for name in LABELS}
+    passed = {name: _passed(rows, name) for name in LABELS}
     low, high = PRINTED[TIMOSHENKO]
     under = [at for at, area in zip(tolerances, largest[TIMOSHENKO], strict=True) if area <= low]
-    shown = tolerances[0], tolerances[-1], f"{found.numbers['tolerance_of_the_curves']:.0e}"
-    slopes = found.numbers["slopes_of_the_floor"]
+    shown = tolerances[0], tolerances[-1], f"{numbers['tolerance_of_the_curves']:.0e}"
     return {
         "tolerance": shown,
         "range": {name: [_range(by[at]) for at in shown] for name, by in areas.items()},
@@ -101,30 +108,21 @@ def of_critical_areas(found: Study) -> Facts:
 
 def _stiff(floors: list[Row]) -> float:
     """Floor of Timoshenko's element with the printed G, over that of Euler-Bernoulli, at the ratio nearest to 1e-3."""
-    ratio = min((row["ratio"] for row in floors), key=lambda ratio: abs(ratio - 1e-3))
-    near = [row for row in floors if (row["end"], row["ratio"]) == ("end", ratio)]
-    floor = {(row["element"], row["psi"]): row["floor"] for row in near}
-    return float(floor[TIMOSHENKO, PRINTED_SHEAR_PSI] / floor[SIMPLE, PSI])
+    ratio = min(column(floors, "ratio"), key=lambda ratio: abs(ratio - 1e-3))
+    at = {"end": "end", "ratio": ratio}
+    stiff = column(floors, "floor", element=TIMOSHENKO, psi=PRINTED_SHEAR_PSI, **at)
+    return float(stiff[0] / column(floors, "floor", element=SIMPLE, psi=PSI, **at)[0])
 
 
-def _ways(found: Study, usable: Collection[str]) -> dict[str, dict[tuple[float, ...], float]]:
-    """By formulation, critical areas by tolerance, start and node, at the tolerances at which the Euler-Bernoulli contact still moves."""
-    ways: dict[str, dict[tuple[float, ...], float]] = {name: {} for name in LABELS}
-    for row in found.tables["fig7b-tolerance"]:
-        if f"{row['tolerance']:.0e}" in usable and np.isfinite(row["smallest"]):
-            ways[row["element"]][row["tolerance"], row["start"], row["node"]] = row["smallest"]
-    return ways
+def _part(holds: list[bool]) -> tuple[int, int, float]:
+    return sum(holds), len(holds), float(np.divide(sum(holds), len(holds)))
 
 
-def _passed(found: Study, element: str) -> tuple[int, int, float]:
+def _passed(rows: list[Row], element: str) -> tuple[int, int, float]:
     """Beam nodes passed, all that stood in the way, and their ratio: an approach with a successor, which has equilibria."""
-    own = [row for row in found.tables["fig7b-tolerance"] if row["element"] == element]
-    behind = [
-        bool(np.isfinite(after["smallest"]))
-        for before, after in pairwise(own)
-        if (before["start"], before["tolerance"]) == (after["start"], after["tolerance"])
-    ]
-    return sum(behind), len(behind), float(np.divide(sum(behind), len(behind)))
+    ways = pairwise(row for row in rows if row["element"] == element)
+    same = ("start", "tolerance")
+    return _part([bool(np.isfinite(b["smallest"])) for a, b in ways if all(a[one] == b[one] for one in same)])
 
 
 def _range(area: Mapping[str, float]) -> str:
@@ -136,10 +134,9 @@ def of_shapes(found: Study) -> Facts:
     """Errors of the paper's element with 10, 20 and 50 elements, and of the solid, in the main reading."""
     runs: dict[Any, Row] = {run["label"]: run for run in found.numbers["runs"] if run["reading"] == KS}
     runs |= {one.options.elements: runs[one.label] for one in PAPER}
-    names, asked = ("shape", "force", "arc", "moment"), ("shape", "force", "moment")
-    divisions = [one.options.elements for one in PAPER]
+    divisions, asked = [one.options.elements for one in PAPER], ("shape", "force", "moment")
     errors = {
-        of: {name: float(runs[of][f"error_path_{name}"]) for name in names}
+        of: {name: float(runs[of][f"error_path_{name}"]) for name in (*asked, "arc")}
         for of in (*divisions, SOLID.label)
     }
     all_runs = [run for run in found.numbers["runs"] if run["label"] in {one.label for one in PAPER}]
@@ -148,8 +145,7 @@ def of_shapes(found: Study) -> Facts:
         f"{run['label']} on {run['reading']} ({'another branch' if run['status'] == 'COMPLETED' else run['status']})"
         for run in failed
     )
-    each = ((n, ", ".join(percent(errors[n][name]) for name in asked)) for n in divisions)
-    solid = errors[SOLID.label]
+    each = (f"{n} elements {', '.join(percent(errors[n][name]) for name in asked)}" for n in divisions)
     return {
         "follow": (len(all_runs) - len(failed), len(all_runs)),
         "refuted": [False if failed else None],
@@ -158,11 +154,11 @@ def of_shapes(found: Study) -> Facts:
         "apart": {n: runs[n]["shape_difference"] for n in divisions},
         "error": errors,
         "errors": [errors[n][name] for n in divisions for name in asked],
-        "each": "; ".join(f"{n} elements {words}" for n, words in each),
-        "worst": (
-            max(errors[20][name] for name in ("force", "arc", "shape")),
-            max(solid["force"], solid["shape"]),
-        ),
+        "each": "; ".join(each),
+        "worst": [
+            max(errors[of][name] for name in names)
+            for of, names in ((20, ("force", "arc", "shape")), (SOLID.label, ("force", "shape")))
+        ],
         "run": runs,
         "cost": [runs[20][name] / runs[SOLID.label][name] for name in ("unknowns", "seconds")],
     }
@@ -177,16 +173,12 @@ def of_double_beam(found: Study) -> Facts:
     coupled = [row for row in rows if EVENTS["touch"] < row["depth"] < EVENTS["hand-over"]]
     # a run that ends at the hand-over ends where this program does, and the paper's went on
     through = [None if one["at_hand_over"] else one["status"] == "COMPLETED" for one in attempts]
-    crowded = {
-        one["element"] + 1
-        for one in events
-        if one["pair"] in {TIP, LOWER} and one["depth"] == depths["hand-over"]
-    }
+    over = [one for one in events if one["depth"] == depths["hand-over"] and one["pair"] in {TIP, LOWER}]
+    crowded = ", ".join(map(str, sorted({one["element"] + 1 for one in over})))
     reasons = {
         False: " A pin that starts on a beam node is in the critical area from the start.",
         None: " Beside the node both contacts pass every node until the hand-over. There pin and upper tip are on one element of the "
-        f"lower beam (number {', '.join(map(str, sorted(crowded)))}), the paper's element has one contact point, and how its program "
-        "went on is not said.",
+        f"lower beam (number {crowded}), the paper's element has one contact point, and how its program went on is not said.",
     }
     deepest = max(attempt["depth"] for attempt in attempts)
     return {

@@ -1,6 +1,6 @@
 """What a figure of [P] leaves: rows and numbers, by which its claims are judged, and pictures."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -38,6 +38,6 @@ class Study:
         return [*files, write_numbers(folder / f"{name}.json", self.numbers)]
 
 
-def column(rows: list[Row], name: str) -> Array:
-    """Return a column of a table."""
-    return np.array([row[name] for row in rows])
+def column(rows: Sequence[Row], name: str, **of: object) -> Array:
+    """Return a column of a table, in the rows with some values."""
+    return np.array([row[name] for row in rows if all(row[key] == value for key, value in of.items())])

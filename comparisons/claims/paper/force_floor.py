@@ -61,9 +61,9 @@ class _Element(NamedTuple):
 def force_floor(
     element: str,
     ratio: float,
-    *,
     end: Literal["start", "end"] = "start",
     Psi: float = 9.0,
+    *,
     elements: int = 10,
     samples: int = 50,
 ) -> float:
