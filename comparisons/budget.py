@@ -48,17 +48,7 @@ Values = Mapping[str, Array]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Budget:
-    """The difference of TSM and solid and its parts, relative to the exact rods' value at the same load parameter.
-
-    Attributes
-    ----------
-    scene : str
-        Name.
-    total : dict of ndarray, shape (4,)
-        ``(q_TSM - q_solid) / q_rod`` by quantity, at the load parameters `TIMES`; nan where the rods' value is zero or the pair is open.
-    parts : dict of dict of ndarray, shape (4,)
-        By quantity and part.
-    """
+    """The difference of TSM and solid and its parts, relative to the exact rods' value at that time."""
 
     scene: str
     total: Values

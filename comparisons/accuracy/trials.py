@@ -48,12 +48,9 @@ class Trial(NamedTuple):
 
 
 def exact(scene: Scene, accuracy: float, quantity: str, *, alone: bool) -> Iterator[Trial]:
-    """Yield trials with one exact element a beam, at the tolerance of its integration that the accuracy needs.
-
-    The estimate is the integration error inside the elements plus Newton's tolerance, both divided by the size of the quantity.
-    A small load therefore needs a more accurate integration for the same relative error. Graded elements follow where the exact ones cannot
-    be accurate, unless they are to stand `alone`.
-    """
+    """Yield trials with one exact element a beam, at the tolerance of its integration that suffices."""
+    # a small load needs a sharper integration for the same relative error; graded elements follow where the
+    # exact ones fail
     tolerance = 1e-9
     while True:
         options = replace(TSM.reference, integration_tolerance=tolerance)
@@ -93,13 +90,10 @@ def _few(scene: Scene) -> int:
 
 
 def graded(scene: Scene, accuracy: float, quantity: str, kind: ClosedForm) -> Iterator[Trial]:
-    """Yield trials with elements in closed form, refined where the solution is curved and where forces act.
-
-    The answers on a mesh and on the mesh with all elements halved are compared at a few load parameters. Their difference gives the
-    error of the first mesh. If the error is too large, the next mesh has the number of elements that the order p predicts. Its density
-    is the largest of ``(kappa^4 + (N/EI)^2 + (V/EI)^2)^(p/(4 (p + 1)))`` over the load parameters, which gives all elements an equal
-    share of the error.
-    """
+    """Yield trials with elements in closed form, refined where the axis is curved and forces act."""
+    # a mesh is compared with the one of halved elements; the next has the number that the order predicts, at
+    # the density (kappa^4 + (N/EI)^2 + (V/EI)^2)^(p/(4 (p + 1))), which gives all elements an equal share of
+    # the error
     order, element, options, few = kind.order, kind.name, Options(element=kind.name), _few(scene)
     mesh = _with(scene, {beam.name: np.linspace(0.0, 1.0, FIRST + 1) for beam in scene.beams})
     for _ in range(ROUNDS):
@@ -180,10 +174,7 @@ def _density(data: Mapping[str, Array], EI: float, order: int) -> Array:
 
 
 def solid(scene: Scene, accuracy: float, quantity: str) -> Iterator[Trial]:
-    """Yield trials with solid elements on meshes that are each twice as fine, compared at a few load parameters.
-
-    The error of a mesh is its difference from the one before over ``2^p - 1`` with p = 2, times a safety factor of two.
-    """
+    """Yield trials with solid meshes, each twice as fine; an error is the last change over ``2^p - 1``."""
     before: Response | None = None
     for mesh in MESHES:
         meshed, name = _strips(scene, mesh), f"solid, {mesh[0]}x{mesh[1]}"

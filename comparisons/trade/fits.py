@@ -28,10 +28,7 @@ def pareto(cost: ArrayLike, error: ArrayLike) -> list[int]:
 
 
 class Fit(NamedTuple):
-    """A power law ``y ~ x^exponent`` by least squares on the logarithms.
-
-    It is fitted to `points` points from x = `first` to `last`; `scatter` is the largest ``|ln y - ln y_fit|``.
-    """
+    """A power law ``y ~ x^exponent`` from x = first to last; scatter is the largest ``|ln y - ln y_fit|``."""
 
     exponent: float | None = None
     points: int = 0
@@ -51,13 +48,9 @@ def power_law(x: Sequence[float], y: Sequence[float]) -> Fit:
 
 
 def convergence(resolution: Sequence[float], error: Sequence[float], floor: float) -> Fit:
-    """Return the power law of an error over rising resolution, fitted in the asymptotic range; the order is minus the exponent.
-
-    The first error below `floor` and all later errors are left out. The local order of two successive meshes is the slope between
-    them. The asymptotic range is the longest run of meshes whose local orders are at least nine tenths of the median positive local
-    order. This excludes chance on coarse meshes and round-off on fine ones. The four finest points of the range are fitted. There is no
-    exponent for fewer than three points.
-    """
+    """Return the power law of an error over rising resolution in its asymptotic range."""
+    # it is the longest run of meshes, before the first error below the floor, whose local orders are at least
+    # nine tenths of the median positive one: neither chance on coarse meshes nor round-off on fine ones
     x, y = np.asarray(resolution, dtype=float), np.asarray(error, dtype=float)
     above = np.logical_and.accumulate(y > floor)
     x, y = x[above], y[above]

@@ -26,10 +26,7 @@ ALIKE = 1.2
 
 
 def plot_work(trade: Trade, scope: str, cost: str, folder: Path) -> list[Path]:
-    """Draw the errors of all settings over a cost, as PNG and SVG; return the files.
-
-    The upper panel has errors against the reference, the lower one errors against each model's limit.
-    """
+    """Draw the errors of all settings over a cost, against the reference and against each model's limit."""
     fig = figure(figsize=(WIDTH, 9.2))
     upper, lower = fig.subplots(2, 1, sharex=True, sharey=True)
     _draw(upper, trade, scope, cost, own=False)
@@ -88,10 +85,7 @@ def _mark_uncertainty(axes: Any, doubt: float) -> None:
 
 
 def _draw_front(axes: Any, points: Sequence[Line], model: str) -> None:
-    """Draw a front, and name its points: to their left, or at the right-hand edge where others of the model are around.
-
-    A point that is hardly better than a cheaper one has no name of its own.
-    """
+    """Draw a front, and name its points to their left, of bodies at the right-hand edge."""
     spent, errors = ([one[name] for one in points] for name in ("spent", "own_error"))
     axes.plot(spent, errors, color=MODELS[model].colour, linewidth=1.6, drawstyle="steps-post", zorder=1)
     named: list[Line] = []

@@ -56,12 +56,8 @@ def reference_cases(scene: Scene) -> list[Case]:
 
 
 def best_reference(scene: Scene, measured: Measured) -> Reference:
-    """Return the answer of the exact rods, as uncertain as its difference from exact TSM elements.
-
-    The rods and not the elastica: every model of the sweep stretches and shears.
-
-    Raises NoReferenceError if the exact rods did not complete.
-    """
+    """Return the answer of the exact rods, as uncertain as its difference from exact TSM elements."""
+    # the rods and not the elastica: every model of the sweep stretches and shears
     rod, exact = (measured[case].response for case in reference_cases(scene))
     if not rod.completed:
         raise NoReferenceError(f"{scene.name}: the exact rods stopped: {rod.message}")
@@ -77,10 +73,7 @@ def best_reference(scene: Scene, measured: Measured) -> Reference:
 
 
 def solid_limit(scene: Scene, measured: Measured, *, quick: bool = False) -> Reference | None:
-    """Return what the solid of the scene's material converges to, contacts closed without penetration; None if a mesh did not complete.
-
-    It is as uncertain as the last two meshes differ.
-    """
+    """Return what the solid converges to, as uncertain as its last meshes differ; None if one stopped."""
     cases = limit_cases(scene, quick=quick)
     series = [measured[case].response for case in cases]
     if not all(response.completed for response in series):
@@ -93,13 +86,10 @@ def solid_limit(scene: Scene, measured: Measured, *, quick: bool = False) -> Ref
 
 
 def extrapolated(responses: Sequence[Response]) -> Response:
-    """Return the limit of the last three responses, coarse to fine with a constant ratio of refinement, at the same load parameters.
-
-    With the differences ``d1, d2`` of successive responses, the limit of a quantity is ``q = q3 + d2 / (|d1|/|d2| - 1)`` (Richardson,
-    Aitken). The norm is the maximum over the load parameters, so that the order is observed and not assumed. If ``|d2|`` is more than
-    nine tenths of ``|d1|``, nothing is added. The last difference ``|d2|`` is the stated uncertainty of the limit. It is larger than the
-    error at a constant order, because a local singularity, as under a load on one node, lowers the order on fine meshes.
-    """
+    """Return the limit ``q3 + d2 / (|d1|/|d2| - 1)`` of the last three responses (Richardson, Aitken)."""
+    # the norms are maxima over the load parameters, so that the order is observed; its uncertainty is |d2|,
+    # more than the error at a constant order, because a local singularity, as under a load on one node,
+    # lowers the order on fine meshes
 
     def limit(read: Callable[[Response], Mapping[str, Array]]) -> dict[str, Array]:
         coarse, middle, fine = (read(one) for one in responses[-3:])

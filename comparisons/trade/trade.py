@@ -29,10 +29,7 @@ ABOVE = 3.0
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Trade:
-    """The whole sweep: a row for every case, with errors against the reference and against what its model converges to.
-
-    The solid converges to a limit of its own, None if it is not known; the limit of all other models is the reference.
-    """
+    """The sweep: rows with errors against the reference, and against the limit of their model if known."""
 
     scene: Scene
     rows: list[Row]
@@ -76,11 +73,7 @@ def short(row: Row) -> str:
 
 
 def cheapest(trade: Trade, scope: str, quantity: str, target: float) -> Line:
-    """Return the settings of TSM and of the solid with the least seconds for an error of at most `target`, as a row.
-
-    The error of the solid is measured against its own limit, and once more against the reference. Where the limit is known less well
-    than the target, the solid has no setting. A ratio is that of the seconds of the solid over those of TSM.
-    """
+    """Return the settings with the least seconds for an error of `target`, and their ratios to TSM's."""
 
     def least(model: str, *own: bool) -> Row | None:
         """The larger error counts: on a coarse mesh, discretisation and model error may cancel."""
@@ -108,10 +101,7 @@ def cheapest(trade: Trade, scope: str, quantity: str, target: float) -> Line:
 
 
 def front(trade: Trade, model: str, scope: str, quantity: str, cost: str) -> list[Line]:
-    """Return the Pareto front of a model by rising cost as rows, with errors against the model's limit.
-
-    Errors below the uncertainty of the limit count as equal.
-    """
+    """Return the Pareto front of a model against its limit, known no better than its uncertainty."""
     rows, doubt = trade.of_model(model, scope), trade.uncertainty(model, scope, quantity)
     costs = [row.spent(cost) for row in rows]
     errors = [max(row.error(scope, quantity, own=True), doubt) for row in rows]
@@ -123,10 +113,7 @@ def front(trade: Trade, model: str, scope: str, quantity: str, cost: str) -> lis
 
 
 def orders(trade: Trade, quantity: str) -> Iterator[Line]:
-    """Yield a row for every family with all load steps: ``error ~ n^-order`` over the path, ``seconds ~ unknowns^cost_exponent``.
-
-    An exponent is None where its asymptotic range has fewer than three points.
-    """
+    """Yield a row per family: ``error ~ n^-order`` over the path, ``seconds ~ unknowns^cost_exponent``."""
     rows = {row.case: row for model in MESHED for row in trade.of_model(model, "path")}
     for chain in chains(rows):
         case, known = chain[0], [rows[one] for one in chain]

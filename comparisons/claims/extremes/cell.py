@@ -40,10 +40,7 @@ class Allowance(NamedTuple):
 
 
 def allowance(case: Case, bent: Bending) -> Allowance:
-    """Return the error allowed to `case` against the Reissner rod that bends as `bent` says, `LARGEST` at most.
-
-    A model of another rod, as the elastica, is allowed a larger error, because it does not approximate this rod.
-    """
+    """Return the error allowed to `case` against Reissner's rod, bent so; of a rod at most `LARGEST`."""
     parts = case.found.error_parts(case.scene, case.options, bent)
     error, largest = sum(parts.values()), max(parts, key=lambda why: parts[why])
     if case.found.rod and not error <= LARGEST:
@@ -52,10 +49,7 @@ def allowance(case: Case, bent: Bending) -> Allowance:
 
 
 def in_units_of(other: BeamSpec, beam: BeamSpec, response: Response) -> Response:
-    """Return the response of `beam` in the units of `other`, a beam that differs in units only. Axes and gaps are not converted.
-
-    Lengths are scaled by the ratio of the lengths L, forces by the ratio of ``EI/L^2``, moments by the ratio of ``EI/L``.
-    """
+    """Return the response of `beam` in the units of `other`, which differs in units only."""
     length = other.length / beam.length
     force = other.EI / beam.EI / length**2
     contacts, supports = response.contacts.items(), response.supports.items()
@@ -75,21 +69,16 @@ def in_units_of(other: BeamSpec, beam: BeamSpec, response: Response) -> Response
 
 @dataclass(frozen=True, kw_only=True)
 class Against:
-    """Comparison with the answer of another case, at the load parameters of both; units may differ.
-
-    What is allowed is `allowance` by default, which takes the other case for the exact answer.
-    """
+    """Comparison with the answer of another case in any units; by default theory says what is allowed."""
 
     case: Case
     name: str = "exact rod"
     allowed: Allowance | None = None
 
     def finding(self, case: Case, own: Response, results: Results) -> Finding | None:
-        """Return the error of `own`, the response to `case`; infinite if it reached a larger load parameter than its reference.
-
-        The elastica, a model of another rod, may go further. The finding is None if the reference has no common load parameter, or is too
-        soft to be a reference.
-        """
+        """Return the error of `own` at the load parameters of both; None where the other is no reference."""
+        # a model of another rod, as the elastica, may go further than its reference, and may be too soft for
+        # one
         other, beam = results[self.case].response, self.case.scene.beams[0]
         allowed, why = self.allowed or allowance(case, bending(beam, other))
         if not MODELS[case.model].rod and (allowed > LARGEST or not len(other.load_parameter)):
@@ -105,14 +94,9 @@ class Against:
 
 
 def energy(case: Case, own: Response) -> Finding:
-    """Energy of the loaded part of a rod under a pin on its axis, in closed form: its largest violation over ``2 EI sin b``.
-
-    With the force ``F (-sin b, cos b)`` at (x, y), ``c = 1/EA - 1/GA`` and ``S = (F/GA)/(1 + sqrt(1 - F^2 c/GA))``
-
-        F (x cos b + y sin b)^2 = 2 EI (sin b - S) (1 - F c (sin b + S)/2)
-
-    and for the elastica, where b is the tangent's angle at the contact, ``F (x cos tc + y sin tc)^2 = 2 EI sin tc``.
-    """
+    """Energy integral of a rod under a pin on its axis: its largest violation over ``2 EI sin b``."""
+    # with the force F (-sin b, cos b) at (x, y), c = 1/EA - 1/GA and S = (F/GA)/(1 + sqrt(1 - F^2 c/GA)):
+    #     F (x cos b + y sin b)^2 = 2 EI (sin b - S) (1 - F c (sin b + S)/2);  S = c = 0 for the elastica
     beam, pin, rod = case.scene.beams[0], case.scene.pins[0], MODELS[case.model].rod
     force = -own.supports[f"{beam.name}.start"].force
     F = np.hypot(*force.T)
@@ -130,12 +114,9 @@ def energy(case: Case, own: Response) -> Finding:
 
 
 def circle(case: Case, own: Response) -> Finding:
-    """A beam rolled up by a moment at its tip, an arc whatever EA and GA: the largest error of the tip's position over the length.
-
-    Every element bends to the same arc of the angle t. The first term that the strain measures neglect makes the chord of an element, and
-    with it the whole circle, too large: by t^2/24 with the paper's element, by t^4/1920 with `mixed`. The error of the tip is this term
-    times the distance of the tip from the clamp.
-    """
+    """A beam rolled up to an arc by a moment: the largest error of the tip's position over the length."""
+    # the first term that the strains neglect makes the chord of an element, and with it the whole circle, too
+    # large
     beam, load, kind = case.scene.beams[0], case.scene.loads[0], TSM.element(case.options)
     angle = load.moment * beam.length / beam.EI * own.load_parameter
     half = angle / (2.0 * np.pi)

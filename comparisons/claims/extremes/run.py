@@ -111,12 +111,7 @@ def _shaded(error: float, about: str = "") -> str:
 def extremes(
     folder: Path, workers: Workers, progress: Progress, *, quick: bool = False
 ) -> tuple[list[Judgement], tuple[Path, ...]]:
-    """Run the matrix and write ``extremes.html``, ``.csv`` and ``.json`` into `folder`; return what became of every cell, and the files.
-
-    A run that was interrupted is taken up where it was; one that ended starts anew.
-
-    Raises OutputError, WorkersError if a file cannot be written, or the workers are gone.
-    """
+    """Run the matrix, or take it up where it was interrupted, and write page, table and numbers."""
     cells, kept = matrix(quick=quick), folder / ".extremes"
     cases = sorted(dict.fromkeys(case for cell in cells for case in cell.cases), key=_cost, reverse=True)
     results = run_cases(cases, kept, workers, repeats=0, progress=progress)

@@ -1,7 +1,4 @@
-"""The scenes of the matrix and the rows of its maps: models, each with its options and with what its answers are compared.
-
-One cantilever of length 1 and modulus 1 along +x, clamped at the origin, unless a scene says otherwise.
-"""
+"""The scenes of the matrix, of one cantilever of length 1 and modulus 1, and the cells of every model."""
 
 import math
 from collections.abc import Iterable, Iterator
@@ -101,10 +98,7 @@ def beam(column: str, scene: Scene, kind: ElementType, options: Options, row: st
 def beams(
     column: str, scene: Scene, elements: int | None, *, only: Iterable[ElementType] | None = None
 ) -> Iterator[Cell]:
-    """Yield the cells of TSM, and of other models of beams with a mesh as they are, against the rod.
-
-    Elements without a mesh are one per beam; None leaves the number of the others to the scene.
-    """
+    """Yield the cells of beams against the rod; elements without a mesh are one a beam."""
     for kind in kinds() if only is None else only:
         yield beam(column, scene, kind, Options(elements=elements if kind.meshed else 1))
     for model in MODELS.values():

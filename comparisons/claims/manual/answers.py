@@ -69,11 +69,10 @@ def _read(response: Response, quantity: Quantity) -> float:
 
 
 def value(response: Response, words: str, at: float) -> float:
-    """Return a number of a response at a load parameter of its scene; nan for an event that it does not have.
-
-    The words are a name of `comparisons.response.table`, of a vector without ``_x`` for its size; ``axis BEAM .5 x``, a place of the axis at
-    half the length; ``slip-off PAIR``, and ``event KIND PAIR 0``, the load parameter of the first one.
-    """
+    """Return a number of a response at a load parameter; nan for an event that it does not have."""
+    # a name of `comparisons.response.table`, of a vector without _x for its size; "axis BEAM .5 x", a place
+    # of the axis at half the length; "slip-off PAIR"; "event KIND PAIR 0", the load parameter of the first
+    # one
     what, *more = words.split()
     if what == "slip-off":
         return response.contacts[more[0]].slip_off

@@ -52,10 +52,7 @@ def card(problem: Problem) -> dict[str, Any]:
 
 
 def _quantity(quantity: Quantity, uncertainty: float) -> dict[str, Any]:
-    """Return a quantity with its uncertainty in the quantity's own unit, and the number of significant digits that this leaves.
-
-    Of zero they are the decimals, in parts of the quantity's scale.
-    """
+    """Return a quantity with its uncertainty, and the significant digits (decimals of zero) it leaves."""
     size = abs(quantity.exact) or quantity.size
     error = uncertainty * quantity.size
     digits = MOST_DIGITS if error == 0.0 else min(MOST_DIGITS, max(0, math.floor(-math.log10(error / size))))
@@ -71,10 +68,7 @@ def card_schema() -> dict[str, Any]:
 
 
 def write_cards(folder: Path, report: Report, stated: Sequence[Path]) -> tuple[Path, ...]:
-    """Write the cards of problems, ``NAME.json``, and their schema, ``card.schema.json``, the last of the files that are returned.
-
-    Raises `OutputError` if the folder, which is made if it is not there, cannot be written in.
-    """
+    """Write the cards of problems, ``NAME.json``, and their schema; return the files, the schema last."""
     writable_folder(folder)
     written = {}
     for problem in map(read_problem, stated):

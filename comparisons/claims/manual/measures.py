@@ -50,10 +50,9 @@ def identity(_: Problem, answers: Answers) -> Sequence[float]:
 
 
 def greatest_load(problem: Problem, answers: Answers) -> Sequence[float]:
-    """Read the greatest load and its place: of a pin that is raised, or of three-point bending, whose half is the same cantilever.
-
-    A pin whose path has a corner turns back there: load and place are read on the way to the corner, then on the way back.
-    """
+    """Read the greatest load and its place: of a pin that is raised, or of half of three-point bending."""
+    # a pin whose path has a corner turns back there: both are read on the way to the corner, then on the way
+    # back
     given, response, pin = problem.settings, answers.solved(draw=False), answers.scene.pins[-1]
     t, a, EI = response.load_parameter, pin.points[0][0], answers.scene.beams[0].EI
     rise = np.array([pin.position(one)[1] for one in t]) / a
@@ -127,11 +126,9 @@ def limit_points(problem: Problem, answers: Answers) -> Sequence[float]:
 
 
 def power_law(problem: Problem, answers: Answers) -> Sequence[float]:
-    """Exponent by which the largest error of the contact force against the rod, over the largest force, or the penetration goes with what is varied.
-
-    ``settings``: `varies` is ``elements`` or a setting of the scene, `values` its values; `of` is ``error`` or ``penetration``, and
-    `sign` is -1 where the exponent is that of the inverse.
-    """
+    """Exponent of the error of the force against the rod, or of the penetration, in what is varied."""
+    # ``varies`` is ``elements`` or a setting of the scene; ``sign`` is -1 where the exponent is that of the
+    # inverse
     given, found = problem.settings, []
     for one in given["values"]:
         scene, options = answers.scene, answers.trial.options

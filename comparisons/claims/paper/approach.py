@@ -1,10 +1,7 @@
-"""The smallest distance from a beam node at which Newton's method still finds equilibrium, at a fixed tolerance.
-
-`tsm.solve` estimates the round-off of a contact and accepts a residual of this size. This study accepts only a residual below a stated
-tolerance, as a program without such an estimate does. The contact moves towards the next beam node in steps that shrink with the
-distance. Round-off therefore stops it before the step length or the start of the iteration does. The critical area of [P] section 4.1
-begins where no smaller step helps. Behind the node the march goes on from a state inside the next element.
-"""
+"""How near to a beam node Newton's method still finds equilibrium, at a fixed tolerance."""
+# `tsm.solve` accepts a residual of the size of a contact's round-off; a program without such an estimate
+# accepts only one below its tolerance. The contact nears the node in steps that shrink with the distance;
+# where none helps, the area of [P] 4.1 begins.
 
 from dataclasses import dataclass
 
@@ -36,10 +33,7 @@ _BEHIND = (0.1, 0.2, 0.3, 0.4, 0.5)  # places inside the next element, in elemen
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Approach:
-    """Equilibria on the way to a beam node, or to the tip, at an arc position.
-
-    Load parameters and distances from the node in element lengths, l_i/l of [P], shape (k,); empty if there is none in the element.
-    """
+    """Equilibria (k,) on the way to a node at an arc position, and their distances in element lengths."""
 
     node: float
     load_parameter: Array
@@ -52,10 +46,7 @@ class Approach:
 
 
 def approaches(structure: Structure, tolerance: float) -> tuple[Approach, ...]:
-    """Lead the only contact of a structure, one beam under one pin, towards every beam node on its way to the tip, the last one.
-
-    The tolerance bounds the scaled residual of `tsm.newton.Newton`, without allowance for round-off.
-    """
+    """Lead the only contact of a structure towards every node up to the tip, at a scaled tolerance."""
     contact = _Contact(structure, tolerance)
     history = [initial_state(contact.model)]
     first = int(np.floor(contact.arc(history[0]) / contact.l0 + NEAREST)) + 1
@@ -87,10 +78,7 @@ class _Contact:
         return arc_position(self.model.pairs[0].target, touch.element, touch.xi)
 
     def equilibrium(self, state: State) -> State | None:
-        """Newton's method from a start, None unless the residual falls below the tolerance.
-
-        What the solver accepts as round-off is iterated further: a later iteration may hit the tolerance.
-        """
+        """Newton's method down to the tolerance, beyond what the solver takes for round-off, or None."""
         spent = 0
         while spent < _ITERATIONS:
             found = self.newton.solve(state)
@@ -129,10 +117,9 @@ def _rate(contact: _Contact, states: list[State]) -> float:
 
 
 def _behind(contact: _Contact, trail: list[State], node: float) -> list[State]:
-    """One equilibrium inside the element behind the node, the nearest of a few places; none if none is found.
-
-    The starts are extrapolated from states that lie apart: those crowded before the node know only its round-off.
-    """
+    """One equilibrium inside the element behind the node, the nearest of a few places, if any."""
+    # the starts are extrapolated from states that lie apart: those crowded before the node know only its
+    # round-off
     apart: list[State] = []
     for state in reversed(trail):
         if len(apart) < 3 and (not apart or apart[0].load_parameter - state.load_parameter > _LARGEST / 2):

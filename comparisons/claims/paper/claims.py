@@ -103,11 +103,7 @@ CLAIMS = tuple(
 
 
 def verdict(readings: Sequence[bool | None], *, in_size: bool = True) -> Verdict:
-    """Return whether a claim holds in every reading of what the paper does not say.
-
-    A reading is None where this program ends before it does. The claim is reproduced where it holds in all readings, in
-    direction only unless `in_size`; not reproduced where it fails in all of them; otherwise it cannot be told.
-    """
+    """Return whether a claim holds in every reading; None is a reading that this program cannot finish."""
     if not readings:
         raise ValueError("readings = (): a claim without a reading cannot be judged")
     if all(readings):

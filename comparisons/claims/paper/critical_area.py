@@ -1,8 +1,4 @@
-"""Fig. 7b: how near to a beam node each element formulation finds equilibrium, and why not nearer.
-
-Two measurements: the smallest l_i/l with equilibrium before every beam node, by starting position and tolerance, and the
-floor of the unbalanced force against l_i/l, which no tolerance can pass.
-"""
+"""Fig. 7b: how near to a node each formulation finds equilibrium, and the floor of the force there."""
 
 from collections.abc import Mapping
 from functools import partial
@@ -94,12 +90,7 @@ def _shown(tolerances: tuple[float, ...]) -> float:
 
 
 def measured(areas: list[Row], floors: list[Row]) -> dict[str, Any]:
-    """Return the numbers of the figure from its rows.
-
-    Smallest, median and largest critical area of each formulation over nodes and starting positions, by tolerance, where an element
-    without equilibrium counts as 1; the tolerances at which the median is in the middle of the printed ranges; the slopes of the
-    floors in section 4.1, before both ends of the element.
-    """
+    """Return the numbers of the figure from its rows; an area of 1 stands for no equilibrium."""
     tolerances = tuple(dict.fromkeys(row["tolerance"] for row in areas))
     critical = {
         element: {f"{tolerance:.0e}": _spread(areas, element, tolerance) for tolerance in tolerances}

@@ -132,11 +132,8 @@ def _stages(depth: Array) -> Iterator[Row]:
 
 
 def _attempt(scene: Scene, element: str, place: float) -> Row:
-    """How far `tsm.solve` comes with a formulation and a place of the pin [m], the last depth [m], and the beam nodes passed.
-
-    `at_hand_over`: what stops it is the second contact on an element that knows one, where the exact rods hand over, between the
-    last depth with an answer and the next one.
-    """
+    """How deep [m] `tsm.solve` comes with a formulation and a place of the pin, and the nodes passed."""
+    # at_hand_over: a second contact on an element that knows one stops it where the exact rods hand over
     moved = changed(scene, {("pin", "start"): (place, scene.pins[0].points[0][1])})
     response = solve(moved, TSM.name, Options(element=element))
     travel = abs(moved.pins[0].points[1][1])

@@ -87,7 +87,8 @@ def of_critical_areas(found: Study) -> Facts:
             name: " and ".join(f"{round(one, 3) + 0.0:.3f}" for one in both) for name, both in slopes.items()
         },
         "stiff": _stiff(found.tables["fig7b-floor"]),
-        # where the measured range meets the printed one, and whether the printed one lies between two that do not
+        # where the measured range meets the printed one, and whether the printed one lies between two that do
+        # not
         "meets": {
             name: [*((smallest[name] <= most) & (largest[name] >= least)), *[True] * bool(takes[name] > 0.0)]
             for name, (least, most) in PRINTED.items()

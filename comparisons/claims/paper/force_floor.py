@@ -1,14 +1,9 @@
-"""The least unbalanced force of a contact element beside a beam node: the effect of round-off, as a function of l_i/l.
-
-An element and the node that touches it are put into a state with a given contact force in extended precision. The nodal forces in this
-state balance an outer load. The state is then rounded to double precision, and the forces are evaluated in double precision. The
-difference is an unbalanced force, and an iteration in double precision goes below it only by chance. This floor belongs to the element
-alone; Newton's method, its tolerance and the load step have no effect on it.
-
-A contact stiffness ``K_cc`` times the last bit of a coordinate is what to expect: ``3 EI/b^3`` (Euler-Bernoulli) or ``GA/b``
-(Timoshenko, b below ``sqrt(Psi)``); with the force as an unknown nothing is multiplied. The reference has the same
-amplification with a last bit 2000 times smaller (x86). Elements that divide by b stop at 1e-15 of their length.
-"""
+"""The least unbalanced force of a contact element beside a node, by round-off, over l_i/l."""
+# An element and its node are put into a state with a given contact force in extended precision, which is then
+# rounded to double precision; what the forces differ by, no iteration in double precision goes below but by
+# chance. To expect is a contact stiffness times the last bit of a coordinate: 3 EI/b^3 (Euler-Bernoulli) or
+# GA/b (Timoshenko, b below sqrt(Psi)); with the force as an unknown nothing is multiplied. The reference has
+# the same amplification with a last bit 2000 times smaller (x86).
 
 from __future__ import annotations
 
@@ -67,15 +62,7 @@ def force_floor(
     elements: int = 10,
     samples: int = 50,
 ) -> float:
-    """Unbalanced force that round-off leaves, median over random states.
-
-    ``ratio``: distance of the contact point from the near end in parts of the element's length. ``end``:
-    which end is near. ``Psi``: ``EI/(G A_e)`` in ``l0^2``: 9 in [P] 4.1, about 0.04 in 4.2 with 20 elements.
-    ``samples``: number of random states: place, direction, rotations and strain. Returns largest entry of the
-    unbalanced force of element and node in ``EI/L^2``, moments in ``EI/L``: the scale that
-    `tsm.Settings.tolerance` has. Raises ValueError if the element has no closed form, the ratio does not lie
-    in [0, 1], or the platform has no floating-point type beyond double precision.
-    """
+    """Return the unbalanced force [EI/L^2] that round-off leaves, the median over random states."""
     kind = CLOSED_FORM.get(element)
     if (kind is None and element != turned_frame.NAME) or not 0 <= ratio <= 1:
         raise ValueError(

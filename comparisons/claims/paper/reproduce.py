@@ -24,12 +24,7 @@ STUDIES: dict[str, Callable[..., Study]] = {
 
 
 def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[list[Path], list[str]]:
-    """Compute and draw a figure of `FIGURES` or "all" of them, judge the claims that they bear on, and write a page of both.
-
-    The folder is made if it is not there, before anything is computed. The verdicts are ``claims.md``, those of a single figure
-    ``claims-NAME.md``; ``report.html`` shows what was run last. `quick` takes coarse settings. Returns the files and the runs that a
-    figure needs and that did not go through; raises `OutputError` if the folder cannot be written.
-    """
+    """Draw a figure of `FIGURES` or "all" and judge its claims; return the files and what stopped."""
     folder = writable_folder(folder)
     found: dict[str, Study] = {}
     files: list[Path] = []

@@ -1,14 +1,8 @@
-"""The cantilever contact element in a frame that turns with its clamped section, whatever the rotation.
-
-`tsm` evaluates [P] (7) from the deformations of the chord, to first order in the rotations; in exact arithmetic that is the simply
-supported element. Here nothing is taken from the chord. The frame lies along the section at end i, at the angle ``alpha + theta_i``,
-with the directions t and n. With r from end i to the contacting node and d to end j the deformations are ::
-
-    y_j = n . d,    y_c = n . r,    theta = theta_j - theta_i,    a = t . r
-
-and ``[Y_j, Y_c, M_j] = K(a) [y_j, y_c, theta]`` with the corrected matrix of (7). The elongation is the elongation of the chord. Nodal forces are
-``U = J S`` with J the transposed derivative of the deformations at constant a.
-"""
+"""The cantilever contact element in a frame that turns with its clamped section, whatever the rotation."""
+# `tsm` evaluates [P] (7) from the deformations of the chord, to first order in the rotations; in exact
+# arithmetic that is the simply supported element. Here the frame lies along the section at end i, with the
+# directions t and n; with r from end i to the node and d to end j, [Y_j, Y_c, M_j] = K(a) [n.d, n.r, theta_j
+# - theta_i] at a = t.r, with the corrected matrix of (7).
 
 from typing import Any
 
@@ -29,10 +23,7 @@ def frame(p: Properties, x: Array) -> tuple[Array, Array]:
 
 
 def contact(p: Properties, x: Array, lever: Any) -> tuple[Array, Array]:
-    """Forces on the element (6) and on the node that touches it (2), the gradient of the energy at constant a, and K, shape (3, 3).
-
-    `x` are the element's displacements, shape (6,); `lever` is ``x_i - x_c``, from the contacting node to end i.
-    """
+    """Forces on element and touching node (8), with ``lever = x_i - x_c``, and K (3, 3)."""
     t, n = frame(p, x)
     d, r = np.array([p.dx0, p.dy0]) + (x[3:5] - x[:2]), -np.asarray(lever)
     xi = min(max(t @ r / p.l0, INSIDE), 1 - INSIDE)

@@ -1,7 +1,4 @@
-"""The double beam of Nizam et al., section 4.3, by exact rods: two cantilevers, and a pin that is handed over from one to the other.
-
-`tests/oracles/coupled.py` computes the values by collocation.
-"""
+"""The double beam of Nizam et al., section 4.3, by the exact rods of `tests/oracles/coupled.py`."""
 
 UPPER, TIP, LOWER = "pin->upper", "upper.end->lower", "pin->lower"
 """The contact pairs."""

@@ -41,10 +41,7 @@ def solved(
 
 
 def peers(report: Report) -> Iterator[Row]:
-    """Tip displacement and contact force of the solid and of CalculiX, on the same meshes.
-
-    Raises CalculixError if CalculiX is not there, or stops under the tip load.
-    """
+    """Tip displacement and contact force of the solid and of CalculiX on the same meshes."""
     problem = to_solid(load_scene("ks-face"))
     strip = problem.strips[0]
     for clamp in (ROD.name, "full"):
@@ -90,10 +87,7 @@ def _tip_row(strip: "Strip", load: float) -> Row:
 
 
 def _pin_rows(problem: "SolidProblem", steps: int, penalty: float) -> Iterator[Row]:
-    """Yield a row per load parameter shown: contact force as the clamp bears it, empty where CalculiX did not come.
-
-    ``largest`` is the largest difference up to where it came.
-    """
+    """Yield a row per load parameter shown, with the contact force as the clamp bears it."""
     answer = press(problem, steps, penalty)
     calculix = np.hypot(*answer.force.T)
     solid = contact_forces(problem, steps, max(calculix.size, round(steps * SHOWN[-1])))

@@ -33,10 +33,7 @@ ROD_LAW: Mapping[tuple[str, ...], object] = {
 
 
 def locking(report: Report) -> Iterator[Row]:
-    """Error of the contact force half way through KS in plane strain, where Poisson's ratio can lock, against the exact rod.
-
-    The rod of a strip in plane strain has ``E / (1 - nu^2)`` in place of E. All elements have the same nodes.
-    """
+    """Error of the force in plane strain against the rod of ``E / (1 - nu^2)``, elements of equal nodes."""
     for slenderness, nu in product((0.02, 0.002), (0.3, 0.49, 0.4999)):
         scene = _slender(slenderness, nu)
         E = scene.beams[0].youngs_modulus
