@@ -7,7 +7,7 @@ import numpy as np
 
 from comparisons.claims.drawing import SHAPE, Line, Panel, draw
 from comparisons.claims.paper.critical_area import STARTS, lifted
-from comparisons.claims.paper.figure_study import Study, column
+from comparisons.claims.paper.figure_study import Study, column, reached, stops
 from comparisons.claims.paper.formulations import LABELS, MIXED, TIMOSHENKO, line
 from comparisons.models import ROD, TSM, solve
 from comparisons.models.options import Options
@@ -24,20 +24,27 @@ DEPTHS = (0.25, 0.5, 0.75, 1.0)
 
 def cantilever_shapes(*, quick: bool, report: Report) -> Study:
     """Solve the six; `quick` takes two of them with a quarter of the load parameters and without Euler-Bernoulli."""
-    lifts, histories, panels, stopped = list[Row](), list[Row](), list[Panel](), list[str]()
-    scenes = [lifted(start) for start in (STARTS[::4] if quick else STARTS)]
-    if quick:
-        scenes = [replace(scene, load_parameters=scene.load_parameters // 4) for scene in scenes]
-    for scene in scenes:
-        ((start, _), (_, travel)), pair = scene.pins[0].points, scene.contacts[0].pair
-        report(f"pin at {start:g} m")
-        runs = {elements: solve(scene, TSM.name, Options(elements=elements)) for elements in ELEMENTS}
-        beams, rod = runs[ELEMENTS[0]], solve(scene, ROD.name)
+    lifts, histories, panels = list[Row](), list[Row](), list[Panel]()
+    scenes, runs = list[Scene](), dict[str, Response]()
+    for start in STARTS[::4] if quick else STARTS:
+        place, scene = f"pin at {start:g} m", lifted(start)
+        report(place)
+        if quick:
+            scene = replace(scene, load_parameters=scene.load_parameters // 4)
+        scenes.append(scene)
+        pair, (_, (_, travel)) = scene.contacts[0].pair, scene.pins[0].points
+        found = {elements: solve(scene, TSM.name, Options(elements=elements)) for elements in ELEMENTS}
+        beams, rod = found[ELEMENTS[0]], solve(scene, ROD.name)
+        runs |= {f"{place}, {one.model}": one for one in (beams, rod)}
         history = _history(travel, beams, rod, pair)
         histories += [{"start": start, **row} for row in history]
         force, exact_force = column(history, "force"), column(history, "rod_force")
-        slip_off = {elements: travel * run.contacts[pair].slip_off for elements, run in runs.items()}
+        slip_off = {elements: travel * run.contacts[pair].slip_off for elements, run in found.items()}
         exact = travel * rod.contacts[pair].slip_off
+        tried = {
+            one: solve(scene, TSM.name, Options(element=one))
+            for one in ((TIMOSHENKO, MIXED) if quick else LABELS)
+        }
         lifts.append(
             {
                 "start": start,
@@ -45,19 +52,17 @@ def cantilever_shapes(*, quick: bool, report: Report) -> Study:
                 "slip_off": slip_off,
                 "slip_off_error": {n: abs(value / exact - 1.0) for n, value in slip_off.items()},
                 "force_error": float(np.abs(force - exact_force).max() / exact_force.max()),
+                # up to the slip-off, or the end of the run before it
                 "reached_in_contact": {
-                    element: travel * _reached(scene, element)
-                    for element in ((TIMOSHENKO, MIXED) if quick else LABELS)
+                    element: travel * float(np.nan_to_num(run.contacts[pair].slip_off, nan=reached(run)))
+                    for element, run in tried.items()
                 },
             }
         )
-        words = f"pin at {start:g} m: slips off at {slip_off[ELEMENTS[0]]:.4f} m"
-        panels.append(_panel(words, scene, beams, rod))
-        failed = [one for one in (beams, rod) if not one.completed]
-        stopped += [f"pin at {start:g} m, {one.model}: {one.message}" for one in failed]
+        panels.append(_panel(f"{place}: slips off at {slip_off[ELEMENTS[0]]:.4f} m", scene, beams, rod))
     return Study(
         tables={"fig7a": histories},
-        numbers={"starting_positions": lifts, "stopped": stopped},
+        numbers={"starting_positions": lifts, "stopped": stops(runs)},
         pictures={"fig7a": partial(draw, panels, tall=1.5)},
         scenes=tuple(scenes),
     )
@@ -70,13 +75,6 @@ def _history(travel: float, beams: Response, rod: Response, pair: str) -> list[R
     names = ("displacement", "force", "rod_force", "arc", "rod_arc")
     rows = zip(*columns, strict=False)
     return [dict(zip(names, row, strict=True)) for row in rows if np.isfinite(row).all()]
-
-
-def _reached(scene: Scene, element: str) -> float:
-    """Load parameter up to which the contact was followed: the slip-off, or the end of the run before it."""
-    response = solve(scene, TSM.name, Options(element=element))
-    slip_off = response.contacts[scene.contacts[0].pair].slip_off
-    return slip_off if np.isfinite(slip_off) else float(max(response.load_parameter, default=0.0))
 
 
 def _panel(title: str, scene: Scene, beams: Response, rod: Response) -> Panel:

@@ -3,14 +3,14 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import partial
-from itertools import groupby
+from itertools import groupby, product
 from typing import Any
 
 import numpy as np
 
 from comparisons.cases.settings import changed
 from comparisons.claims.drawing import SHAPE, Line, Panel, draw
-from comparisons.claims.paper.figure_study import Study
+from comparisons.claims.paper.figure_study import Study, reached, stops
 from comparisons.claims.paper.formulations import CANTILEVER, SIMPLE, TIMOSHENKO
 from comparisons.claims.problems.double_beam import EVENTS, HAND_OVER, LOWER, TIP, UPPER
 from comparisons.models import ROD, TSM, solve
@@ -50,14 +50,15 @@ def double_beam(*, quick: bool, report: Report) -> Study:
     exact = solve(finer, ROD.name)
     travel = abs(scene.pins[0].points[1][1])
     columns = {"depth": travel * response.load_parameter}
-    for pair in NAMES:
-        for prefix, contact in (("", response.contacts[pair]), ("exact_", exact.contacts[pair])):
-            closed = np.isfinite(contact.arc_position)
-            columns[f"{pair} {prefix}force"] = np.where(closed, contact.force, np.nan)
-            columns[f"{pair} {prefix}arc"] = contact.arc_position
+    for pair, (prefix, run) in product(NAMES, (("", response), ("exact_", exact))):
+        contact = run.contacts[pair]
+        closed = np.isfinite(contact.arc_position)
+        columns[f"{pair} {prefix}force"] = np.where(closed, contact.force, np.nan)
+        columns[f"{pair} {prefix}arc"] = contact.arc_position
+    names = ("kind", "pair", "element", "force", "released")
     events = [
         {
-            **{name: getattr(event, name) for name in ("kind", "pair", "element", "force", "released")},
+            **{name: getattr(event, name) for name in names},
             "depth": travel * event.load_parameter,
             "arc": event.arc_position,
         }
@@ -70,10 +71,8 @@ def double_beam(*, quick: bool, report: Report) -> Study:
     title = "Mixed elements, 10 + 10;\nthe forces act on the touched beams, grey are the beams at rest"
     panels = [_stage(finer, response, stage) for stage in stages]
     shapes = {"fig9": partial(draw, panels, tall=2.8, title=title)} if stages else {}
-    shown = {BEAMS: response, RODS: exact}
-    moving = motion_section(
-        "Double beam: shapes and histories", finer, {BEAMS: response}, tracks(shown, RODS, finer), focus=BEAMS
-    )
+    shown = tracks({BEAMS: response, RODS: exact}, RODS, finer)
+    moving = motion_section("Double beam: shapes and histories", finer, {BEAMS: response}, shown, focus=BEAMS)
     return Study(
         tables={"fig9": rows},
         numbers={
@@ -83,12 +82,8 @@ def double_beam(*, quick: bool, report: Report) -> Study:
             "stages": stages,
             "iterations": own.iterations,
             "seconds": own.wall_seconds,
-            "attempts": [_attempt(scene, element, place) for element in tried for place in HAND_OVER],
-            "stopped": [
-                f"{one.setting or one.model}: {one.status}: {one.message}"
-                for one in (own, response, exact)
-                if not one.completed
-            ],
+            "attempts": [_attempt(scene, element, place) for element, place in product(tried, HAND_OVER)],
+            "stopped": stops({one.setting or one.model: one for one in (own, response, exact)}),
         },
         pictures={**shapes, "fig9-forces": partial(draw, _histories(columns, events), tall=3.2, columns=1)},
         scenes=(finer,),
@@ -137,16 +132,15 @@ def _attempt(scene: Scene, element: str, place: float) -> Row:
     moved = changed(scene, {("pin", "start"): (place, scene.pins[0].points[0][1])})
     response = solve(moved, TSM.name, Options(element=element))
     travel = abs(moved.pins[0].points[1][1])
-    reached = float(max(response.load_parameter, default=0.0))
-    over = HAND_OVER[place] / travel
+    last, over = reached(response), HAND_OVER[place] / travel
     return {
         "element": element,
         "place": place,
         "status": response.status,
-        "depth": travel * reached,
+        "depth": travel * last,
         "passes": sum(event.kind == "pass-through" for event in response.events or ()),
         "at_hand_over": response.status == "TWO_CONTACTS"
-        and reached < over <= reached + 1.0 / scene.load_parameters,
+        and last < over <= last + 1.0 / scene.load_parameters,
     }
 
 

@@ -1,6 +1,6 @@
 """What a figure of [P] leaves: rows and numbers, by which its claims are judged, and pictures."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.output import Row, write_numbers, write_rows
-from comparisons.response import Array
+from comparisons.response import Array, Response
 from comparisons.scene import Scene
 from comparisons.show.pages import Section
 
@@ -41,3 +41,13 @@ class Study:
 def column(rows: Sequence[Row], name: str, **of: object) -> Array:
     """Return a column of a table, in the rows with some values."""
     return np.array([row[name] for row in rows if all(row[key] == value for key, value in of.items())])
+
+
+def stops(runs: Mapping[str, Response]) -> list[str]:
+    """Return the runs that did not complete, and why."""
+    return [f"{name}: {one.status}: {one.message}" for name, one in runs.items() if not one.completed]
+
+
+def reached(response: Response) -> float:
+    """Return the last load parameter reached."""
+    return float(max(response.load_parameter, default=0.0))

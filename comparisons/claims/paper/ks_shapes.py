@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from comparisons.claims.paper.figure_study import Study
+from comparisons.claims.paper.figure_study import Study, stops
 from comparisons.compare import MIXED, PAPER, ROD, SOLID
 from comparisons.errors import errors
 from comparisons.models import solve
@@ -36,7 +36,7 @@ Responses = dict[str, Response]
 
 def ks_shapes(*, quick: bool, report: Report) -> Study:
     """Solve the readings with all models that can state them; `quick` takes fewer load parameters and a coarse solid."""
-    runs, points = list[Row](), list[Row]()
+    runs, points, stopped = list[Row](), list[Row](), list[str]()
     scenes, moving = list[Scene](), list[Section]()
     pictures: dict[str, Callable[..., None]] = {}
     for name, words in READINGS.items():
@@ -49,6 +49,8 @@ def ks_shapes(*, quick: bool, report: Report) -> Study:
         runs += rows
         points += _shape_rows(scene, responses)
         scenes.append(scene)
+        needed = responses.keys() - {run.label for run in PAPER}
+        stopped += stops({f"{name}, {label}": one for label, one in responses.items() if label in needed})
         if ROD.label in kept:
             histories = tracks(kept, ROD.label, scene)
             moving.append(motion_section(f"{name}: {words}", scene, kept, histories, focus=ROD.label))
@@ -56,9 +58,6 @@ def ks_shapes(*, quick: bool, report: Report) -> Study:
             # a response without load parameters is not drawn and keeps its place among the styles
             unseen = {label: replace(one, load_parameter=np.zeros(0)) for label, one in responses.items()}
             pictures[DRAWN[name]] = partial(plot_shapes, scene, {**unseen, **kept})
-    tried = {run.label for run in PAPER}
-    failed = [run for run in runs if run["label"] not in tried and run["status"] != "COMPLETED"]
-    stopped = [f"{run['reading']}, {run['label']}: {run['status']}" for run in failed]
     return Study(
         tables={"fig8": runs, "fig8-shapes": points},
         numbers={"readings": READINGS, "runs": runs, "stopped": stopped},
@@ -86,6 +85,7 @@ def _compared(scene: Scene, label: str, responses: Responses) -> Row:
     """Status, cost and errors of a run: all of them against the exact rod, the shape also against the solid where there is one."""
     response, solid = responses[label], responses.get(SOLID.label)
     found = errors(response, responses[ROD.label], scene)
+    apart = errors(response, solid, scene, quantities=["shape"])["path"]["shape"] if solid else np.nan
     return {
         "reading": scene.name,
         "label": label,
@@ -93,9 +93,7 @@ def _compared(scene: Scene, label: str, responses: Responses) -> Row:
         "unknowns": response.unknowns,
         "iterations": response.iterations,
         "seconds": response.wall_seconds,
-        "shape_difference": np.nan
-        if solid is None
-        else errors(response, solid, scene, quantities=["shape"])["path"]["shape"],
+        "shape_difference": apart,
         "follows_the_rod": response.status == "COMPLETED" and found["path"]["shape"] < OTHER_BRANCH,
         **{f"error_{scope}_{name}": found[scope][name] for scope in SCOPES for name in KEPT},
     }
@@ -104,10 +102,11 @@ def _compared(scene: Scene, label: str, responses: Responses) -> Row:
 def _shape_rows(scene: Scene, responses: Responses) -> Iterator[Row]:
     """Yield a row per point of the axes that are drawn."""
     beam = scene.beams[0]
+    places = np.linspace(0.0, beam.length, STATIONS)
     for label, response in responses.items():
         for k in nearest_steps(response.load_parameter) if len(response.load_parameter) else []:
+            of = {"reading": scene.name, "label": label, "load_parameter": response.load_parameter[k]}
             arc, line = response.axis_line(beam.name, k)
-            for number, wanted in enumerate(np.linspace(0.0, beam.length, STATIONS)):
-                x, y = (float(np.interp(wanted, arc, values)) for values in line.T)
-                place = {"reading": scene.name, "label": label, "load_parameter": response.load_parameter[k]}
-                yield {**place, "arc_position": number * beam.length / (STATIONS - 1), "x": x, "y": y}
+            axis = (np.interp(places, arc, values) for values in line.T)
+            for place, x, y in zip(places, *axis, strict=True):
+                yield {**of, "arc_position": float(place), "x": float(x), "y": float(y)}
