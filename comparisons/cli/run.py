@@ -6,8 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from comparisons.claims.paper.figures import FIGURES
-from comparisons.claims.solid.questions import QUESTIONS
+from comparisons.claims.names import FIGURES, QUESTIONS
 from comparisons.cli.options import Command, workers
 from comparisons.cli.outcome import DONE, STOPPED, WRONG, report
 from comparisons.files import result_file, writable_folder, write_text
@@ -132,7 +131,7 @@ def _trade(given: "argparse.Namespace") -> int:
 
 def _question(given: "argparse.Namespace") -> int:
     folder = _out(given, f"{given.suite}.csv")
-    from comparisons.claims.solid.solid_accuracy import STUDIES
+    from comparisons.claims.solid_accuracy import STUDIES
     from comparisons.output import tabulated, write_rows
 
     rows = list(STUDIES[given.suite](report))

@@ -18,7 +18,6 @@ from comparisons.quantities import KEPT, SCOPES
 from comparisons.response import ContactHistory, SupportHistory
 from comparisons.response.axis import STATIONS, SampledAxes
 from comparisons.scene import built_in_scenes, load_scene
-from comparisons.trade.fits import convergence, pareto, power_law
 from comparisons.trade.reference import (
     NoReferenceError,
     Reference,
@@ -27,7 +26,7 @@ from comparisons.trade.reference import (
     reference_cases,
 )
 from comparisons.trade.settings import chains, limit_cases, load_steps, sweep_cases
-from comparisons.trade.trade import TARGETS, Trade, cheapest, front, orders
+from comparisons.trade.trade import TARGETS, Trade, cheapest, convergence, front, orders, pareto, power_law
 from tests.comparisons.show.pages.markup import check_alone
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)

@@ -47,9 +47,7 @@ class Quantity:
     name: str = ""  #: With the unit, unless the quantity is dimensionless.
     exact: float = math.nan
     scale: float | None = None  #: What its error is divided by, the magnitude of the exact value if None.
-    read: str = (
-        ""  #: The words of `comparisons.claims.manual.answers.value`; empty where a measure finds the number.
-    )
+    read: str = ""  #: The words of `comparisons.claims.manual.measures.value`; empty where a measure finds the number.
     at: float = 1.0  #: A load parameter.
     times: float = 1.0  #: A factor.
     changes: Changes = field(default_factory=dict)  #: What is changed in the scene.

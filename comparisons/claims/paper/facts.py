@@ -7,11 +7,9 @@ from typing import Any
 import numpy as np
 
 from comparisons.claims.paper.approach import NEAREST
-from comparisons.claims.paper.cantilever_shapes import ELEMENTS
-from comparisons.claims.paper.critical_area import PRINTED, PRINTED_SHEAR_PSI, PSI
-from comparisons.claims.paper.figure_study import Study, column
-from comparisons.claims.paper.formulations import CANTILEVER, LABELS, SIMPLE, TIMOSHENKO
-from comparisons.claims.problems.double_beam import EVENTS, LOWER, TIP, UPPER
+from comparisons.claims.paper.fig7 import ELEMENTS, PRINTED, PRINTED_SHEAR_PSI, PSI
+from comparisons.claims.paper.fig9 import EVENTS, LOWER, TIP, UPPER
+from comparisons.claims.paper.figure import CANTILEVER, LABELS, SIMPLE, TIMOSHENKO, Study, column
 from comparisons.compare import PAPER, SOLID
 from comparisons.output import Row
 

@@ -11,9 +11,44 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from comparisons.claims.paper import turned_frame
-from tsm.elements import CLOSED_FORM, ClosedForm, beam
+from tsm.elements import CLOSED_FORM, ClosedForm, beam, cantilever
+from tsm.elements.chord_contact import INSIDE
 from tsm.elements.properties import Array, Properties
+
+TURNED = "euler-bernoulli-cantilever, turned frame"
+"""The cantilever contact element in a frame that turns with its clamped section, whatever the rotation."""
+# `tsm` evaluates [P] (7) from the deformations of the chord, to first order in the rotations; in exact
+# arithmetic that is the simply supported element. Here the frame lies along the section at end i, with the
+# directions t and n; with r from end i to the node and d to end j, [Y_j, Y_c, M_j] = K(a) [n.d, n.r, theta_j
+# - theta_i] at a = t.r, with the corrected matrix of (7).
+
+
+def _frame(p: Properties, x: Array) -> tuple[Array, Array]:
+    """Return the directions along and across the section at end i, each of shape (2,)."""
+    c, s = np.cos(x[2]), np.sin(x[2])
+    t = np.array([c * p.dx0 - s * p.dy0, s * p.dx0 + c * p.dy0]) / p.l0
+    return t, np.array([-t[1], t[0]])
+
+
+def _turned(p: Properties, x: Array, lever: Any) -> tuple[Array, Array]:
+    """Forces on element and touching node (8), with ``lever = x_i - x_c``, and K (3, 3)."""
+    t, n = _frame(p, x)
+    d, r = np.array([p.dx0, p.dy0]) + (x[3:5] - x[:2]), -np.asarray(lever)
+    xi = min(max(t @ r / p.l0, INSIDE), 1 - INSIDE)
+    K, _ = cantilever.euler_bernoulli(p, xi)
+    Yj, Yc, Mj = K @ np.array([n @ d, n @ r, x[5] - x[2]])
+    length = np.sqrt(d @ d)
+    du = d - np.array([p.dx0, p.dy0])
+    elongation = (2 * (p.dx0 * du[0] + p.dy0 * du[1]) + du @ du) / (length + p.l0)
+    N = p.EA / p.l0 * elongation * d / length
+    force = np.zeros(8, dtype=K.dtype)
+    force[:2] = -N - (Yj + Yc) * n
+    force[2] = -Yj * (t @ d) - Yc * (t @ r) - Mj
+    force[3:5] = N + Yj * n
+    force[5] = Mj
+    force[6:] = Yc * n
+    return force, K
+
 
 _Extended = np.longdouble
 _SIDE, _OFFSET = 1.0, 0.0
@@ -29,7 +64,7 @@ class _State(NamedTuple):
 
 
 class _Element(NamedTuple):
-    """An element beside its node; `kind` is None for `turned_frame`."""
+    """An element beside its node; `kind` is None for the turned frame."""
 
     kind: ClosedForm | None
     p: Properties
@@ -40,7 +75,7 @@ class _Element(NamedTuple):
         """Gradient of the contact's energy, and its tangent; of the turned frame the stiffnesses of its deformations."""
         lever = self.start + state.x[:2] - state.node
         if self.kind is None:
-            return turned_frame.contact(self.p, state.x, lever)
+            return _turned(self.p, state.x, lever)
         return self.kind.contact.response(self.p, state.x, lever, state.xi, state.force, _SIDE, _OFFSET)
 
     def forces(self, state: _State) -> Array:
@@ -64,7 +99,7 @@ def force_floor(
 ) -> float:
     """Return the unbalanced force [EI/L^2] that round-off leaves, the median over random states."""
     kind = CLOSED_FORM.get(element)
-    if (kind is None and element != turned_frame.NAME) or not 0 <= ratio <= 1:
+    if (kind is None and element != TURNED) or not 0 <= ratio <= 1:
         raise ValueError(
             f"element = {element!r}, ratio = {ratio!r}: no element with a closed form and part of its length"
         )
@@ -102,7 +137,7 @@ def _random_displacements(p: Properties, rng: np.random.Generator) -> Array:
 def _deflected(element: _Element, x: Array, xi: Any) -> _State:
     """State whose contact force follows from the deflection: the node moves across the chord, or the section at end i, until it is as stated."""
     p, turned = element.p, element.kind is None
-    d = turned_frame.frame(p, x)[0] if turned else np.array([p.dx0, p.dy0]) + (x[3:5] - x[:2])
+    d = _frame(p, x)[0] if turned else np.array([p.dx0, p.dy0]) + (x[3:5] - x[:2])
     n = np.array([-d[1], d[0]]) / (1.0 if turned else np.sqrt(d @ d))
     node = element.start + x[:2] + xi * d
     for _ in range(1 if turned else 3):

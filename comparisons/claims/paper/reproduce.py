@@ -1,18 +1,162 @@
-"""The figures of [P] and the verdicts on its claims, as files and a page."""
+"""The claims of [P], which ``claims.toml`` states, and its figures: verdicts, files and a page."""
 
-from collections.abc import Callable, Sequence
+import tomllib
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
 from pathlib import Path
+from string import Formatter
+from typing import Any, NamedTuple
 
-from comparisons.claims.paper.cantilever_shapes import cantilever_shapes
-from comparisons.claims.paper.claims import Judgement, claims_text, counted, judged
-from comparisons.claims.paper.critical_area import critical_areas
-from comparisons.claims.paper.double_beam import double_beam
-from comparisons.claims.paper.figure_study import Study
-from comparisons.claims.paper.figures import FIGURES
-from comparisons.claims.paper.ks_shapes import ks_shapes
+from comparisons.claims.names import FIGURES
+from comparisons.claims.paper.facts import FACTS, Facts, percent
+from comparisons.claims.paper.fig7 import cantilever_shapes, critical_areas
+from comparisons.claims.paper.fig8 import ks_shapes
+from comparisons.claims.paper.fig9 import double_beam
+from comparisons.claims.paper.figure import Study
 from comparisons.files import writable_folder, write_text
 from comparisons.output import Report
 from comparisons.show.pages import Section, picture, provenance, table, write_page
+
+PAPER = (
+    "Nizam, Obiya, Ijima, Tokubuchi, Ishibashi, *Effect of Shear Deformation on Convergability of Simple Contact Analysis "
+    "with Large Displacement*"
+)
+COARSE = ("fig7a", "fig7b", "fig8")
+"""Figures whose coarse settings bear on their claims: fewer starting positions, tolerances, samples, load parameters or elements."""
+
+
+class Verdict(StrEnum):
+    """What becomes of a claim."""
+
+    REPRODUCED = "reproduced"
+    IN_DIRECTION = "reproduced in direction, not in size"
+    NOT_REPRODUCED = "not reproduced"
+    CANNOT_BE_TOLD = "cannot be told"
+    PROVISIONAL = "provisional"
+    """Coarse settings decide nothing: a full run may decide otherwise."""
+
+
+Bounds = Mapping[str, tuple[float, float]]
+"""The least and the greatest value of numbers of `facts`; of a list, of all its values."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Claim:
+    """One claim, however often the paper makes it: every place in [P] where it stands, with what is said there.
+
+    It holds within the bounds `holds` together, or in each of the `readings` of what the paper does not say; in size within `in_size`, too.
+    The number behind the verdict and the reason have names of numbers of `facts` in braces.
+    """
+
+    name: str
+    figure: str
+    stated: tuple[tuple[str, str], ...]
+    number: str
+    why: str
+    holds: Bounds = field(default_factory=dict)
+    readings: Bounds = field(default_factory=dict)
+    in_size: Bounds = field(default_factory=dict)
+
+    def judged(self, facts: Facts) -> "Judgement":
+        """Return what becomes of the claim by the numbers of its figure."""
+        cases = _within(self.readings, facts) if self.readings else [all(_within(self.holds, facts))]
+        found = verdict(cases, in_size=all(_within(self.in_size, facts)))
+        number, why = (WORDS.vformat(text, (), facts) for text in (self.number, self.why))
+        return Judgement(self, found, number, why)
+
+
+class _Words(Formatter):
+    """Sentences with numbers: the format ``percent`` is `facts.percent`."""
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        return percent(value) if format_spec == "percent" else str(super().format_field(value, format_spec))
+
+
+WORDS = _Words()
+
+
+def _within(bounds: Bounds, facts: Facts) -> list[bool | None]:
+    """Whether each number lies within its bounds; None where there is none."""
+    found = []
+    for name, (least, most) in bounds.items():
+        value = WORDS.get_field(name, (), facts)[0]
+        values = value if isinstance(value, list) else [value]
+        found += [None if one is None else bool(least <= one <= most) for one in values]
+    return found
+
+
+class Judgement(NamedTuple):
+    """A claim with its verdict, the number behind it and the reason."""
+
+    claim: Claim
+    verdict: Verdict
+    number: str
+    why: str
+
+    @property
+    def cells(self) -> tuple[str, ...]:
+        """Every place in [P] where the claim stands, what it says at all of them, verdict, number and reason."""
+        places, texts = zip(*self.claim.stated, strict=True)
+        return "; ".join(places), " ".join(texts), self.verdict, self.number, self.why
+
+
+CLAIMS = tuple(
+    Claim(**{**row, "stated": tuple(map(tuple, row["stated"]))})
+    for row in tomllib.loads((Path(__file__).parent / "claims.toml").read_text(encoding="utf-8"))["claim"]
+)
+"""By the section that makes them first, in the order of the paper; each once, however often the paper makes it."""
+
+
+def verdict(readings: Sequence[bool | None], *, in_size: bool = True) -> Verdict:
+    """Return whether a claim holds in every reading; None is a reading that this program cannot finish."""
+    if not readings:
+        raise ValueError("readings = (): a claim without a reading cannot be judged")
+    if all(readings):
+        return Verdict.REPRODUCED if in_size else Verdict.IN_DIRECTION
+    return Verdict.NOT_REPRODUCED if all(one is False for one in readings) else Verdict.CANNOT_BE_TOLD
+
+
+def judged(found: Mapping[str, Study], *, quick: bool) -> list[Judgement]:
+    """Return the judgements on the claims whose figure was studied; coarse settings decide only what does not depend on them."""
+    facts = {figure: FACTS[figure](study) for figure, study in found.items()}
+    judgements = [claim.judged(facts[claim.figure]) for claim in CLAIMS if claim.figure in found]
+    return [_provisional(one) if quick and one.claim.figure in COARSE else one for one in judgements]
+
+
+def _provisional(one: Judgement) -> Judgement:
+    return one._replace(verdict=Verdict.PROVISIONAL, why=f"With coarse settings: {one.verdict}. {one.why}")
+
+
+def counted(judgements: Sequence[Judgement]) -> str:
+    """Return how many claims are judged, and how many have each verdict."""
+    counts = Counter(one.verdict for one in judgements)
+    summary = "; ".join(f"{counts[name]} {name}" for name in Verdict if counts[name])
+    statements = sum(len(claim.stated) for claim in CLAIMS)
+    return f"{len(judgements)} of {len(CLAIMS)} claims judged ({statements} statements){': ' if summary else ''}{summary}"
+
+
+def claims_text(judgements: Sequence[Judgement], *, quick: bool) -> str:
+    """Return the verdicts as Markdown."""
+    head = f"""# The claims of the paper and what became of them
+
+{PAPER}: {counted(judgements)}.
+
+Every number below is computed by the run that wrote this file{", with coarse settings (`--quick`)" if quick else ""}.
+Timoshenko, Euler-Bernoulli: the paper's elements with their misprints corrected. Mixed: the element of this project
+whose contact force is an unknown. EI/L^2 is the unit of the unbalanced force.
+
+| | where | claim | verdict | number | why |
+|---|---|---|---|---|---|
+"""
+    rows = []
+    for number, one in enumerate(judgements, 1):
+        place, text, found, measured, why = one.cells
+        cells = (str(number), place, text, f"**{found}**", f"{measured} (`{one.claim.figure}`)", why)
+        rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |\n")
+    return head + "".join(rows)
+
 
 STUDIES: dict[str, Callable[..., Study]] = {
     "fig7a": cantilever_shapes,

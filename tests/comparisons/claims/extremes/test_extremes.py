@@ -14,9 +14,8 @@ import pytest
 # not public: answers off by a known part, allowances before any run, and the whole matrix without its hour of solutions
 from comparisons.cases import measure
 from comparisons.claims.extremes import run as runner
-from comparisons.claims.extremes.axes import AXES, matrix
+from comparisons.claims.extremes.axes import AXES, beam, cantilever, half_circle, kinds, matrix, rod, sheared
 from comparisons.claims.extremes.cell import LARGEST, Verdict, allowance, judged
-from comparisons.claims.extremes.scenes import beam, cantilever, half_circle, kinds, rod, sheared
 from comparisons.cli import main
 from comparisons.models.options import Options
 from comparisons.models.theory import Bending

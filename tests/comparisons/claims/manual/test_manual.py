@@ -13,9 +13,8 @@ from jsonschema import Draft202012Validator
 from comparisons.claims.manual import judged, problems, read_problem
 
 # not public: measures that no model has, and the styles of pictures
-from comparisons.claims.manual.answers import StoppedError
-from comparisons.claims.manual.measures import MEASURES
-from comparisons.claims.manual.pictures import STYLES
+from comparisons.claims.manual.measures import MEASURES, StoppedError
+from comparisons.claims.manual.write import STYLES
 from comparisons.cli import main
 from comparisons.scene import read_scene
 

@@ -1,4 +1,4 @@
-"""Fig. 8: the cantilever of section 4.2 by TSM and by solid elements, with the exact rod, in the readings of the scene."""
+"""Fig. 8: the cantilever of section 4.2 by TSM, solid and exact rod, in the readings of the scene."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from comparisons.claims.paper.figure_study import Study, stops
+from comparisons.claims.paper.figure import Study, stops
 from comparisons.compare import MIXED, PAPER, ROD, SOLID
 from comparisons.errors import errors
 from comparisons.models import solve

@@ -1,4 +1,4 @@
-"""What a figure of [P] leaves: rows and numbers, by which its claims are judged, and pictures."""
+"""What a figure of [P] leaves, rows, numbers and pictures, and the element formulations in it."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -10,7 +10,11 @@ import numpy as np
 from comparisons.output import Row, write_numbers, write_rows
 from comparisons.response import Array, Response
 from comparisons.scene import Scene
+from comparisons.show import palette
 from comparisons.show.pages import Section
+from tsm.elements import EULER_BERNOULLI_CANTILEVER, EULER_BERNOULLI_SIMPLE
+from tsm.elements import MIXED as MIXED_ELEMENT
+from tsm.elements import TIMOSHENKO as TIMOSHENKO_ELEMENT
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,3 +55,21 @@ def stops(runs: Mapping[str, Response]) -> list[str]:
 def reached(response: Response) -> float:
     """Return the last load parameter reached."""
     return float(max(response.load_parameter, default=0.0))
+
+
+SIMPLE, CANTILEVER = EULER_BERNOULLI_SIMPLE.name, EULER_BERNOULLI_CANTILEVER.name
+TIMOSHENKO, MIXED = TIMOSHENKO_ELEMENT.name, MIXED_ELEMENT.name
+LABELS = {
+    SIMPLE: "Euler-Bernoulli, simple",
+    CANTILEVER: "Euler-Bernoulli, cantilever",
+    TIMOSHENKO: "Timoshenko",
+    MIXED: MIXED,
+}
+"""What they are called, in the order of drawing."""
+_DASHES = {CANTILEVER: (0, (5, 2)), MIXED: (0, (1, 1))}
+
+
+def line(element: str) -> dict[str, Any]:
+    """Return the keywords of a formulation's line in matplotlib."""
+    style = palette.style(f"TSM {element}")
+    return {"color": style.colour, "marker": style.marker, "linestyle": _DASHES.get(element, "-")}

@@ -1,4 +1,4 @@
-"""Fig. 9: two cantilevers pressed by one pin, stage by stage, against the exact rods."""
+"""Fig. 9: two cantilevers pressed by a pin, against the exact rods of `tests/oracles/coupled.py`."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -10,9 +10,7 @@ import numpy as np
 
 from comparisons.cases.settings import changed
 from comparisons.claims.drawing import SHAPE, Line, Panel, draw
-from comparisons.claims.paper.figure_study import Study, reached, stops
-from comparisons.claims.paper.formulations import CANTILEVER, SIMPLE, TIMOSHENKO
-from comparisons.claims.problems.double_beam import EVENTS, HAND_OVER, LOWER, TIP, UPPER
+from comparisons.claims.paper.figure import CANTILEVER, SIMPLE, TIMOSHENKO, Study, reached, stops
 from comparisons.models import ROD, TSM, solve
 from comparisons.models.options import Options
 from comparisons.output import Report, Row
@@ -20,6 +18,16 @@ from comparisons.response import Array, Response
 from comparisons.scene import Scene, load_scene
 from comparisons.show import palette
 from comparisons.show.pages import motion_section, tracks
+
+UPPER, TIP, LOWER = "pin->upper", "upper.end->lower", "pin->lower"
+"""The contact pairs."""
+HAND_OVER = {0.8: 0.53711095995669, 0.81: 0.52556048878907}
+"""Depth at which the pin leaves the upper beam, by the place of the pin [m]: the tip still presses on the lower one."""
+EVENTS = {"touch": 0.14978639329635, "hand-over": HAND_OVER[0.8], "slip-off": 0.73869353636162}
+"""Depths of the pin at which the tip meets the lower beam, and the pin leaves the upper beam and the lower one [m]."""
+FORCES = (1.00397705580342, 0.2905931420562)
+"""Forces of the pin and of the tip at the depth .31 m [N]."""
+
 
 FINER = 10
 """Load parameters of the picture per load parameter of the scene."""
