@@ -145,7 +145,7 @@ def _halved(mesh: Scene) -> Scene:
 def _graded(mesh: Scene, response: Response, wanted: int, order: int) -> Scene:
     """Return a mesh of about `wanted` elements whose density follows the response."""
     grids = [response.grid(k).point_data for k in range(len(response.load_parameter))]
-    arcs, densities = {}, {}
+    arcs, densities, ends = {}, {}, {}
     for number, beam in enumerate(mesh.beams):
         own = [
             {name: data[name][data["beam"] == number] for name in ("arc", "N", "V", "M")} for data in grids
@@ -157,7 +157,7 @@ def _graded(mesh: Scene, response: Response, wanted: int, order: int) -> Scene:
         name: np.append(0.0, np.cumsum(np.maximum(values, least) * np.diff(arcs[name])))
         for name, values in densities.items()
     }
-    whole, ends = sum(float(total[-1]) for total in sums.values()), {}
+    whole = sum(float(total[-1]) for total in sums.values())
     for beam in mesh.beams:
         total = sums[beam.name]
         count = max(1, round(wanted * float(total[-1]) / whole))

@@ -9,8 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from comparisons import models as registry
-from comparisons.claims.drawing import Line as Drawn
-from comparisons.claims.drawing import Panel, draw
+from comparisons.claims.drawing import draw
 from comparisons.claims.finding import Finding
 from comparisons.claims.manual.measures import (
     ANSWER,
@@ -47,17 +46,21 @@ STYLES: dict[str, dict[str, Any]] = {
 
 def draw_case(case: Case, path: Path) -> None:
     """Draw what is exact and what the models found, in the format of the path's suffix."""
-    problem = case.problem
-    picture, length = problem.picture, problem.scene.units.split(",")[1].strip()
+    picture, length = case.problem.picture, case.problem.scene.units.split(",")[1].strip()
     x, y = picture.axes or (f"x [{length}]", f"y [{length}]")
-    scales = {"xscale": "log", "yscale": "log"} if picture.guide else {}
-    shape = {} if picture.axes else {"aspect": "equal", "adjustable": "datalim"}
-    order, lines = list(STYLES), list[Drawn]()
-    for style, points in sorted([*_exact(case), *case.lines], key=lambda line: order.index(line[0])):
-        found = picture.guide and style != GUIDE
-        marks = {"marker": "o", "markersize": 10, "linewidth": 1.5} if found else {}
-        lines.append((*points.T, {**STYLES[style], **marks, "label": style}))
-    panel = Panel(title=problem.title, lines=lines, settings={"xlabel": x, "ylabel": y, **scales, **shape})
+    order = list(STYLES)
+
+    def panel(axes: Any) -> None:
+        for style, points in sorted([*_exact(case), *case.lines], key=lambda line: order.index(line[0])):
+            found = picture.guide and style != GUIDE
+            marks = {"marker": "o", "markersize": 10, "linewidth": 1.5} if found else {}
+            axes.plot(*points.T, label=style, **{**STYLES[style], **marks})
+        axes.set(xlabel=x, ylabel=y, title=case.problem.title)
+        if picture.guide:
+            axes.set(xscale="log", yscale="log")
+        if not picture.axes:
+            axes.set_aspect("equal", adjustable="datalim")
+
     draw([panel], path, tall=3.6)
 
 

@@ -1,6 +1,6 @@
 """Fig. 7: the cantilever of section 4.1, lifted by a pin, and how near to a node equilibrium is found."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from itertools import product
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.cases.settings import changed
-from comparisons.claims.drawing import SHAPE, Line, Panel, draw
+from comparisons.claims.drawing import NOTE, SHAPE, draw
 from comparisons.claims.paper.approach import NEAREST, approaches
 from comparisons.claims.paper.figure import (
     CANTILEVER,
@@ -83,14 +83,17 @@ def critical_areas(*, quick: bool, report: Report) -> Study:
         for of, ratio in product(_FLOORS, RATIOS)
     ]
     numbers = measured(areas, floors)
+    panels = [partial(_curves, curves, start) for start in sorted({row["start"] for row in curves})]
     title = f"How near to a beam node equilibrium is found, tolerance {shown:.0e} EI/L$^2$;\na large mark is the last equilibrium"
     return Study(
         tables={"fig7b": curves, "fig7b-tolerance": areas, "fig7b-floor": floors},
         numbers=numbers,
         pictures={
-            "fig7b": partial(draw, _curves(curves), tall=2.3, title=title),
-            "fig7b-tolerance": partial(draw, [_areas(numbers["critical_area"])], tall=4.5),
-            "fig7b-floor": partial(draw, [_drawn_floors(floors, numbers["slopes_of_the_floor"])], tall=4.5),
+            "fig7b": partial(draw, panels, tall=2.3, title=title),
+            "fig7b-tolerance": partial(draw, [partial(_areas, numbers["critical_area"])], tall=4.5),
+            "fig7b-floor": partial(
+                draw, [partial(_drawn_floors, floors, numbers["slopes_of_the_floor"])], tall=4.5
+            ),
         },
     )
 
@@ -144,10 +147,10 @@ def _slopes(floors: list[Row]) -> dict[str, list[float]]:
     return slopes
 
 
-def _curves(curves: list[Row]) -> list[Panel]:
-    """l_i/l against the displacement of the pin, one panel per starting position."""
-    lines: dict[float, list[Line]] = {}
-    for element, start, node in dict.fromkeys((row["element"], row["start"], row["node"]) for row in curves):
+def _curves(curves: list[Row], start: float, axes: Any) -> None:
+    """l_i/l against the displacement of the pin, from one starting position."""
+    ways = dict.fromkeys((row["element"], row["node"]) for row in curves if row["start"] == start)
+    for element, node in ways:
         of = {"element": element, "start": start, "node": node}
         displacement, ratio = (column(curves, name, **of) for name in ("displacement", "ratio"))
         last, order = int(np.argmin(ratio)), list(LABELS).index(element)
@@ -157,67 +160,45 @@ def _curves(curves: list[Row]) -> list[Panel]:
             "linestyle": "none",
             "zorder": 4,
         }
-        lines.setdefault(start, []).extend(
-            [
-                (displacement, ratio, {**line(element), "marker": None, "linewidth": 3.2 - 0.7 * order}),
-                (
-                    displacement[last],
-                    max(ratio[last], NEAREST),
-                    {**line(element), **mark, "label": LABELS[element]},
-                ),
-            ]
-        )
-    settings = {
-        "xlabel": "displacement of the pin [m]", "ylabel": "$l_i/l$", "yscale": "log", "ylim": (NEAREST / 3.0, 3.0),
-    }  # fmt: skip
-    return [
-        Panel(title=f"pin starts at {start:g} m", lines=lines[start], settings=settings)
-        for start in sorted(lines)
-    ]
+        axes.plot(displacement, ratio, **{**line(element), "marker": None, "linewidth": 3.2 - 0.7 * order})
+        end = displacement[last], max(ratio[last], NEAREST)
+        axes.plot(*end, label=LABELS[element], **{**line(element), **mark})
+    axes.set(xlabel="displacement of the pin [m]", ylabel="$l_i/l$", title=f"pin starts at {start:g} m")
+    axes.set(yscale="log", ylim=(NEAREST / 3.0, 3.0))
 
 
-def _areas(areas: Mapping[str, Mapping[str, Mapping[str, float]]]) -> Panel:
-    """The range of the critical area over nodes and starting positions against the tolerance, and the paper's at the right."""
-    lines: list[Line] = []
+def _areas(areas: Mapping[str, Mapping[str, Mapping[str, float]]], axes: Any) -> None:
+    """The range of the critical area over nodes and starting positions against the tolerance, and the paper's."""
     tolerances = [float(tolerance) for tolerance in next(iter(areas.values()))]
     beside = tolerances[-1] / 10.0, tolerances[-1] / 100.0
     for element, label in LABELS.items():
         faint = {"color": line(element)["color"], "linewidth": 0.8}
         styles = {"smallest": faint, "largest": faint, "median": {**line(element), "label": label}}
         for name, style in styles.items():
-            lines.append((tolerances, [max(one[name], NEAREST) for one in areas[element].values()], style))
-        printed = {**faint, "linewidth": 3.0, "label": "printed in the paper"}
-        lines += [(beside, [edge, edge], printed) for edge in PRINTED.get(element, ())]
-    settings = {
-        "xscale": "log", "yscale": "log", "ylim": (NEAREST / 3.0, 2.0), "xlim": (tolerances[0] * 2.5, beside[1]),
-        "xlabel": "tolerance on the unbalanced force [EI/L$^2$]", "ylabel": "smallest $l_i/l$ with equilibrium",
-    }  # fmt: skip
+            axes.plot(tolerances, [max(one[name], NEAREST) for one in areas[element].values()], **style)
+        for edge in PRINTED.get(element, ()):
+            axes.plot(beside, [edge, edge], label="printed in the paper", **{**faint, "linewidth": 3.0})
+    axes.annotate(f"search ends at {NEAREST:.0e}", (tolerances[0], 1.4 * NEAREST), **NOTE)
     title = "Critical area against tolerance:\nmedian and range over nodes and starting positions"
-    note = (f"search ends at {NEAREST:.0e}", (tolerances[0], 1.4 * NEAREST))
-    return Panel(title=title, lines=lines, settings=settings, notes=[note])
+    axes.set(xscale="log", yscale="log", ylim=(NEAREST / 3.0, 2.0), xlim=(tolerances[0] * 2.5, beside[1]))
+    axes.set(xlabel="tolerance on the unbalanced force [EI/L$^2$]", title=title)
+    axes.set(ylabel="smallest $l_i/l$ with equilibrium")
 
 
-def _drawn_floors(floors: list[Row], slopes: Mapping[str, list[float]]) -> Panel:
+def _drawn_floors(floors: list[Row], slopes: Mapping[str, list[float]], axes: Any) -> None:
     """The floor of the unbalanced force against l_i/l with the fitted slopes."""
     stiff = {"marker": "v", "linestyle": "-.", "label": f"{LABELS[TIMOSHENKO]}, printed G of section 4.2"}
-    lines: list[Line] = []
     for of in (of for of in _FLOORS if of["end"] == "end" and of["element"] in LABELS):
         element = of["element"]
         slope = f"slope {round(float(np.mean(slopes[element])), 2) + 0.0:.2f}"
         plain = {"markersize": 8 if element == SIMPLE else 5, "label": f"{LABELS[element]}: {slope}"}
         style = {**line(element), **(plain if of["psi"] == PSI else stiff)}
-        lines.append((column(floors, "ratio", **of), column(floors, "floor", **of), style))
-    fitted = {"color": "0.6", "linestyle": ":", "label": "fitted between"}
-    lines += [([edge, edge], [1e-16, 1.0], fitted) for edge in FITTED]
-    return Panel(
-        title="What round-off leaves of the unbalanced force, section of 4.1",
-        lines=lines,
-        settings={
-            "xscale": "log",
-            "yscale": "log",
-            "xlabel": "$l_i/l$",
-            "ylabel": "unbalanced force / contact force",
-        },
+        axes.plot(column(floors, "ratio", **of), column(floors, "floor", **of), **style)
+    for edge in FITTED:
+        axes.plot([edge, edge], [1e-16, 1.0], color="0.6", linestyle=":", label="fitted between")
+    title = "What round-off leaves of the unbalanced force, section of 4.1"
+    axes.set(
+        xscale="log", yscale="log", xlabel="$l_i/l$", ylabel="unbalanced force / contact force", title=title
     )
 
 
@@ -229,7 +210,7 @@ DEPTHS = (0.25, 0.5, 0.75, 1.0)
 
 def cantilever_shapes(*, quick: bool, report: Report) -> Study:
     """Solve the six; `quick` takes two of them with a quarter of the load parameters and without Euler-Bernoulli."""
-    lifts, histories, panels = list[Row](), list[Row](), list[Panel]()
+    lifts, histories, panels = list[Row](), list[Row](), list[Callable[[Any], None]]()
     scenes, runs = list[Scene](), dict[str, Response]()
     for start in STARTS[::4] if quick else STARTS:
         place, scene = f"pin at {start:g} m", lifted(start)
@@ -264,7 +245,8 @@ def cantilever_shapes(*, quick: bool, report: Report) -> Study:
                 },
             }
         )
-        panels.append(_panel(f"{place}: slips off at {slip_off[ELEMENTS[0]]:.4f} m", scene, beams, rod))
+        words = f"{place}: slips off at {slip_off[ELEMENTS[0]]:.4f} m"
+        panels.append(partial(_panel, words, scene, beams, rod))
     return Study(
         tables={"fig7a": histories},
         numbers={"starting_positions": lifts, "stopped": stops(runs)},
@@ -282,24 +264,18 @@ def _history(travel: float, beams: Response, rod: Response, pair: str) -> list[R
     return [dict(zip(names, row, strict=True)) for row in rows if np.isfinite(row).all()]
 
 
-def _panel(title: str, scene: Scene, beams: Response, rod: Response) -> Panel:
+def _panel(title: str, scene: Scene, beams: Response, rod: Response, axes: Any) -> None:
     """The deformed beam over the exact rod, at some displacements of the pin."""
     beam, contact = scene.beams[0], beams.contacts[scene.contacts[0].pair]
     last = int(np.flatnonzero(np.isfinite(contact.arc_position))[-1])
-    wide = {"color": palette.BLACK, "linewidth": 4.0, "alpha": 0.25, "label": "exact rod"}
     own = {**line(MIXED), "marker": ".", "linestyle": "-", "label": f"TSM mixed, {ELEMENTS[0]} elements"}
     mark = {"color": palette.PIN, "marker": "^", "linestyle": "none", "label": "pin, its displacement [m]"}
-    lines: list[Line] = [(*np.array([beam.start, beam.end]).T, {"color": "0.6", "linewidth": 0.8})]
-    notes = []
+    axes.plot(*np.array([beam.start, beam.end]).T, color="0.6", linewidth=0.8)
     for k in (round(part * last) for part in DEPTHS):
         axis, exact = (one.axis_line(beam.name, k)[1] for one in (beams, rod))
         x, y = scene.pins[0].position(float(beams.load_parameter[k]))
-        lines += [
-            (*exact.T, wide),
-            (*axis.T, {**own, "markevery": (len(axis) - 1) // ELEMENTS[0]}),
-            (x, y, mark),
-        ]
-        notes.append((f"{y:.2f}", (4.85, float(axis[-1, 1]))))
-    return Panel(
-        title=title, lines=lines, settings={**SHAPE, "xlim": (-0.1, 5.6), "ylim": (-0.1, 1.95)}, notes=notes
-    )
+        axes.plot(*exact.T, color=palette.BLACK, linewidth=4.0, alpha=0.25, label="exact rod")
+        axes.plot(*axis.T, markevery=(len(axis) - 1) // ELEMENTS[0], **own)
+        axes.plot(x, y, **mark)
+        axes.annotate(f"{y:.2f}", (4.85, float(axis[-1, 1])), **NOTE)
+    axes.set(title=title, xlim=(-0.1, 5.6), ylim=(-0.1, 1.95), **SHAPE)

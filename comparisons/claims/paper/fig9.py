@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.cases.settings import changed
-from comparisons.claims.drawing import SHAPE, Line, Panel, draw
+from comparisons.claims.drawing import NOTE, SHAPE, draw
 from comparisons.claims.paper.figure import CANTILEVER, SIMPLE, TIMOSHENKO, Study, reached, stops
 from comparisons.models import ROD, TSM, solve
 from comparisons.models.options import Options
@@ -77,8 +77,10 @@ def double_beam(*, quick: bool, report: Report) -> Study:
     rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
     stages = list(_stages(columns["depth"]))
     title = "Mixed elements, 10 + 10;\nthe forces act on the touched beams, grey are the beams at rest"
-    panels = [_stage(finer, response, stage) for stage in stages]
+    panels = [partial(_stage, finer, response, stage) for stage in stages]
     shapes = {"fig9": partial(draw, panels, tall=2.8, title=title)} if stages else {}
+    drawn = {"force": "contact force [N]", "arc": "arc position [m]"}.items()
+    forces = [partial(_histories, columns, events, *of) for of in drawn]
     shown = tracks({BEAMS: response, RODS: exact}, RODS, finer)
     moving = motion_section("Double beam: shapes and histories", finer, {BEAMS: response}, shown, focus=BEAMS)
     return Study(
@@ -93,7 +95,7 @@ def double_beam(*, quick: bool, report: Report) -> Study:
             "attempts": [_attempt(scene, element, place) for element, place in product(tried, HAND_OVER)],
             "stopped": stops({one.setting or one.model: one for one in (own, response, exact)}),
         },
-        pictures={**shapes, "fig9-forces": partial(draw, _histories(columns, events), tall=3.2, columns=1)},
+        pictures={**shapes, "fig9-forces": partial(draw, forces, tall=3.2, columns=1)},
         scenes=(finer,),
         moving=(moving,),
     )
@@ -152,48 +154,41 @@ def _attempt(scene: Scene, element: str, place: float) -> Row:
     }
 
 
-def _stage(scene: Scene, response: Response, stage: Row) -> Panel:
+def _stage(scene: Scene, response: Response, stage: Row, axes: Any) -> None:
     """Both beams, the pin and the contact forces at a stage."""
-    lines: list[Line] = []
-    notes, k = [], stage["index"]
+    k = stage["index"]
     for beam in scene.beams:
         rest = np.array([beam.start, beam.end])
         axis = rest if k < 0 else response.axis_line(beam.name, k)[1]
-        style = {"color": COLOURS[beam.name], "marker": "o", "markersize": 3, "label": f"{beam.name} beam"}
-        every = {"markevery": max(1, (len(axis) - 1) // beam.divisions)}
-        lines += [(*rest.T, {"color": "0.75", "linewidth": 0.8}), (*axis.T, style | every)]
+        every = max(1, (len(axis) - 1) // beam.divisions)
+        style = {"color": COLOURS[beam.name], "marker": "o", "markersize": 3, "markevery": every}
+        axes.plot(*rest.T, color="0.75", linewidth=0.8)
+        axes.plot(*axis.T, label=f"{beam.name} beam", **style)
     pin = np.array(scene.pins[0].position(0.0 if k < 0 else float(response.load_parameter[k])))
     for row, (pair, name) in enumerate(NAMES.items() if k >= 0 else ()):
         contact, point = response.contacts[pair], response.tips["upper"][k] if pair == TIP else pin
         if np.isfinite(contact.arc_position[k]) and contact.vector is not None:
             ends = np.array([point - ARROW * contact.vector[k], point])
-            lines.append((*ends.T, {"color": STYLES[pair]["color"], "label": f"force of {name}"}))
-            notes.append((f"{name}: {contact.force[k]:.3f} N", (0.0, -0.62 - 0.07 * row)))
-    mark = {"color": "black", "marker": "o", "markerfacecolor": "white", "linestyle": "none", "label": "pin"}
-    lines.append((*pin, mark))
+            axes.plot(*ends.T, color=STYLES[pair]["color"], label=f"force of {name}")
+            axes.annotate(f"{name}: {contact.force[k]:.3f} N", (0.0, -0.62 - 0.07 * row), **NOTE)
+    axes.plot(*pin, color="black", marker="o", markerfacecolor="white", linestyle="none", label="pin")
     title = f"({stage['key']}) {stage['title']},\ndepth {stage['depth']:.3f} m"
-    settings = {**SHAPE, "xlim": (-0.05, 1.08), "ylim": (-0.8, 0.2)}
-    return Panel(title=title, lines=lines, settings=settings, notes=notes)
+    axes.set(title=title, xlim=(-0.05, 1.08), ylim=(-0.8, 0.2), **SHAPE)
 
 
-def _histories(columns: Columns, events: list[Row]) -> list[Panel]:
-    """Forces and places of all contacts against the depth, with the exact rods and the events, those at one depth together."""
-    later, marks, panels = (one for one in events if one["depth"] > 0.0), list[tuple[float, str]](), []
+def _histories(columns: Columns, events: list[Row], quantity: str, label: str, axes: Any) -> None:
+    """A quantity of all contacts against the depth, with the exact rods and the events, those at one depth together."""
+    for pair, name in NAMES.items():
+        axes.plot(
+            columns["depth"], columns[f"{pair} exact_{quantity}"], color="0.7", linewidth=5.0, label=RODS
+        )
+        axes.plot(columns["depth"], columns[f"{pair} {quantity}"], label=name, **STYLES[pair])
+    high = axes.dataLim.y1
+    later = (one for one in events if one["depth"] > 0.0)
     for number, (_, found) in enumerate(groupby(later, key=lambda one: round(one["depth"], 3)), 1):
         same = list(found)
-        words = "; ".join(f"{one['kind']}, {NAMES[one['pair']]}" for one in same)
-        marks.append((same[0]["depth"], f"{number}: {same[0]['depth']:.4f} m, {words}"))
-    for quantity, label in (("force", "contact force [N]"), ("arc", "arc position [m]")):
-        lines: list[Line] = []
-        for pair, name in NAMES.items():
-            exact, own = (columns[f"{pair} {prefix}{quantity}"] for prefix in ("exact_", ""))
-            lines.append((columns["depth"], exact, {"color": "0.7", "linewidth": 5.0, "label": RODS}))
-            lines.append((columns["depth"], own, {**STYLES[pair], "label": name}))
-        high = max(float(np.nanmax(line[1])) for line in lines)
-        dotted = {"color": "0.4", "linestyle": ":"}
-        lines += [([depth, depth], [0.0, high], {**dotted, "label": words}) for depth, words in marks]
-        notes = [(words.split(":")[0], (depth, high)) for depth, words in marks]
-        settings = {"xlabel": "depth of the pin [m]", "ylabel": label}
-        title = "Double beam, 10 + 10 mixed elements"
-        panels.append(Panel(title=title, lines=lines, settings=settings, notes=notes))
-    return panels
+        depth, words = same[0]["depth"], "; ".join(f"{one['kind']}, {NAMES[one['pair']]}" for one in same)
+        dotted = {"color": "0.4", "linestyle": ":", "label": f"{number}: {depth:.4f} m, {words}"}
+        axes.plot([depth, depth], [0.0, high], **dotted)
+        axes.annotate(str(number), (depth, high), **NOTE)
+    axes.set(xlabel="depth of the pin [m]", ylabel=label, title="Double beam, 10 + 10 mixed elements")

@@ -16,7 +16,7 @@ from comparisons.claims.paper.fig8 import ks_shapes
 from comparisons.claims.paper.fig9 import double_beam
 from comparisons.claims.paper.figure import Study
 from comparisons.files import writable_folder, write_text
-from comparisons.output import Report
+from comparisons.output import Report, markdown
 from comparisons.show.pages import Section, picture, provenance, table, write_page
 
 PAPER = (
@@ -25,6 +25,9 @@ PAPER = (
 )
 COARSE = ("fig7a", "fig7b", "fig8")
 """Figures whose coarse settings bear on their claims: fewer starting positions, tolerances, samples, load parameters or elements."""
+
+
+HEADER = ("", "where", "claim", "verdict", "number", "why")
 
 
 class Verdict(StrEnum):
@@ -59,11 +62,13 @@ class Claim:
     readings: Bounds = field(default_factory=dict)
     in_size: Bounds = field(default_factory=dict)
 
-    def judged(self, facts: Facts) -> "Judgement":
-        """Return what becomes of the claim by the numbers of its figure."""
+    def judged(self, facts: Facts, *, decides: bool) -> "Judgement":
+        """Return what becomes of the claim by the numbers of its figure; coarse settings that bear on it decide nothing."""
         cases = _within(self.readings, facts) if self.readings else [all(_within(self.holds, facts))]
         found = verdict(cases, in_size=all(_within(self.in_size, facts)))
         number, why = (WORDS.vformat(text, (), facts) for text in (self.number, self.why))
+        if not decides:
+            found, why = Verdict.PROVISIONAL, f"With coarse settings: {found}. {why}"
         return Judgement(self, found, number, why)
 
 
@@ -95,11 +100,11 @@ class Judgement(NamedTuple):
     number: str
     why: str
 
-    @property
-    def cells(self) -> tuple[str, ...]:
-        """Every place in [P] where the claim stands, what it says at all of them, verdict, number and reason."""
+    def cells(self, verdict: str, figure: str) -> tuple[str, ...]:
+        """Every place in [P] where the claim stands, what it says at all of them, verdict, number and figure, reason."""
         places, texts = zip(*self.claim.stated, strict=True)
-        return "; ".join(places), " ".join(texts), self.verdict, self.number, self.why
+        number = f"{self.number} ({figure.format(self.claim.figure)})"
+        return "; ".join(places), " ".join(texts), verdict.format(self.verdict), number, self.why
 
 
 CLAIMS = tuple(
@@ -119,14 +124,13 @@ def verdict(readings: Sequence[bool | None], *, in_size: bool = True) -> Verdict
 
 
 def judged(found: Mapping[str, Study], *, quick: bool) -> list[Judgement]:
-    """Return the judgements on the claims whose figure was studied; coarse settings decide only what does not depend on them."""
+    """Return the judgements on the claims whose figure was studied."""
     facts = {figure: FACTS[figure](study) for figure, study in found.items()}
-    judgements = [claim.judged(facts[claim.figure]) for claim in CLAIMS if claim.figure in found]
-    return [_provisional(one) if quick and one.claim.figure in COARSE else one for one in judgements]
-
-
-def _provisional(one: Judgement) -> Judgement:
-    return one._replace(verdict=Verdict.PROVISIONAL, why=f"With coarse settings: {one.verdict}. {one.why}")
+    return [
+        claim.judged(facts[claim.figure], decides=not (quick and claim.figure in COARSE))
+        for claim in CLAIMS
+        if claim.figure in found
+    ]
 
 
 def counted(judgements: Sequence[Judgement]) -> str:
@@ -139,7 +143,8 @@ def counted(judgements: Sequence[Judgement]) -> str:
 
 def claims_text(judgements: Sequence[Judgement], *, quick: bool) -> str:
     """Return the verdicts as Markdown."""
-    head = f"""# The claims of the paper and what became of them
+    rows = [(str(number), *one.cells("**{}**", "`{}`")) for number, one in enumerate(judgements, 1)]
+    return f"""# The claims of the paper and what became of them
 
 {PAPER}: {counted(judgements)}.
 
@@ -147,15 +152,7 @@ Every number below is computed by the run that wrote this file{", with coarse se
 Timoshenko, Euler-Bernoulli: the paper's elements with their misprints corrected. Mixed: the element of this project
 whose contact force is an unknown. EI/L^2 is the unit of the unbalanced force.
 
-| | where | claim | verdict | number | why |
-|---|---|---|---|---|---|
-"""
-    rows = []
-    for number, one in enumerate(judgements, 1):
-        place, text, found, measured, why = one.cells
-        cells = (str(number), place, text, f"**{found}**", f"{measured} (`{one.claim.figure}`)", why)
-        rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |\n")
-    return head + "".join(rows)
+{markdown([HEADER, *rows])}"""
 
 
 STUDIES: dict[str, Callable[..., Study]] = {
@@ -179,9 +176,13 @@ def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[
     judgements = judged(found, quick=quick)
     files.append(folder / ("claims.md" if name == "all" else f"claims-{name}.md"))
     write_text(files[-1], claims_text(judgements, quick=quick))
-    sections = [_claims(judgements)]
+    rows = [(number, *one.cells("{}", "{}")) for number, one in enumerate(judgements, 1)]
+    caption = f"{counted(judgements)}. Every number is computed by the run that wrote this page."
+    sections = [Section(title="Claims", html=table(caption, HEADER, rows, prose=True))]
     for figure, study in found.items():
-        sections += [_pictures(figure, study, folder), *study.moving]
+        title = FIGURES[figure]
+        drawn = (picture(folder / f"{stem}.svg", f"{stem}: {title}") for stem in study.pictures)
+        sections += [Section(title=f"{figure}: {title}", html="\n".join(drawn)), *study.moving]
     scenes = dict.fromkeys(scene for study in found.values() for scene in study.scenes)
     sections += provenance(scenes, files, folder)
     settings = "coarse settings" if quick else "full settings"
@@ -191,19 +192,3 @@ def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[
         f"{figure}: {one}" for figure, study in found.items() for one in study.numbers.get("stopped", ())
     ]
     return [page, *files], stopped
-
-
-def _claims(judgements: Sequence[Judgement]) -> Section:
-    rows = [
-        (number, *one.cells[:3], f"{one.number} ({one.claim.figure})", one.why)
-        for number, one in enumerate(judgements, 1)
-    ]
-    caption = f"{counted(judgements)}. Every number is computed by the run that wrote this page."
-    header = ("", "where", "claim", "verdict", "number", "why")
-    return Section(title="Claims", html=table(caption, header, rows, prose=True))
-
-
-def _pictures(figure: str, study: Study, folder: Path) -> Section:
-    title = f"{figure}: {FIGURES[figure]}"
-    drawn = (picture(folder / f"{stem}.svg", f"{stem}: {FIGURES[figure]}") for stem in study.pictures)
-    return Section(title=title, html="\n".join(drawn))
