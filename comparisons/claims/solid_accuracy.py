@@ -1,31 +1,22 @@
 """How far the solid can be trusted: one question each, as rows of numbers, one put to CalculiX, too."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise, product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from comparisons.models import ROD
+from comparisons.cases.settings import changed
+from comparisons.models import ROD, solve
 from comparisons.models.outside.adapters.calculix import Answer, pressed, tip_load
 from comparisons.models.solid import to_solid
 from comparisons.output import Report, Row
 from comparisons.response import Array
-from comparisons.scene import load_scene
+from comparisons.scene import Scene, load_scene
 
 if TYPE_CHECKING:
-    from fem_reference import Result, SolidProblem, Strip
-from collections.abc import Callable, Mapping
-from itertools import pairwise, product
-from typing import TYPE_CHECKING
-
-from comparisons.cases.settings import changed
-from comparisons.models import solve
-from comparisons.scene import Scene
-
-if TYPE_CHECKING:
-    from fem_reference import ContactHistory
-
+    from fem_reference import ContactHistory, Result, SolidProblem, Strip
 
 LOADS = (1.0, 5.0)
 """Loads on the tip, in EI/L^2."""
@@ -55,24 +46,12 @@ def peers(report: Report) -> Iterator[Row]:
     """Tip displacement and contact force of the solid and of CalculiX on the same meshes."""
     problem = to_solid(load_scene("ks-face"))
     strip = problem.strips[0]
-    for clamp in (ROD.name, "full"):
-        for load in LOADS:
-            for mesh in PEER_MESHES:
-                yield _tip_row(replace(strip, clamp=clamp, mesh=mesh), load)
-                report(f"tip load {load:g}, {clamp} clamp, {mesh[0]}x{mesh[1]}")
+    for clamp, load, mesh in product((ROD.name, "full"), LOADS, PEER_MESHES):
+        yield _tip_row(replace(strip, clamp=clamp, mesh=mesh), load)
+        report(f"tip load {load:g}, {clamp} clamp, {mesh[0]}x{mesh[1]}")
     for steps, penalty in RUNS:
         yield from _pin_rows(problem, steps, penalty)
         report(f"pin on the face, step {1 / steps:g}, {penalty:g} N/m")
-
-
-def dead_load(strip: "Strip", force: float, steps: int = 10) -> tuple[Array, Array]:
-    """Mean displacement of the free end and the clamp's force under a transverse dead load [N] that is spread over the end."""
-    from fem_reference import EndLoad, SolidProblem
-
-    load = EndLoad(strip=strip.name, end="end", force=(0.0, force))
-    result = solved(SolidProblem(strips=(strip,), loads=(load,)), np.arange(1, steps + 1) / steps)
-    (support,) = result.supports.values()
-    return result.tips[strip.name][-1] - strip.end, support.force[-1]
 
 
 def contact_forces(problem: "SolidProblem", steps: int, count: int) -> Array:
@@ -90,8 +69,13 @@ def press(problem: "SolidProblem", steps: int, penalty: float) -> Answer:
 
 
 def _tip_row(strip: "Strip", load: float) -> Row:
+    """Displacement of the free end under a transverse dead load that is spread over it, in ten steps."""
+    from fem_reference import EndLoad, SolidProblem
+
     force = load * strip.bending_stiffness / strip.length**2
-    (u, _), other = dead_load(strip, force), tip_load(strip, force).tip[-1]
+    dead = EndLoad(strip=strip.name, end="end", force=(0.0, force))
+    result = solved(SolidProblem(strips=(strip,), loads=(dead,)), np.arange(1, 11) / 10)
+    u, other = result.tips[strip.name][-1] - strip.end, tip_load(strip, force).tip[-1]
     own, apart = float(np.hypot(*u)), float(np.hypot(*(other - u)))
     found = {"fem_reference": own, "calculix": float(np.hypot(*other)), "difference": apart / own}
     return _row(f"tip load {load:g} EI/L^2", strip, **found)
@@ -121,13 +105,13 @@ def _row(case: str, strip: "Strip", **values: float | str | None) -> Row:
     return {**start, **path, **found, "message": "", **values}
 
 
-Mesh = tuple[int, int]
 STEPS = 20
 """Load parameters of every run."""
 LATE = slice(2, None)
 """Load parameters past t = .1."""
 MESHES = tuple((nx, 2) for nx in range(40, 61))
 """Meshes of the scatter study."""
+COMPARED = ("contact_force", "arc_position")
 SEQUENCE = ((25, 2), (50, 2), (100, 2), (200, 4))
 ROD_LAW: Mapping[tuple[str, ...], object] = {
     ("beam", "material"): "biot-linear",
@@ -157,15 +141,10 @@ def thin_beams(report: Report) -> Iterator[Row]:
     last: Row = {}
     for slenderness in (0.02, 0.01, 0.005):
         scene = _slender(slenderness, 0.3)
-        (rod,), solid = (
-            solve(scene, ROD.name).contacts.values(),
-            _contact(_beam(changed(scene, ROD_LAW), mesh=(100, 2))),
-        )
-        pairs = {
-            "contact_force": (solid.force, rod.force),
-            "arc_position": (solid.arc_position, rod.arc_position),
-        }
-        row = {name: float(np.abs(own / exact - 1.0)[LATE].max()) for name, (own, exact) in pairs.items()}
+        (rod,) = solve(scene, ROD.name).contacts.values()
+        solid = _history(_beam(changed(scene, ROD_LAW), mesh=(100, 2)))
+        found = np.abs(solid / np.array([rod.force, rod.arc_position])[:, LATE] - 1.0).max(axis=1)
+        row = dict(zip(COMPARED, found.tolist(), strict=True))
         orders = {f"{name}_order": float(np.log2(last[name] / row[name])) if last else None for name in row}
         report(f"h/L = {slenderness:g}")
         last = row
@@ -179,17 +158,14 @@ def scatter(report: Report) -> Iterator[Row]:
         x, y = scene.pins[0].points[0]
         # the centre of a pin of finite radius lies that much below the scene's sharp pin
         scene = changed(scene, {("pin", "start"): (x, y - radius), ("pin", "radius"): radius or None})
-
-        def histories(meshes: tuple[Mesh, ...], scene: Scene = scene) -> Array:
-            found = (_contact(_beam(scene, mesh=mesh)) for mesh in meshes)
-            return np.array([[one.force, one.arc_position] for one in found])[:, :, LATE]
-
-        found, finer = histories(MESHES), histories(SEQUENCE)
+        found, finer = (
+            np.array([_history(_beam(scene, mesh=one)) for one in of]) for of in (MESHES, SEQUENCE)
+        )
         differences = {"21 meshes, 40x2 to 60x2": np.ptp(found, axis=0) / found.mean(axis=0)}
         for (a, b), (coarse, fine) in zip(pairwise(finer), pairwise(SEQUENCE), strict=True):
             differences[f"{coarse[0]}x{coarse[1]} to {fine[0]}x{fine[1]}"] = np.abs(a / b - 1.0)
-        for label, (force, arc) in differences.items():
-            largest = {"contact_force": float(force.max()), "arc_position": float(arc.max())}
+        for label, apart in differences.items():
+            largest = dict(zip(COMPARED, apart.max(axis=1).tolist(), strict=True))
             yield {"scene": name, "radius": radius, "meshes": label, **largest}
         report(f"{name}, radius {radius:g}")
 
@@ -241,3 +217,9 @@ def _contact(scene: Scene, count: int = STEPS, **strip: Any) -> "ContactHistory"
     """Return the contact of the solid over the first load parameters; `strip` changes what a scene does not state."""
     (contact,) = solved(to_solid(scene), scene.times[:count], **strip).contacts.values()
     return contact
+
+
+def _history(scene: Scene) -> Array:
+    """Return the quantities compared past t = .1, shape (2, n)."""
+    contact = _contact(scene)
+    return np.array([contact.force, contact.arc_position])[:, LATE]

@@ -5,6 +5,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from comparisons.claims.paper.approach import NEAREST
 from comparisons.claims.paper.fig7 import ELEMENTS, PRINTED, PRINTED_SHEAR_PSI, PSI
@@ -56,24 +57,27 @@ def of_critical_areas(found: Study) -> Facts:
         {name: np.array([one[part] for one in by.values()]) for name, by in areas.items()}
         for part in ("smallest", "median", "largest")
     )
+    # by tolerance and way, from a start to a node, which may have a way from the same start before it
+    ways = {name: column(rows, "smallest", element=name).reshape(len(tolerances), -1) for name in LABELS}
+    starts = column(rows, "start", element=SIMPLE, tolerance=rows[0]["tolerance"])
+    passed = {
+        name: _part(np.isfinite(one[:, 1:][:, starts[1:] == starts[:-1]])) for name, one in ways.items()
+    }
     # at the tolerances at which the Euler-Bernoulli contact still moves
     usable = median[SIMPLE] < MOVES
-    moves = {float(at) for at, one in zip(tolerances, usable, strict=True) if one}
-    ways: dict[str, dict[tuple[float, ...], float]] = {name: {} for name in LABELS}
-    for row in rows:
-        if float(f"{row['tolerance']:.0e}") in moves and np.isfinite(row["smallest"]):
-            ways[row["element"]][row["tolerance"], row["start"], row["node"]] = row["smallest"]
     smaller, gain = {}, {}
     for above, below in pairwise(PRINTED):
-        pairs = [area > ways[below][way] for way, area in ways[above].items() if way in ways[below]]
-        smaller[above] = _part(pairs)
+        both = usable[:, None] & np.isfinite(ways[above] + ways[below])
+        smaller[above] = _part((ways[above] > ways[below])[both])
         factors = median[above][usable] / np.maximum(median[below][usable], NEAREST)
         printed = float(np.sqrt(np.prod(PRINTED[above]) / np.prod(PRINTED[below])))
         gain[above] = factors.min(), factors.max(), printed, factors.min() / printed, factors.max() / printed
-    passed = {name: _passed(rows, name) for name in LABELS}
     low, high = PRINTED[TIMOSHENKO]
     under = [at for at, area in zip(tolerances, largest[TIMOSHENKO], strict=True) if area <= low]
     shown = tolerances[0], tolerances[-1], f"{numbers['tolerance_of_the_curves']:.0e}"
+    floors = found.tables["fig7b-floor"]
+    ratio = {"end": "end", "ratio": min(column(floors, "ratio"), key=lambda ratio: abs(ratio - 1e-3))}
+    stiff = column(floors, "floor", element=TIMOSHENKO, psi=PRINTED_SHEAR_PSI, **ratio)
     return {
         "tolerance": shown,
         "range": {name: [_range(by[at]) for at in shown] for name, by in areas.items()},
@@ -84,9 +88,9 @@ def of_critical_areas(found: Study) -> Facts:
         "slope": {
             name: " and ".join(f"{round(one, 3) + 0.0:.3f}" for one in both) for name, both in slopes.items()
         },
-        "stiff": _stiff(found.tables["fig7b-floor"]),
-        # where the measured range meets the printed one, and whether the printed one lies between two that do
-        # not
+        # with the printed G, over that of Euler-Bernoulli
+        "stiff": float(stiff[0] / column(floors, "floor", element=SIMPLE, psi=PSI, **ratio)[0]),
+        # where the measured range meets the printed one, and whether the printed one lies between two that do not
         "meets": {
             name: [*((smallest[name] <= most) & (largest[name] >= least)), *[True] * bool(takes[name] > 0.0)]
             for name, (least, most) in PRINTED.items()
@@ -105,23 +109,9 @@ def of_critical_areas(found: Study) -> Facts:
     }
 
 
-def _stiff(floors: list[Row]) -> float:
-    """Floor of Timoshenko's element with the printed G, over that of Euler-Bernoulli, at the ratio nearest to 1e-3."""
-    ratio = min(column(floors, "ratio"), key=lambda ratio: abs(ratio - 1e-3))
-    at = {"end": "end", "ratio": ratio}
-    stiff = column(floors, "floor", element=TIMOSHENKO, psi=PRINTED_SHEAR_PSI, **at)
-    return float(stiff[0] / column(floors, "floor", element=SIMPLE, psi=PSI, **at)[0])
-
-
-def _part(holds: list[bool]) -> tuple[int, int, float]:
-    return sum(holds), len(holds), float(np.divide(sum(holds), len(holds)))
-
-
-def _passed(rows: list[Row], element: str) -> tuple[int, int, float]:
-    """Beam nodes passed, all that stood in the way, and their ratio: an approach with a successor, which has equilibria."""
-    ways = pairwise(row for row in rows if row["element"] == element)
-    same = ("start", "tolerance")
-    return _part([bool(np.isfinite(b["smallest"])) for a, b in ways if all(a[one] == b[one] for one in same)])
+def _part(holds: NDArray[np.bool_]) -> tuple[int, int, float]:
+    """Return how many hold, of how many, and their ratio."""
+    return int(holds.sum()), holds.size, float(np.divide(holds.sum(), holds.size))
 
 
 def _range(area: Mapping[str, float]) -> str:

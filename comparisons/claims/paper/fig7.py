@@ -28,7 +28,7 @@ from comparisons.models import ROD, TSM, solve
 from comparisons.models.options import Options
 from comparisons.models.tsm import to_structure
 from comparisons.output import Report, Row
-from comparisons.response import Response
+from comparisons.response import Array, Response
 from comparisons.scene import Scene, load_scene
 from comparisons.show import palette
 
@@ -106,7 +106,10 @@ def measured(areas: list[Row], floors: list[Row]) -> dict[str, Any]:
     """Return the numbers of the figure from its rows; an area of 1 stands for no equilibrium."""
     tolerances = tuple(dict.fromkeys(row["tolerance"] for row in areas))
     critical = {
-        element: {f"{tolerance:.0e}": _spread(areas, element, tolerance) for tolerance in tolerances}
+        element: {
+            f"{at:.0e}": _spread(column(areas, "smallest", element=element, tolerance=at))
+            for at in tolerances
+        }
         for element in LABELS
     }
     return {
@@ -121,8 +124,8 @@ def measured(areas: list[Row], floors: list[Row]) -> dict[str, Any]:
     }
 
 
-def _spread(areas: list[Row], element: str, tolerance: float) -> dict[str, float]:
-    found = np.nan_to_num(column(areas, "smallest", element=element, tolerance=tolerance), nan=1.0)
+def _spread(areas: Array) -> dict[str, float]:
+    found = np.nan_to_num(areas, nan=1.0)
     return {"smallest": found.min(), "median": float(np.median(found)), "largest": found.max()}
 
 
