@@ -91,9 +91,8 @@ def _few(scene: Scene) -> int:
 
 def graded(scene: Scene, accuracy: float, quantity: str, kind: ClosedForm) -> Iterator[Trial]:
     """Yield trials with elements in closed form, refined where the axis is curved and forces act."""
-    # a mesh is compared with the one of halved elements; the next has the number that the order predicts, at
-    # the density (kappa^4 + (N/EI)^2 + (V/EI)^2)^(p/(4 (p + 1))), which gives all elements an equal share of
-    # the error
+    # a mesh is compared with the one of halved elements; the next has the number that the order predicts, with
+    # equal shares of the error: its density is (kappa^4 + (N/EI)^2 + (V/EI)^2)^(p/(4 (p + 1)))
     order, element, options, few = kind.order, kind.name, Options(element=kind.name), _few(scene)
     mesh = _with(scene, {beam.name: np.linspace(0.0, 1.0, FIRST + 1) for beam in scene.beams})
     for _ in range(ROUNDS):

@@ -77,14 +77,15 @@ def _manual(given: "argparse.Namespace") -> int:
     file = None if given.junit is None else result_file(Path(given.junit))
     from comparisons.claims.finding import junit_text
     from comparisons.claims.manual import write_manual
+    from comparisons.claims.manual.write import checks
 
-    manual = write_manual(folder, _told(given), stated)
+    cases, files = write_manual(folder, _told(given), stated)
     if file is not None:
-        write_text(file, junit_text("crossval run manual", manual.checks()))
-    answers = [(case, one) for case in manual.cases for one in case.judgements]
+        write_text(file, junit_text("crossval run manual", checks(cases)))
+    answers = [(case, one) for case in cases for one in case.judgements]
     failed = [(case, one) for case, one in answers if not one.passed]
-    print(f"{len(manual.cases)} cases, {len(answers)} answers, {len(failed)} beyond their tolerance")
-    _files(*manual.files, *([file] if file else []))
+    print(f"{len(cases)} cases, {len(answers)} answers, {len(failed)} beyond their tolerance")
+    _files(*files, *([file] if file else []))
     for case, one in failed:
         report(f"crossval: {case.problem.name}, {one.trial.label}: {one.failure}")
     return WRONG if failed else DONE

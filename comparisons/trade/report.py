@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from itertools import product
 from math import isfinite
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -28,49 +29,48 @@ AXES = {
 }
 APART = 0.045
 """Least distance of two labels, over the height of the diagram."""
-ALIKE = 1.2
-"""Ratio of two errors up to which they share one label, with the name of the cheaper setting."""
 
 
 def plot_work(trade: Trade, scope: str, cost: str, folder: Path) -> list[Path]:
     """Draw the errors of all settings over a cost, against the reference and against each model's limit."""
     fig = figure(figsize=(WIDTH, 9.2))
     upper, lower = fig.subplots(2, 1, sharex=True, sharey=True)
-    _draw(upper, trade, scope, cost, own=False)
-    _draw(lower, trade, scope, cost, own=True)
-    _mark_uncertainty(lower, trade.uncertainty(SOLID.name, scope, SHOWN))
-    for axes in (upper, lower):
+    doubt = trade.uncertainty(SOLID.name, scope, SHOWN)
+    if np.isfinite(doubt) and doubt > 0.0:
+        lower.axhline(doubt, color=SOLID.colour, linewidth=0.9, linestyle=":")
+        lower.annotate(
+            "the solid's limit is known to this", (1.0, doubt), (-4, -4), color="0.3", ha="right", va="top",
+            xycoords=("axes fraction", "data"), textcoords="offset points", fontsize="x-small",
+        )  # fmt: skip
+    titles = "against the exact rod", "against what each model converges to, Pareto fronts"
+    for axes, own, title in zip((upper, lower), (False, True), titles, strict=True):
+        _draw(axes, trade, scope, cost, own=own)
         logarithmic(axes)
         axes.margins(x=0.3, y=0.06)
+        axes.set_title(title, fontsize="medium")
     for model in MESHED:
         _draw_front(lower, front(trade, model, scope, SHOWN, cost), model)
     lower.set_xlabel(AXES[cost])
     state = f"at t = {trade.reference.end:g}" if scope == "end" else "largest over the load parameters"
     fig.supylabel(f"error of {SHOWN}, {state}", fontsize="medium")
-    upper.set_title("against the exact rod", fontsize="medium")
-    lower.set_title("against what each model converges to, Pareto fronts", fontsize="medium")
     draw_legend(fig, [upper], "outside lower center")
-    fig.suptitle(
-        f"{trade.scene.name}: what accuracy costs\n[n]: load steps; hollow: fewer than the scene's",
-        fontsize="large",
-    )
+    title = f"{trade.scene.name}: what accuracy costs\n[n]: load steps; hollow: fewer than the scene's"
+    fig.suptitle(title, fontsize="large")
     paths = [folder / f"{scope}-{cost}{suffix}" for suffix in (".png", ".svg")]
     save(fig, *paths)
     return paths
 
 
 def _draw(axes: Any, trade: Trade, scope: str, cost: str, *, own: bool) -> None:
-    """Draw every completed setting, the families in the order of the legend; what is uncertain bounds errors from below."""
-    shown = [
-        row
+    """Draw the completed settings in the order of the legend; what is uncertain bounds errors from below."""
+    order = [words for model in MODELS.values() for words in model.styles()]
+    rows = [
+        (max(k for k, words in enumerate(order) if row.family.startswith(words)), row)
         for model in MODELS.values()
         if model.meshed or not model.rod
         for row in trade.of_model(model.name, scope)
     ]
-    order = [words for model in MODELS.values() for words in model.styles()]
-    for row in sorted(
-        shown, key=lambda row: max(k for k, words in enumerate(order) if row.family.startswith(words))
-    ):
+    for _, row in sorted(rows, key=itemgetter(0)):
         style, spent, error = palette.style(row.family), row.spent(cost), row.error(scope, SHOWN, own=own)
         if not (np.isfinite(error) and spent > 0):
             continue
@@ -82,38 +82,19 @@ def _draw(axes: Any, trade: Trade, scope: str, cost: str, *, own: bool) -> None:
         )  # fmt: skip
 
 
-def _mark_uncertainty(axes: Any, doubt: float) -> None:
-    if np.isfinite(doubt) and doubt > 0.0:
-        axes.axhline(doubt, color=SOLID.colour, linewidth=0.9, linestyle=":")
-        axes.annotate(
-            "the solid's limit is known to this", (1.0, doubt), (-4, -4), color="0.3", ha="right", va="top",
-            xycoords=("axes fraction", "data"), textcoords="offset points", fontsize="x-small",
-        )  # fmt: skip
-
-
 def _draw_front(axes: Any, points: Sequence[Line], model: str) -> None:
-    """Draw a front, and name its points to their left, of bodies at the right-hand edge."""
+    """Draw a front, and name its points to their left where they lie apart."""
     spent, errors = ([one[name] for one in points] for name in ("spent", "own_error"))
     axes.plot(spent, errors, color=MODELS[model].colour, linewidth=1.6, drawstyle="steps-post", zorder=1)
-    named: list[Line] = []
-    for one in points:
-        if not named or ALIKE * one["own_error"] < named[-1]["own_error"]:
-            named.append(one)
     low, high = np.log(axes.get_ylim())
-    last, edge = -np.inf, MODELS[model].continuum
-    line = {"arrowstyle": "-", "color": "0.7", "linewidth": 0.6, "shrinkB": 4, "relpos": (0.0, 0.5)}
+    words = {"va": "center", "ha": "right", "fontsize": "small", "textcoords": "offset points"}
     ground = {"facecolor": "white", "alpha": 0.7, "linewidth": 0.0, "pad": 0.5}
-    for one in reversed(named):
-        place = (one["spent"], one["own_error"])
-        height = float((np.log(place[1]) - low) / (high - low))
-        if not edge and height <= last + APART:
-            continue
-        last = max(height, last + APART)
-        where = (1.03, last) if edge else (-7, 0)
-        how: dict[str, Any] = {"textcoords": "axes fraction", "arrowprops": line}
-        if not edge:
-            how = {"textcoords": "offset points", "ha": "right", "bbox": ground}
-        axes.annotate(one["setting"], place, where, va="center", fontsize="small", **how)
+    last = np.inf
+    for one in points:
+        height = np.log(one["own_error"])
+        if height < last - APART * (high - low):
+            last = height
+            axes.annotate(one["setting"], (one["spent"], one["own_error"]), (-7, 0), bbox=ground, **words)
 
 
 SETTING = (

@@ -77,8 +77,7 @@ class Against:
 
     def finding(self, case: Case, own: Response, results: Results) -> Finding | None:
         """Return the error of `own` at the load parameters of both; None where the other is no reference."""
-        # a model of another rod, as the elastica, may go further than its reference, and may be too soft for
-        # one
+        # a model of another rod, as the elastica, may go further than its reference, or be too soft for one
         other, beam = results[self.case].response, self.case.scene.beams[0]
         allowed, why = self.allowed or allowance(case, bending(beam, other))
         if not MODELS[case.model].rod and (allowed > LARGEST or not len(other.load_parameter)):
@@ -115,8 +114,7 @@ def energy(case: Case, own: Response) -> Finding:
 
 def circle(case: Case, own: Response) -> Finding:
     """A beam rolled up to an arc by a moment: the largest error of the tip's position over the length."""
-    # the first term that the strains neglect makes the chord of an element, and with it the whole circle, too
-    # large
+    # the first term that the strains neglect makes an element's chord, and so the whole circle, too large
     beam, load, kind = case.scene.beams[0], case.scene.loads[0], TSM.element(case.options)
     angle = load.moment * beam.length / beam.EI * own.load_parameter
     half = angle / (2.0 * np.pi)

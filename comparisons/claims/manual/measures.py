@@ -75,8 +75,7 @@ def _read(response: Response, quantity: Quantity) -> float:
 def value(response: Response, words: str, at: float) -> float:
     """Return a number of a response at a load parameter; nan for an event that it does not have."""
     # a name of `comparisons.response.table`, of a vector without _x for its size; "axis BEAM .5 x", a place
-    # of the axis at half the length; "slip-off PAIR"; "event KIND PAIR 0", the load parameter of the first
-    # one
+    # of the axis at half the length; "slip-off PAIR"; "event KIND PAIR 0", that of the first one
     what, *more = words.split()
     if what == "slip-off":
         return response.contacts[more[0]].slip_off
@@ -154,8 +153,7 @@ def identity(_: Problem, answers: Answers) -> Sequence[float]:
 
 def greatest_load(problem: Problem, answers: Answers) -> Sequence[float]:
     """Read the greatest load and its place: of a pin that is raised, or of half of three-point bending."""
-    # a pin whose path has a corner turns back there: both are read on the way to the corner, then on the way
-    # back
+    # a pin whose path has a corner turns back there: both are read on the way there, then on the way back
     given, response, pin = problem.settings, answers.solved(draw=False), answers.scene.pins[-1]
     t, a, EI = response.load_parameter, pin.points[0][0], answers.scene.beams[0].EI
     rise = np.array([pin.position(one)[1] for one in t]) / a
@@ -230,8 +228,7 @@ def limit_points(problem: Problem, answers: Answers) -> Sequence[float]:
 
 def power_law(problem: Problem, answers: Answers) -> Sequence[float]:
     """Exponent of the error of the force against the rod, or of the penetration, in what is varied."""
-    # ``varies`` is ``elements`` or a setting of the scene; ``sign`` is -1 where the exponent is that of the
-    # inverse
+    # ``varies`` is ``elements`` or a setting of the scene; ``sign`` is -1 for that of the inverse
     given, found = problem.settings, []
     for one in given["values"]:
         scene, options = answers.scene, answers.trial.options

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from math import inf, nan
 from pathlib import Path
 from time import perf_counter
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -180,23 +180,12 @@ def _numbers(case: Case) -> dict[str, Any]:
     return {**stated, "quantities": quantities, "runs": runs, **found}
 
 
-class Manual(NamedTuple):
-    """The cases of the manual, and what was written, the text first."""
-
-    cases: tuple[Case, ...]
-    files: tuple[Path, ...] = ()
-
-    @property
-    def passed(self) -> bool:
-        """Whether every case passed."""
-        return all(case.passed for case in self.cases)
-
-    def checks(self) -> Iterator[tuple[str, str, float, str | None, str]]:
-        """Yield a check of `comparisons.claims.finding.junit_text` for every problem and model."""
-        for case in self.cases:
-            for item in case.judgements:
-                measured = "\n".join(one.measured for one in item.findings)
-                yield f"manual.{case.problem.name}", item.trial.label, item.seconds, item.failure, measured
+def checks(cases: Sequence[Case]) -> Iterator[tuple[str, str, float, str | None, str]]:
+    """Yield a check of `comparisons.claims.finding.junit_text` for every problem and model."""
+    for case in cases:
+        for item in case.judgements:
+            measured = "\n".join(one.measured for one in item.findings)
+            yield f"manual.{case.problem.name}", item.trial.label, item.seconds, item.failure, measured
 
 
 def judged(problem: Problem) -> Case:
@@ -229,8 +218,8 @@ def _judged(problem: Problem, answers: Answers) -> Judgement:
     return Judgement(trial=trial, findings=findings, seconds=seconds, stopped=stopped)
 
 
-def write_manual(folder: Path, report: Report, files: Sequence[Path]) -> Manual:
-    """Solve problems, judge the answers and write the manual.
+def write_manual(folder: Path, report: Report, files: Sequence[Path]) -> tuple[list[Case], list[Path]]:
+    """Solve problems, judge the answers and write the manual; return the cases and the files, the text first.
 
     Parameters
     ----------
@@ -260,4 +249,4 @@ def write_manual(folder: Path, report: Report, files: Sequence[Path]) -> Manual:
     text = folder / "index.md"
     write_text(text, page(cases))
     numbers = {"passed": all(case.passed for case in cases), "cases": list(map(_numbers, cases))}
-    return Manual(tuple(cases), (text, write_numbers(folder / "manual.json", numbers), *pictures))
+    return cases, [text, write_numbers(folder / "manual.json", numbers), *pictures]

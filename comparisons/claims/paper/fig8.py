@@ -108,5 +108,10 @@ def _shape_rows(scene: Scene, responses: Responses) -> Iterator[Row]:
             of = {"reading": scene.name, "label": label, "load_parameter": response.load_parameter[k]}
             arc, line = response.axis_line(beam.name, k)
             axis = (np.interp(places, arc, values) for values in line.T)
-            for place, x, y in zip(places, *axis, strict=True):
-                yield {**of, "arc_position": float(place), "x": float(x), "y": float(y)}
+            for number, (x, y) in enumerate(zip(*axis, strict=True)):
+                yield {
+                    **of,
+                    "arc_position": number * beam.length / (STATIONS - 1),
+                    "x": float(x),
+                    "y": float(y),
+                }
