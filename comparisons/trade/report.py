@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.cases import Row
+from comparisons.cases.rows import result_rows
 from comparisons.models import MODELS, ROD, SOLID, TSM
 from comparisons.output import tabulated, write_numbers, write_rows
 from comparisons.quantities import KEPT, SCOPES
@@ -98,7 +99,7 @@ def _draw_front(axes: Any, points: Sequence[Line], model: str) -> None:
 
 
 SETTING = (
-    "label", "load_steps", "status", "unknowns", "iterations", "seconds", "own_error_end_force", "own_error_path_force",
+    "label", "scene.load_parameters", "status", "unknowns", "iterations", "seconds", "own_error_end_force", "own_error_path_force",
     "error_path_force",
 )  # fmt: skip
 CHEAPEST = (
@@ -121,7 +122,7 @@ def shown(rows: Sequence[Line], columns: Sequence[str]) -> list[Line]:
 
 def write_trade(trade: Trade, folder: Path) -> list[Path]:
     """Write the tables, the diagrams and the page; return the files, the page first."""
-    settings = [_setting(row) for row in trade.rows]
+    settings = _settings(trade.rows)
     uncertainty = trade.reference.uncertainty
     stated = [of for of in product(SCOPES, KEPT) if isfinite(uncertainty[of[0]][of[1]])]
     cheap = [cheapest(trade, *of, target) for of, target in product(stated, TARGETS)]
@@ -170,29 +171,17 @@ def _write_page(trade: Trade, settings: list[Line], files: Sequence[Path], folde
     return write_report(folder, title, lead, sections, [trade.scene], files)
 
 
-def _setting(row: Row) -> Line:
-    """Return what a setting is, what it cost, and all its errors."""
-    case, response = row.case, row.response
-    contact = case.scene.contacts[0] if case.scene.contacts and case.found.continuum else None
-    return {
-        "label": row.label,
-        "family": row.family,
-        "model": case.model,
-        "elements": case.options.elements,
-        "mesh": case.options.mesh and "x".join(map(str, case.options.mesh)),
-        "integration_tolerance": case.options.integration_tolerance,
-        "penalty": contact and contact.penalty,
-        "penetration": contact and contact.penetration,
-        "load_steps": case.scene.load_parameters,
-        "load_parameters_reached": len(response.load_parameter),
-        "status": response.status,
-        "message": response.message,
-        **row.cost(),
-        **{
+def _settings(rows: Sequence[Row]) -> list[Line]:
+    """Return what every setting is and cost, as a study does, and all its errors."""
+    stated = result_rows({row.case: row.measured for row in rows})
+    return [
+        line
+        | {
             f"{'own_' * own}error_{scope}_{quantity}": row.error(scope, quantity, own=own)
             for own, scope, quantity in product((False, True), SCOPES, KEPT)
-        },
-    }
+        }
+        for line, row in zip(stated, rows, strict=True)
+    ]
 
 
 def _cheapest(trade: Trade) -> list[tuple[str, list[Line]]]:

@@ -192,7 +192,7 @@ def test_the_quick_trade_of_ks(tmp_path, capsys):
     assert main(["run", "trade", str(scene), "--quick", "--out", str(folder)]) == 0
     with (folder / "trade.csv").open() as file:
         rows = list(csv.DictReader(file))
-    whole = [row for row in rows if row["load_steps"] == "10" and row["status"] == "COMPLETED"]
+    whole = [row for row in rows if row["scene.load_parameters"] == "10" and row["status"] == "COMPLETED"]
     errors_of = {row["label"]: float(row["error_path_force"]) for row in whole}
     assert errors_of["tsm exact 1"] < 1e-9
     assert 1e-4 < errors_of["elastica"] < 2e-3
@@ -204,7 +204,7 @@ def test_the_quick_trade_of_ks(tmp_path, capsys):
     html = (folder / "report.html").read_text()
     check_alone(html, folder)
     for row in stopped:
-        assert f"{row['label']} [{row['load_steps']}]: {row['status']}: " in out
+        assert f"{row['label']} [{row['scene.load_parameters']}]: {row['status']}: " in out
         assert f"{row['status']}: " in html
     assert html.count("data:image/svg+xml") == len(list(folder.glob("*.svg"))) > 0
     numbers = json.loads((folder / "trade.json").read_text())
