@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from comparisons.cases.case import Case
-from comparisons.claims.extremes.cell import Against, Allowance, Cell, circle, energy
-from comparisons.models import MODELS, ROD, SOLID, TSM
+from comparisons.claims.extremes.cell import Against, Allowance, Cell, Law, circle, energy
+from comparisons.models import MODELS, ROD, SOLID, TSM, Model
 from comparisons.models.options import Options
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
 from comparisons.scene.rules import Point
@@ -87,15 +87,29 @@ def rod(scene: Scene, allowed: Allowance | None = None) -> Against:
     return Against(case=Case(scene=scene, model=ROD.name), allowed=allowed)
 
 
-def beam(column: str, scene: Scene, kind: ElementType, options: Options, row: str = "") -> Cell:
+def cell(
+    model: Model,
+    column: str,
+    scene: Scene,
+    *against: Against,
+    row: str = "",
+    law: Law | None = None,
+    **options: Any,
+) -> Cell:
+    """Return the cell of a model with options, in a row of its name by default."""
+    case = Case(scene=scene, model=model.name, options=Options(**options))
+    return Cell(row=row or model.name, column=column, case=case, against=against, law=law)
+
+
+def beam(column: str, scene: Scene, kind: ElementType, elements: int | None, row: str = "") -> Cell:
     """Return the cell of TSM, against the rod of the same shear stiffness: that of an Euler-Bernoulli element is rigid in shear."""
-    case, stiff = Case(scene=scene, model=TSM.name, options=replace(options, element=kind.name)), scene
+    stiff = scene
     if not kind.sheared:
         rigid = (
             replace(one, poissons_ratio=None, shear_modulus=1e9 * one.youngs_modulus) for one in scene.beams
         )
         stiff = replace(scene, beams=tuple(rigid))
-    return Cell(row=row or kind.name, column=column, case=case, against=(rod(stiff),))
+    return cell(TSM, column, scene, rod(stiff), row=row or kind.name, element=kind.name, elements=elements)
 
 
 def beams(
@@ -103,27 +117,16 @@ def beams(
 ) -> Iterator[Cell]:
     """Yield the cells of beams against the rod; elements without a mesh are one a beam."""
     for kind in kinds() if only is None else only:
-        yield beam(column, scene, kind, Options(elements=elements if kind.meshed else 1))
+        yield beam(column, scene, kind, elements if kind.meshed else 1)
     for model in MODELS.values():
         if model.meshed and not model.continuum and model is not TSM:
-            case = Case(scene=scene, model=model.name)
-            yield Cell(row=model.name, column=column, case=case, against=(rod(scene),))
-
-
-def solid(
-    column: str, scene: Scene, mesh: tuple[int, int], against: Against | None = None, row: str = SOLID.name
-) -> Cell:
-    """Return the cell of the solid, by default against the rod."""
-    case = Case(scene=scene, model=SOLID.name, options=Options(mesh=mesh))
-    return Cell(row=row, column=column, case=case, against=(against or rod(scene),))
+            yield cell(model, column, scene, rod(scene))
 
 
 def exact_answers(column: str, scene: Scene) -> Iterator[Cell]:
     """Yield the cells of the models without a mesh: by their energy, and against the rod."""
     for model in (one for one in MODELS.values() if not one.meshed):
-        others = () if model is ROD else (rod(scene),)
-        case = Case(scene=scene, model=model.name)
-        yield Cell(row=model.name, column=column, case=case, against=others, law=energy)
+        yield cell(model, column, scene, *(() if model is ROD else (rod(scene),)), law=energy)
 
 
 def everything(
@@ -132,7 +135,7 @@ def everything(
     """Yield the cells of all models on a scene: beams, the solid if it has a mesh, exact answers."""
     yield from beams(column, scene, elements)
     if mesh:
-        yield solid(column, scene, mesh)
+        yield cell(SOLID, column, scene, rod(scene), mesh=mesh)
     yield from exact_answers(column, scene)
 
 
@@ -181,9 +184,9 @@ def _elements(quick: bool) -> Iterator[Cell]:
     for count in (1, 2, 5, 50) if quick else (1, 2, 3, 5, 10, 20, 50, 200, 1000, 5000):
         yield from beams(f"{count}", scene, count, only=kinds(meshed=True))
         for kind in kinds(meshed=False) if count <= 1000 else ():
-            yield beam(f"{count}", scene, kind, Options(elements=count))
+            yield beam(f"{count}", scene, kind, count)
         if 2 <= count <= 1000:
-            yield solid(f"{count}", scene, (count, 2))
+            yield cell(SOLID, f"{count}", scene, rod(scene), mesh=(count, 2))
 
 
 def _ratio(quick: bool) -> Iterator[Cell]:
@@ -224,7 +227,7 @@ def _load_step(quick: bool) -> Iterator[Cell]:
         scene = half_circle(cantilever(), steps=steps)
         yield from everything(f"{steps}", scene, 20, COARSE)
         for kind in (MIXED, TIMOSHENKO) if steps <= 1000 else ():
-            yield beam(f"{steps}", scene, kind, Options(elements=200), f"{kind.name}, 200 elements")
+            yield beam(f"{steps}", scene, kind, 200, f"{kind.name}, 200 elements")
 
 
 def _penalty(quick: bool) -> Iterator[Cell]:
@@ -237,7 +240,7 @@ def _penalty(quick: bool) -> Iterator[Cell]:
             softness = 10 * strip.EI / penalty
             allowed = Allowance(4 * 10 * softness + 1e-6, "what the penalty lets the beam give way")
             check = Against(case=plain, name="itself with the default penalty", allowed=allowed)
-            yield solid(f"1e{power}", scene, MESH, check, row=f"{SOLID.name}, {surface}")
+            yield cell(SOLID, f"1e{power}", scene, check, row=f"{SOLID.name}, {surface}", mesh=MESH)
 
 
 def _poissons_ratio(quick: bool) -> Iterator[Cell]:
@@ -254,8 +257,8 @@ def _depth(_: bool) -> Iterator[Cell]:
     for column, (scene, elements) in places.items():
         yield from everything(column, scene, elements, None if scene.beams[0].height is None else MESH)
     for turns, kind in product((1, 2), kinds()):
-        options = Options(elements=40 * turns if kind.meshed else 1)
-        one = beam(f"roll-up, {turns}", rolled_up(cantilever(), turns), kind, options)
+        elements = 40 * turns if kind.meshed else 1
+        one = beam(f"roll-up, {turns}", rolled_up(cantilever(), turns), kind, elements)
         yield replace(one, against=(), law=circle)
 
 
@@ -266,7 +269,7 @@ def _time(quick: bool) -> Iterator[Cell]:
         yield from beams(column, scene, 15, only=kinds() if count <= CUT_BACK else unknown)
         yield from exact_answers(column, scene)
         if count <= CUT_BACK:
-            yield solid(column, scene, COARSE)
+            yield cell(SOLID, column, scene, rod(scene), mesh=COARSE)
 
 
 class Axis(NamedTuple):

@@ -17,7 +17,6 @@ from comparisons.claims.extremes import run as runner
 from comparisons.claims.extremes.axes import AXES, beam, cantilever, half_circle, kinds, matrix, rod, sheared
 from comparisons.claims.extremes.cell import LARGEST, Verdict, allowance, judged
 from comparisons.cli import main
-from comparisons.models.options import Options
 from comparisons.models.theory import Bending
 from tests.comparisons.show.pages.markup import check_alone
 from tsm import ELEMENTS
@@ -26,7 +25,7 @@ SCENE = half_circle(cantilever())
 
 
 def cell_of(element, scene, count):
-    return replace(beam("10", scene, ELEMENTS[element], Options(elements=count)), axis="elements")
+    return replace(beam("10", scene, ELEMENTS[element], count), axis="elements")
 
 
 CELL = cell_of("mixed", SCENE, 10)
