@@ -3,10 +3,11 @@
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
-from itertools import product
+from itertools import pairwise, product
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from comparisons.cases.settings import changed
 from comparisons.claims.drawing import NOTE, SHAPE, draw
@@ -17,9 +18,11 @@ from comparisons.claims.paper.figure import (
     MIXED,
     SIMPLE,
     TIMOSHENKO,
+    Facts,
     Study,
     column,
     line,
+    percent,
     reached,
     stops,
 )
@@ -47,6 +50,8 @@ RATIOS = 10.0 ** -np.arange(1.0, 16.5, 0.5)
 FITTED = (1e-13, 1e-2)
 """Ratios of the fitted slopes: below, a ratio has no digits left; above, it is no small one."""
 
+MOVES = 0.5
+"""A median critical area beyond half the element means that the tolerance is below the round-off everywhere in it."""
 _FLOORS: tuple[dict[str, Any], ...] = (
     *({"element": one, "end": end, "psi": PSI} for one in (*LABELS, TURNED) for end in ("start", "end")),
     {"element": TIMOSHENKO, "end": "end", "psi": PRINTED_SHEAR_PSI},
@@ -207,6 +212,8 @@ def _drawn_floors(floors: list[Row], slopes: Mapping[str, list[float]], axes: An
 
 ELEMENTS = (18, 72)
 """The paper's number of elements, and four times as many."""
+FOLLOWED = 5e-4
+"""Relative error of a slip-off displacement that counts as followed."""
 DEPTHS = (0.25, 0.5, 0.75, 1.0)
 """Shapes shown, in parts of the displacement at slip-off: the last load parameter before."""
 
@@ -282,3 +289,91 @@ def _panel(title: str, scene: Scene, beams: Response, rod: Response, axes: Any) 
         axes.plot(x, y, **mark)
         axes.annotate(f"{y:.2f}", (4.85, float(axis[-1, 1])), **NOTE)
     axes.set(title=title, xlim=(-0.1, 5.6), ylim=(-0.1, 1.95), **SHAPE)
+
+
+def of_lifts(found: Study) -> Facts:
+    """Displacements at slip-off against the exact rod."""
+    lifts = found.numbers["starting_positions"]
+    ends = [(lift["reached_in_contact"][TIMOSHENKO], lift["slip_off_rod"]) for lift in lifts]
+    paper = sum(bool(np.isclose(own, exact, rtol=FOLLOWED)) for own, exact in ends)
+    early = " Its own element stops before the tip, in the last node's critical area."
+    return {
+        "slip_off": [max(lift["slip_off_error"][elements] for lift in lifts) for elements in ELEMENTS],
+        "elements": ELEMENTS,
+        "force": max(lift["force_error"] for lift in lifts),
+        "paper": (paper, len(lifts)),
+        "stops": "" if paper == len(lifts) else early,
+    }
+
+
+def of_critical_areas(found: Study) -> Facts:
+    """Critical areas by formulation and tolerance, and slopes of the floors before both ends."""
+    numbers, rows = found.numbers, found.tables["fig7b-tolerance"]
+    areas, takes, slopes = (
+        numbers[name] for name in ("critical_area", "tolerance_for_the_printed", "slopes_of_the_floor")
+    )
+    tolerances = list(areas[SIMPLE])
+    smallest, median, largest = (
+        {name: np.array([one[part] for one in by.values()]) for name, by in areas.items()}
+        for part in ("smallest", "median", "largest")
+    )
+    # by tolerance and way, from a start to a node, which may have a way from the same start before it
+    ways = {name: column(rows, "smallest", element=name).reshape(len(tolerances), -1) for name in LABELS}
+    starts = column(rows, "start", element=SIMPLE, tolerance=rows[0]["tolerance"])
+    passed = {
+        name: _part(np.isfinite(one[:, 1:][:, starts[1:] == starts[:-1]])) for name, one in ways.items()
+    }
+    # at the tolerances at which the Euler-Bernoulli contact still moves
+    usable = median[SIMPLE] < MOVES
+    smaller, gain = {}, {}
+    for above, below in pairwise(PRINTED):
+        both = usable[:, None] & np.isfinite(ways[above] + ways[below])
+        smaller[above] = _part((ways[above] > ways[below])[both])
+        factors = median[above][usable] / np.maximum(median[below][usable], NEAREST)
+        printed = float(np.sqrt(np.prod(PRINTED[above]) / np.prod(PRINTED[below])))
+        gain[above] = factors.min(), factors.max(), printed, factors.min() / printed, factors.max() / printed
+    low, high = PRINTED[TIMOSHENKO]
+    under = [at for at, area in zip(tolerances, largest[TIMOSHENKO], strict=True) if area <= low]
+    shown = tolerances[0], tolerances[-1], f"{numbers['tolerance_of_the_curves']:.0e}"
+    floors = found.tables["fig7b-floor"]
+    ratio = {"end": "end", "ratio": min(column(floors, "ratio"), key=lambda ratio: abs(ratio - 1e-3))}
+    stiff = column(floors, "floor", element=TIMOSHENKO, psi=PRINTED_SHEAR_PSI, **ratio)
+    return {
+        "tolerance": shown,
+        "range": {name: [_range(by[at]) for at in shown] for name, by in areas.items()},
+        "least": {name: one.min() for name, one in smallest.items()},
+        "areas": {name: one.tolist() for name, one in largest.items()},
+        "largest": {name: one.max() for name, one in largest.items()},
+        "slopes": slopes,
+        "slope": {
+            name: " and ".join(f"{round(one, 3) + 0.0:.3f}" for one in both) for name, both in slopes.items()
+        },
+        # with the printed G, over that of Euler-Bernoulli
+        "stiff": float(stiff[0] / column(floors, "floor", element=SIMPLE, psi=PSI, **ratio)[0]),
+        # where the measured range meets the printed one, and whether the printed one lies between two that do not
+        "meets": {
+            name: [*((smallest[name] <= most) & (largest[name] >= least)), *[True] * bool(takes[name] > 0.0)]
+            for name, (least, most) in PRINTED.items()
+        },
+        "takes": {
+            name: "beyond those measured" if np.isnan(one) else f"{one:.0e} EI/L^2"
+            for name, one in takes.items()
+        },
+        "smaller": smaller,
+        "gain": gain,
+        "passed": passed,
+        "ahead": passed[TIMOSHENKO][2] - max(passed[SIMPLE][2], passed[CANTILEVER][2]),
+        "printed": (low, high),
+        "nearest": NEAREST,
+        "under": f"at {under[-1]} EI/L^2 and looser" if under else "at no tolerance measured",
+    }
+
+
+def _part(holds: NDArray[np.bool_]) -> tuple[int, int, float]:
+    """Return how many hold, of how many, and their ratio."""
+    return int(holds.sum()), holds.size, float(np.divide(holds.sum(), holds.size))
+
+
+def _range(area: Mapping[str, float]) -> str:
+    nowhere = " (nowhere in the element)" if area["largest"] == 1.0 else ""
+    return f"{percent(area['smallest'])} to {percent(area['largest'])}{nowhere}"

@@ -3,10 +3,11 @@
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
-from comparisons.claims.paper.figure import Study, stops
+from comparisons.claims.paper.figure import Facts, Study, percent, stops
 from comparisons.compare import MIXED, PAPER, ROD, SOLID
 from comparisons.errors import errors
 from comparisons.models import solve
@@ -18,6 +19,13 @@ from comparisons.scene import Scene, load_scene
 from comparisons.show.pages import Section, motion_section, tracks
 from comparisons.show.plot import nearest_steps, plot_shapes
 
+KS = "ks-cantilever"
+WHY_NOT = {
+    KS: "The contact node meets a beam node.",
+    "ks-printed-shear": "With the printed G the beam is rigid in shear, and a pin that starts on the tip node is in the critical area.",
+    "ks-tied-tip": "A tied tip makes the beam buckle, and a step may lead to another solution.",
+}
+"""What stands in the way of the paper's element in a reading."""
 READINGS = {
     "ks-cantilever": "the pin slides along the beam, G from E and nu",
     "ks-printed-shear": "the pin slides along the beam, G as printed",
@@ -115,3 +123,37 @@ def _shape_rows(scene: Scene, responses: Responses) -> Iterator[Row]:
                     "x": float(x),
                     "y": float(y),
                 }
+
+
+def of_shapes(found: Study) -> Facts:
+    """Errors of the paper's element with 10, 20 and 50 elements, and of the solid, in the main reading."""
+    runs: dict[Any, Row] = {run["label"]: run for run in found.numbers["runs"] if run["reading"] == KS}
+    runs |= {one.options.elements: runs[one.label] for one in PAPER}
+    divisions, asked = [one.options.elements for one in PAPER], ("shape", "force", "moment")
+    errors = {
+        of: {name: float(runs[of][f"error_path_{name}"]) for name in (*asked, "arc")}
+        for of in (*divisions, SOLID.label)
+    }
+    all_runs = [run for run in found.numbers["runs"] if run["label"] in {one.label for one in PAPER}]
+    failed = [run for run in all_runs if not run["follows_the_rod"]]
+    ends = (
+        f"{run['label']} on {run['reading']} ({'another branch' if run['status'] == 'COMPLETED' else run['status']})"
+        for run in failed
+    )
+    each = (f"{n} elements {', '.join(percent(errors[n][name]) for name in asked)}" for n in divisions)
+    return {
+        "follow": (len(all_runs) - len(failed), len(all_runs)),
+        "refuted": [False if failed else None],
+        "not": f"; not: {', '.join(ends)}" if failed else "",
+        "reasons": "".join(f" {one}" for one in dict.fromkeys(WHY_NOT[run["reading"]] for run in failed)),
+        "apart": {n: runs[n]["shape_difference"] for n in divisions},
+        "error": errors,
+        "errors": [errors[n][name] for n in divisions for name in asked],
+        "each": "; ".join(each),
+        "worst": [
+            max(errors[of][name] for name in names)
+            for of, names in ((20, ("force", "arc", "shape")), (SOLID.label, ("force", "shape")))
+        ],
+        "run": runs,
+        "cost": [runs[20][name] / runs[SOLID.label][name] for name in ("unknowns", "seconds")],
+    }

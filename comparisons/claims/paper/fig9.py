@@ -10,7 +10,16 @@ import numpy as np
 
 from comparisons.cases.settings import changed
 from comparisons.claims.drawing import NOTE, SHAPE, draw
-from comparisons.claims.paper.figure import CANTILEVER, SIMPLE, TIMOSHENKO, Study, reached, stops
+from comparisons.claims.paper.figure import (
+    CANTILEVER,
+    SIMPLE,
+    TIMOSHENKO,
+    Facts,
+    Study,
+    column,
+    reached,
+    stops,
+)
 from comparisons.models import ROD, TSM, solve
 from comparisons.models.options import Options
 from comparisons.output import Report, Row
@@ -29,6 +38,8 @@ FORCES = (1.00397705580342, 0.2905931420562)
 """Forces of the pin and of the tip at the depth .31 m [N]."""
 
 
+EXPECTED = {"touch": ("touch", TIP), "hand-over": ("slip-off", UPPER), "slip-off": ("slip-off", LOWER)}
+"""Kind and pair of the events whose depths the exact rods have."""
 FINER = 10
 """Load parameters of the picture per load parameter of the scene."""
 BEAMS, RODS = "TSM mixed, 10 elements a beam", "exact rods, coupled"
@@ -192,3 +203,48 @@ def _histories(columns: Columns, events: list[Row], quantity: str, label: str, a
         axes.plot([depth, depth], [0.0, high], **dotted)
         axes.annotate(str(number), (depth, high), **NOTE)
     axes.set(xlabel="depth of the pin [m]", ylabel=label, title="Double beam, 10 + 10 mixed elements")
+
+
+def of_double_beam(found: Study) -> Facts:
+    """Events against those of the exact rods, and how far the paper's element comes."""
+    events, rows = found.numbers["events"], found.tables["fig9"]
+    attempts = [attempt for attempt in found.numbers["attempts"] if attempt["element"] == TIMOSHENKO]
+    first = {(one["kind"], one["pair"]): one for one in reversed(events)}
+    depths = {name: first[one]["depth"] if one in first else np.nan for name, one in EXPECTED.items()}
+    coupled = [row for row in rows if EVENTS["touch"] < row["depth"] < EVENTS["hand-over"]]
+    # a run that ends at the hand-over ends where this program does, and the paper's went on
+    through = [None if one["at_hand_over"] else one["status"] == "COMPLETED" for one in attempts]
+    over = [one for one in events if one["depth"] == depths["hand-over"] and one["pair"] in {TIP, LOWER}]
+    crowded = ", ".join(map(str, sorted({one["element"] + 1 for one in over})))
+    reasons = {
+        False: " A pin that starts on a beam node is in the critical area from the start.",
+        None: " Beside the node both contacts pass every node until the hand-over. There pin and upper tip are on one element of the "
+        f"lower beam (number {crowded}), the paper's element has one contact point, and how its program went on is not said.",
+    }
+    deepest = max(attempt["depth"] for attempt in attempts)
+    return {
+        "event": {
+            name: f"{kind} of {pair} at depth {depths[name]:.6f} m, exact rods {EVENTS[name]:.6f} m"
+            if (kind, pair) in first
+            else f"no {kind} of {pair}"
+            for name, (kind, pair) in EXPECTED.items()
+        },
+        "off": {name: abs(depth - EVENTS[name]) for name, depth in depths.items()},
+        "closed": [np.isfinite(column(coupled, f"{pair} arc")).all() for pair in (UPPER, TIP)],
+        "taken_over": ("touch", LOWER) in first,
+        "expected": EVENTS,
+        "released": sum(
+            one["released"] for one in events if (one["kind"], one["pair"]) == EXPECTED["hand-over"]
+        ),
+        "last": np.nanmax(column(rows, f"{TIP} exact_force")),
+        "attempts": ", ".join(
+            f"pin at {one['place']:g} m: {one['status']} at depth {one['depth']:.2f} m, {one['passes']} nodes passed"
+            for one in attempts
+        ),
+        "passed": sum(one["kind"] == "pass-through" for one in events),
+        "through": through,
+        "reasons": "".join(words for end, words in reasons.items() if end in through),
+        "deepest": deepest,
+        "beyond": deepest - EVENTS["touch"],
+        "apart": max(one["force"] for one in found.numbers["checks"] if one["stage"] == "coupled"),
+    }

@@ -42,6 +42,10 @@ class Study:
         return [*files, write_numbers(folder / f"{name}.json", self.numbers)]
 
 
+Facts = Mapping[str, Any]
+"""Numbers that bounds and sentences of ``claims.toml`` name, many of them by formulation, division or event."""
+
+
 def column(rows: Sequence[Row], name: str, **of: object) -> Array:
     """Return a column of a table, in the rows with some values."""
     return np.array([row[name] for row in rows if all(row[key] == value for key, value in of.items())])
@@ -55,6 +59,11 @@ def stops(runs: Mapping[str, Response]) -> list[str]:
 def reached(response: Response) -> float:
     """Return the last load parameter reached."""
     return float(max(response.load_parameter, default=0.0))
+
+
+def percent(value: float) -> str:
+    """Return a ratio in percent, with three digits."""
+    return f"{100.0 * value:.3g} %" if value >= 1e-6 else f"{100.0 * value:.0e} %"
 
 
 SIMPLE, CANTILEVER = EULER_BERNOULLI_SIMPLE.name, EULER_BERNOULLI_CANTILEVER.name

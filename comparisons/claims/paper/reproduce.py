@@ -10,11 +10,10 @@ from string import Formatter
 from typing import Any, NamedTuple
 
 from comparisons.claims.names import FIGURES
-from comparisons.claims.paper.facts import FACTS, Facts, percent
-from comparisons.claims.paper.fig7 import cantilever_shapes, critical_areas
-from comparisons.claims.paper.fig8 import ks_shapes
-from comparisons.claims.paper.fig9 import double_beam
-from comparisons.claims.paper.figure import Study
+from comparisons.claims.paper.fig7 import cantilever_shapes, critical_areas, of_critical_areas, of_lifts
+from comparisons.claims.paper.fig8 import ks_shapes, of_shapes
+from comparisons.claims.paper.fig9 import double_beam, of_double_beam
+from comparisons.claims.paper.figure import Facts, Study, percent
 from comparisons.files import writable_folder, write_text
 from comparisons.output import Report, markdown
 from comparisons.show.pages import Section, picture, provenance, table, write_page
@@ -42,7 +41,7 @@ class Verdict(StrEnum):
 
 
 Bounds = Mapping[str, tuple[float, float]]
-"""The least and the greatest value of numbers of `facts`; of a list, of all its values."""
+"""The least and the greatest value of facts; of a list, of all its values."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,7 +49,7 @@ class Claim:
     """One claim, however often the paper makes it: every place in [P] where it stands, with what is said there.
 
     It holds within the bounds `holds` together, or in each of the `readings` of what the paper does not say; in size within `in_size`, too.
-    The number behind the verdict and the reason have names of numbers of `facts` in braces.
+    The number behind the verdict and the reason have names of facts in braces.
     """
 
     name: str
@@ -73,7 +72,7 @@ class Claim:
 
 
 class _Words(Formatter):
-    """Sentences with numbers: the format ``percent`` is `facts.percent`."""
+    """Sentences with numbers: the format ``percent`` is that of `percent`."""
 
     def format_field(self, value: Any, format_spec: str) -> str:
         return percent(value) if format_spec == "percent" else str(super().format_field(value, format_spec))
@@ -125,7 +124,7 @@ def verdict(readings: Sequence[bool | None], *, in_size: bool = True) -> Verdict
 
 def judged(found: Mapping[str, Study], *, quick: bool) -> list[Judgement]:
     """Return the judgements on the claims whose figure was studied."""
-    facts = {figure: FACTS[figure](study) for figure, study in found.items()}
+    facts = {figure: STUDIES[figure][1](study) for figure, study in found.items()}
     return [
         claim.judged(facts[claim.figure], decides=not (quick and claim.figure in COARSE))
         for claim in CLAIMS
@@ -155,13 +154,13 @@ whose contact force is an unknown. EI/L^2 is the unit of the unbalanced force.
 {markdown([HEADER, *rows])}"""
 
 
-STUDIES: dict[str, Callable[..., Study]] = {
-    "fig7a": cantilever_shapes,
-    "fig7b": critical_areas,
-    "fig8": ks_shapes,
-    "fig9": double_beam,
+STUDIES: dict[str, tuple[Callable[..., Study], Callable[[Study], Facts]]] = {
+    "fig7a": (cantilever_shapes, of_lifts),
+    "fig7b": (critical_areas, of_critical_areas),
+    "fig8": (ks_shapes, of_shapes),
+    "fig9": (double_beam, of_double_beam),
 }
-"""How each figure of `FIGURES` is computed."""
+"""How each figure of `FIGURES` is computed, and what it tells of its claims."""
 
 
 def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[list[Path], list[str]]:
@@ -171,7 +170,7 @@ def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[
     files: list[Path] = []
     for number, figure in enumerate(names := list(FIGURES) if name == "all" else [name], 1):
         report(f"[{number}/{len(names)}] {figure}: {FIGURES[figure]}")
-        found[figure] = STUDIES[figure](quick=quick, report=lambda line: report(f"  {line}"))
+        found[figure] = STUDIES[figure][0](quick=quick, report=lambda line: report(f"  {line}"))
         files += found[figure].write(figure, folder)
     judgements = judged(found, quick=quick)
     files.append(folder / ("claims.md" if name == "all" else f"claims-{name}.md"))

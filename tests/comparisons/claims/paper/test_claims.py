@@ -6,7 +6,7 @@ import pytest
 # not public: verdicts on numbers that no run gives, and the floor of an element's forces, which no solution shows
 from comparisons.claims.paper import fig7 as study
 from comparisons.claims.paper.approach import NEAREST, approaches
-from comparisons.claims.paper.facts import KS
+from comparisons.claims.paper.fig8 import KS
 from comparisons.claims.paper.fig9 import EVENTS as EXACT
 from comparisons.claims.paper.fig9 import LOWER, TIP, UPPER
 from comparisons.claims.paper.figure import CANTILEVER, MIXED, SIMPLE, TIMOSHENKO, Study
