@@ -163,7 +163,7 @@ def test_every_claim_is_judged_by_its_numbers():
 
 def ways(element, tolerance):
     """The ways of the contact to the beam's nodes at a fixed tolerance."""
-    return approaches(to_structure(study.lifted(4.2), element=element), tolerance)
+    return list(approaches(to_structure(study.lifted(4.2), element=element), tolerance))
 
 
 @pytest.mark.slow
