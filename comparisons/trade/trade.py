@@ -179,16 +179,14 @@ def orders(trade: Trade, quantity: str) -> Iterator[Line]:
         floor = ABOVE * trade.uncertainty(case.model, "path", quantity)
         errors = [row.error("path", quantity, own=True) for row in known]
         order = convergence([row.resolution for row in known], errors, floor)
-        unknowns, seconds = (
-            [row.spent(cost) for row in known[-LARGEST:]] for cost in ("unknowns", "seconds")
-        )
+        costs = ([row.spent(cost) for row in known[-LARGEST:]] for cost in ("unknowns", "seconds"))
         given = [contact for contact in case.scene.contacts if contact.penetration is not None]
         yield {
             "family": case.family + (f", penetration {given[0].penetration:g}" if given else ""),
             "settings": len(chain),
             "order": None if order.exponent is None else -order.exponent,
             **_range("order", order),
-            "cost_exponent": (cost := power_law(unknowns, seconds)).exponent,
+            "cost_exponent": (cost := power_law(*costs)).exponent,
             **_range("cost_exponent", cost),
         }
 

@@ -87,9 +87,8 @@ class Against:
             return Finding(name=self.name, error=np.inf, allowed=allowed, why=why)
         answer = in_units_of(beam, case.scene.beams[0], own)
         found = [difference(answer, other, self.case.scene, quantity) for quantity in COMPARED]
-        return Finding(
-            name=self.name, error=float(np.fmax.reduce(found, initial=0.0)), allowed=allowed, why=why
-        )
+        error = float(np.fmax.reduce(found, initial=0.0))
+        return Finding(name=self.name, error=error, allowed=allowed, why=why)
 
 
 def energy(case: Case, own: Response) -> Finding:

@@ -81,10 +81,8 @@ def value(response: Response, words: str, at: float) -> float:
         return response.contacts[more[0]].slip_off
     if what == "event":
         kind, pair, number = more
-        located = [
-            one.load_parameter for one in response.events or () if [one.kind, one.pair] == [kind, pair]
-        ]
-        return float(next(iter(located[int(number) :]), np.nan))
+        events = [one for one in response.events or () if [one.kind, one.pair] == [kind, pair]]
+        return next((one.load_parameter for one in events[int(number) :]), np.nan)
     k = step(response, at)
     if what == "axis":
         beam, part, direction = more
@@ -103,9 +101,7 @@ def step(response: Response, load_parameter: float) -> int:
     return k
 
 
-def deflected(
-    scene: Scene, response: Response, style: str, shown: Sequence[float] = (1.0,)
-) -> Iterator[Line]:
+def deflected(scene: Scene, response: Response, style: str, shown: Sequence[float]) -> Iterator[Line]:
     """Yield the deflected axes of all beams at some load parameters."""
     for beam in scene.beams:
         yield from ((style, response.axis_line(beam.name, step(response, t))[1]) for t in shown)
@@ -273,10 +269,11 @@ def in_plane_strain(_: Problem, answers: Answers) -> Sequence[float]:
     return float(contact.force[-1]), float(contact.arc_position[-1])
 
 
-def work_over_energy(_: Problem, answers: Answers, panels: int = 20) -> Sequence[float]:
+def work_over_energy(_: Problem, answers: Answers) -> Sequence[float]:
     """Work of a pin, by Gauss quadrature at whose points the solver is called, over the energy stored, a penalty's included."""
     import fem_reference
 
+    panels = 20
     gauss, weights = np.polynomial.legendre.leggauss(4)
     t = np.append(((np.arange(panels)[:, None] + (1.0 + gauss) / 2.0) / panels).ravel(), 1.0)
     result = _solved_directly(answers, t)

@@ -35,9 +35,7 @@ class Picture:
     axes: Sequence[str] = ()  #: Labels of the axes, by default places.
     shown: Sequence[float] = (1.0,)  #: Load parameters whose deflected axes are drawn.
     exact: str = ""  #: A model whose answer is the exact one.
-    guide: Sequence[
-        float
-    ] = ()  #: Order of a line for the eye and its first value, where both axes are logarithmic.
+    guide: Sequence[float] = ()  #: Order and first value of a line for the eye, on logarithmic axes.
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -185,9 +183,8 @@ def _trial(row: dict[str, Any], scene: Scene, path: Path) -> Trial:
     strip: Any = tuple(map(int, mesh.split("x"))) if mesh else None
     row.setdefault("setting", f"{mesh} elements" if mesh else beams)
     own = _scene(row.pop("scene"), changes, path) if "scene" in row else varied(scene, changes)
-    return Trial(
-        key=key, options=Options(element=element or None, elements=elements, mesh=strip), scene=own, **row
-    )
+    options = Options(element=element or None, elements=elements, mesh=strip)
+    return Trial(key=key, options=options, scene=own, **row)
 
 
 def problems(names: Sequence[str] | None = None, folder: Path = FOLDER) -> list[Path]:

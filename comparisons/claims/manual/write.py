@@ -85,17 +85,17 @@ An error is that of the worst quantity, relative to its exact value, or to the l
 this page, its pictures and `manual.json`; it took {seconds:.0f} s with {versions}.
 
 """
-SECTION = """<a id="{problem.name}"></a>
+SECTION = """<a id="{case.problem.name}"></a>
 
-## {problem.title}
+## {case.problem.title}
 
-{problem.statement}
+{case.problem.statement}
 
-Purpose: {problem.purpose}
+Purpose: {case.problem.purpose}
 
-Exact value: {problem.source}.
+Exact value: {case.problem.source}.
 
-![{problem.title}]({picture})
+![{case.problem.title}]({case.picture})
 
 """
 COLUMNS = (
@@ -151,9 +151,7 @@ def _section(case: Case) -> str:
         f"- {item.trial.label}: {item.trial.why}.{f' Stopped: {item.stopped}.' * bool(item.stopped)}\n"
         for item in items
     )
-    return (
-        SECTION.format(problem=case.problem, picture=case.picture) + markdown(rows) + "\n" + "".join(reasons)
-    )
+    return SECTION.format(case=case) + markdown(rows) + "\n" + "".join(reasons)
 
 
 def _numbers(case: Case) -> dict[str, Any]:
@@ -192,9 +190,8 @@ def judged(problem: Problem) -> Case:
     """Return a problem with the judgements on all its models; a measure without a value for every quantity is a `ValueError`."""
     answers = [Answers(problem, trial) for trial in problem.trials]
     judgements = tuple(_judged(problem, one) for one in answers)
-    return Case(
-        problem=problem, judgements=judgements, lines=tuple(line for one in answers for line in one.lines)
-    )
+    lines = tuple(line for one in answers for line in one.lines)
+    return Case(problem=problem, judgements=judgements, lines=lines)
 
 
 def _judged(problem: Problem, answers: Answers) -> Judgement:

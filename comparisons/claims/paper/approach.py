@@ -114,10 +114,9 @@ class _March:
         # the starts are extrapolated from states that lie apart: those at the node know only its round-off
         apart: list[State] = []
         for state in reversed(trail):
-            if len(apart) < 3 and (
-                not apart or apart[0].load_parameter - state.load_parameter > _LARGEST / 2
-            ):
+            if not apart or apart[0].load_parameter - state.load_parameter > _LARGEST / 2:
                 apart.insert(0, state)
+        apart = apart[-3:]
         for part in _BEHIND if len(apart) > 1 else ():
             ahead = (node - self.arc(apart[-1])) / self.l0 + part
             target = apart[-1].load_parameter + ahead / self.rate(apart)
