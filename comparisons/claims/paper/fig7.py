@@ -31,7 +31,7 @@ from comparisons.models import ROD, TSM, solve
 from comparisons.models.options import Options
 from comparisons.models.tsm import to_structure
 from comparisons.output import Report, Row
-from comparisons.response import Array, Response
+from comparisons.response import Response
 from comparisons.scene import Scene, load_scene
 from comparisons.show import palette
 
@@ -79,15 +79,12 @@ def critical_areas(*, quick: bool, report: Report) -> Study:
                 curve = zip(way.load_parameter * travel, way.ratio, strict=True) if tolerance == shown else ()
                 curves += ({**place, "displacement": d, "ratio": ratio} for d, ratio in curve)
     report("floor of the unbalanced force")
-    floors = [
-        {
-            **of,
-            "ratio": ratio,
-            "floor": force_floor(of["element"], ratio, of["end"], of["psi"], samples=8 if quick else 50),
-        }
-        for of, ratio in product(_FLOORS, RATIOS)
-    ]
+    floors, samples = list[Row](), 8 if quick else 50
+    for of, ratio in product(_FLOORS, RATIOS):
+        floor = force_floor(of["element"], ratio, of["end"], of["psi"], samples=samples)
+        floors.append({**of, "ratio": ratio, "floor": floor})
     numbers = measured(areas, floors)
+    drawn = partial(_drawn_floors, floors, numbers["slopes_of_the_floor"])
     panels = [partial(_curves, curves, start) for start in sorted({row["start"] for row in curves})]
     title = f"How near to a beam node equilibrium is found, tolerance {shown:.0e} EI/L$^2$;\na large mark is the last equilibrium"
     return Study(
@@ -96,9 +93,7 @@ def critical_areas(*, quick: bool, report: Report) -> Study:
         pictures={
             "fig7b": partial(draw, panels, tall=2.3, title=title),
             "fig7b-tolerance": partial(draw, [partial(_areas, numbers["critical_area"])], tall=4.5),
-            "fig7b-floor": partial(
-                draw, [partial(_drawn_floors, floors, numbers["slopes_of_the_floor"])], tall=4.5
-            ),
+            "fig7b-floor": partial(draw, [drawn], tall=4.5),
         },
     )
 
@@ -110,49 +105,31 @@ def _shown(tolerances: tuple[float, ...]) -> float:
 def measured(areas: list[Row], floors: list[Row]) -> dict[str, Any]:
     """Return the numbers of the figure from its rows; an area of 1 stands for no equilibrium."""
     tolerances = tuple(dict.fromkeys(row["tolerance"] for row in areas))
-    critical = {
-        element: {
-            f"{at:.0e}": _spread(column(areas, "smallest", element=element, tolerance=at))
-            for at in tolerances
-        }
-        for element in LABELS
-    }
-    return {
-        "tolerance_of_the_curves": _shown(tolerances),
-        "critical_area": critical,
-        "printed": PRINTED,
-        "tolerance_for_the_printed": {
-            element: _tolerance_for(critical[element], float(np.sqrt(low * high)))
-            for element, (low, high) in PRINTED.items()
-        },
-        "slopes_of_the_floor": _slopes(floors),
-    }
-
-
-def _spread(areas: Array) -> dict[str, float]:
-    found = np.nan_to_num(areas, nan=1.0)
-    return {"smallest": found.min(), "median": float(np.median(found)), "largest": found.max()}
-
-
-def _tolerance_for(areas: Mapping[str, Mapping[str, float]], area: float) -> float:
-    """Tolerance at which the median is `area`, interpolated in logarithms; nan outside what was measured."""
-    medians = np.log([max(one["median"], 1e-300) for one in areas.values()])
-    order = np.argsort(medians)
-    tolerances = np.log([float(tolerance) for tolerance in areas])
-    found = np.interp(np.log(area), medians[order], tolerances[order], left=np.nan, right=np.nan)
-    return float(np.exp(found))
-
-
-def _slopes(floors: list[Row]) -> dict[str, list[float]]:
-    """Slopes of the straight lines fitted to the logarithms of the floors in section 4.1, one per end of the element."""
-    low, high = FITTED
-    slopes: dict[str, list[float]] = {}
+    critical: dict[str, dict[str, dict[str, float]]] = {element: {} for element in LABELS}
+    for element, at in product(LABELS, tolerances):
+        found = np.nan_to_num(column(areas, "smallest", element=element, tolerance=at), nan=1.0)
+        spread = {"smallest": found.min(), "median": float(np.median(found)), "largest": found.max()}
+        critical[element][f"{at:.0e}"] = spread
+    takes = {}
+    for element, printed in PRINTED.items():
+        # where the median is in the middle, interpolated in logarithms; nan outside what was measured
+        medians = np.log([max(one["median"], 1e-300) for one in critical[element].values()])
+        rising, middle = np.argsort(medians), np.log(np.sqrt(np.prod(printed)))
+        at = np.interp(middle, medians[rising], np.log(tolerances)[rising], left=np.nan, right=np.nan)
+        takes[element] = float(np.exp(at))
+    (low, high), slopes = FITTED, dict[str, list[float]]()
     for of in (of for of in _FLOORS if of["psi"] == PSI):
         ratio, floor = (column(floors, name, **of) for name in ("ratio", "floor"))
         fitted = (low * (1.0 - 1e-9) < ratio) & (ratio < high * (1.0 + 1e-9))
         slope = np.polyfit(np.log(ratio[fitted]), np.log(floor[fitted]), 1)[0]
         slopes.setdefault(of["element"], []).append(float(slope))
-    return slopes
+    return {
+        "tolerance_of_the_curves": _shown(tolerances),
+        "critical_area": critical,
+        "printed": PRINTED,
+        "tolerance_for_the_printed": takes,
+        "slopes_of_the_floor": slopes,
+    }
 
 
 def _curves(curves: list[Row], start: float, axes: Any) -> None:
