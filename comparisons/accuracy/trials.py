@@ -146,11 +146,14 @@ def _graded(mesh: Scene, response: Response, wanted: int, order: int) -> Scene:
     grids = [response.grid(k).point_data for k in range(len(response.load_parameter))]
     arcs, densities, ends = {}, {}, {}
     for number, beam in enumerate(mesh.beams):
-        own = [
-            {name: data[name][data["beam"] == number] for name in ("arc", "N", "V", "M")} for data in grids
-        ]
-        arcs[beam.name] = np.append(own[0]["arc"][::2], beam.length)
-        densities[beam.name] = np.max([_density(data, beam.EI, order) for data in own], axis=0)
+        parts = [data["beam"] == number for data in grids]
+        arc, kappa, N, V = (
+            np.array([data[name][own] for data, own in zip(grids, parts, strict=True)])
+            for name in ("arc", *"MNV")
+        )
+        arcs[beam.name] = np.append(arc[0, ::2], beam.length)
+        kappa, N, V = (one.reshape(len(grids), -1, 2).mean(axis=2) / beam.EI for one in (kappa, N, V))
+        densities[beam.name] = ((kappa**4 + N**2 + V**2) ** (order / (4 * (order + 1)))).max(axis=0)
     least = LEAST * max(float(values.max()) for values in densities.values())
     sums = {
         name: np.append(0.0, np.cumsum(np.maximum(values, least) * np.diff(arcs[name])))
@@ -163,13 +166,6 @@ def _graded(mesh: Scene, response: Response, wanted: int, order: int) -> Scene:
         inner = np.interp(np.arange(1, count) / count * total[-1], total, arcs[beam.name] / beam.length)
         ends[beam.name] = np.array([0.0, *inner, 1.0])
     return _with(mesh, ends)
-
-
-def _density(data: Mapping[str, Array], EI: float, order: int) -> Array:
-    """Return the density of elements for a state, up to a constant factor."""
-    kappa, N, V = (data[name].reshape(-1, 2).mean(axis=1) / EI for name in ("M", "N", "V"))
-    density: Array = (kappa**4 + N**2 + V**2) ** (order / (4 * (order + 1)))
-    return density
 
 
 def solid(scene: Scene, accuracy: float, quantity: str) -> Iterator[Trial]:

@@ -63,12 +63,6 @@ def raised(beam: BeamSpec, x: float, lift: float, *, steps: int = 10) -> Scene:
     return pushed(beam, (x, 0.0), (x, lift), steps=steps)
 
 
-def rolled_up(beam: BeamSpec, turns: int) -> Scene:
-    """Return `beam` under a moment at its tip that bends it to `turns` circles."""
-    load = LoadSpec(beam="beam", end="end", moment=2 * math.pi * turns * beam.EI / beam.length)
-    return Scene(name="rolled-up", load_parameters=8, beams=(beam,), loads=(load,))
-
-
 def cycles(beam: BeamSpec, count: int) -> Scene:
     """Return a pin under ``.9 L`` that touches, lifts the beam by ``.1 L`` and leaves it, `count` times; two states a cycle."""
     L = beam.length
@@ -256,9 +250,11 @@ def _depth(_: bool) -> Iterator[Cell]:
     }
     for column, (scene, elements) in places.items():
         yield from everything(column, scene, elements, None if scene.beams[0].height is None else MESH)
+    strip = cantilever()
     for turns, kind in product((1, 2), kinds()):
-        elements = 40 * turns if kind.meshed else 1
-        one = beam(f"roll-up, {turns}", rolled_up(cantilever(), turns), kind, elements)
+        load = LoadSpec(beam="beam", end="end", moment=2 * math.pi * turns * strip.EI / strip.length)
+        scene = Scene(name="rolled-up", load_parameters=8, beams=(strip,), loads=(load,))
+        one = beam(f"roll-up, {turns}", scene, kind, 40 * turns if kind.meshed else 1)
         yield replace(one, against=(), law=circle)
 
 

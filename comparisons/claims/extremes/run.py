@@ -38,9 +38,13 @@ def sections(judgements: Sequence[Judgement]) -> list[Section]:
     parts = [Section(title="How to read the maps", html=f"<style>{style}</style><p>{LEGEND}</p>{_key()}")]
     for name, axis in AXES.items():
         own = [item for item in judgements if item.cell.axis == name]
-        if own:
-            about = f"<p>{escape(axis.scene)}. {counted(own)}.</p>"
-            parts.append(Section(title=axis.title, html=about + _map(own)))
+        if not own:
+            continue
+        at = {(item.cell.row, item.cell.column): item for item in own}
+        rows, columns = (list(dict.fromkeys(names)) for names in zip(*at, strict=True))
+        cells = (("", row, "".join(_cell(at.get((row, column))) for column in columns)) for row in rows)
+        table = f'<div class="map">{markup(["", *columns], cells)}</div>'
+        parts.append(Section(title=axis.title, html=f"<p>{escape(axis.scene)}. {counted(own)}.</p>{table}"))
     return parts
 
 
@@ -60,16 +64,6 @@ def _key() -> str:
     }  # fmt: skip
     marks = "".join(f'<td class="{verdict}">{MARKS[verdict]}{text}</td>' for verdict, text in words.items())
     return f'<table class="key"><tr><th>completed and right, error</th>{shades}{marks}</tr></table>'
-
-
-def _map(judgements: Sequence[Judgement]) -> str:
-    at = {(item.cell.row, item.cell.column): item for item in judgements}
-    columns = list(dict.fromkeys(column for _, column in at))
-    rows = (
-        ("", row, "".join(_cell(at.get((row, column))) for column in columns))
-        for row in dict.fromkeys(row for row, _ in at)
-    )
-    return f'<div class="map">{markup(["", *columns], rows)}</div>'
 
 
 def _cell(item: Judgement | None) -> str:
