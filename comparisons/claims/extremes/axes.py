@@ -150,7 +150,8 @@ def _units(quick: bool) -> Iterator[Cell]:
         scene = half_circle(cantilever(length=length, youngs_modulus=modulus))
         own = everything(f"L {length:g}, E {modulus:g}", scene, 10, COARSE)
         for one, unit in zip(own, plain, strict=True):
-            yield one.also(Against(case=unit.case, name="itself at L = 1, E = 1", allowed=UNITS))
+            itself = Against(case=unit.case, name="itself at L = 1, E = 1", allowed=UNITS)
+            yield replace(one, against=(*one.against, itself))
 
 
 def _slenderness(quick: bool) -> Iterator[Cell]:
@@ -160,7 +161,7 @@ def _slenderness(quick: bool) -> Iterator[Cell]:
         mesh = MESH if slenderness <= 1e3 and not (quick and slenderness == 1e3) else None
         for one in everything(f"{slenderness:g}", scene, 40, mesh):
             promised = one.row in fourth and 50 <= slenderness <= 1e5
-            yield one.also(rod(scene, TARGET)) if promised else one
+            yield replace(one, against=(*one.against, rod(scene, TARGET))) if promised else one
 
 
 def _shear(quick: bool) -> Iterator[Cell]:

@@ -143,10 +143,6 @@ class Cell:
         """The case, and those that it is compared with."""
         return (self.case, *(one.case for one in self.against))
 
-    def also(self, other: Against) -> "Cell":
-        """Return the cell with a further comparison."""
-        return replace(self, against=(*self.against, other))
-
 
 class Verdict(StrEnum):
     """Verdict on a cell."""
