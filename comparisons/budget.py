@@ -21,7 +21,7 @@ from comparisons.models import ROD, SOLID, TSM, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Count, uncounted
 from comparisons.quantities import forces, moments, size
-from comparisons.response import Array, Response
+from comparisons.response import Array
 from comparisons.scene import Scene
 
 TIMES = (0.25, 0.5, 0.75, 1.0)
@@ -48,21 +48,11 @@ Values = Mapping[str, Array]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Budget:
-    """The difference of TSM and solid and its parts, relative to the exact rods' value at the same load parameter.
-
-    Attributes
-    ----------
-    scene : str
-        Name.
-    total : dict of ndarray, shape (4,)
-        ``(q_TSM - q_solid) / q_rod`` by quantity, at the load parameters `TIMES`; nan where the rods' value is zero or the pair is open.
-    parts : dict of dict of ndarray, shape (4,)
-        By quantity and part.
-    """
+    """The difference of TSM and solid and its parts, relative to the exact rods' value at the same load parameter."""
 
     scene: str
-    total: Values
-    parts: dict[str, Values]
+    total: Values  #: ``(q_TSM - q_solid) / q_rod`` by quantity; nan where the rods' value is zero or the pair is open.
+    parts: dict[str, Values]  #: By quantity and part.
 
     def rest(self, quantity: str) -> Array:
         """Difference that the parts do not explain, over the total."""
@@ -72,29 +62,26 @@ class Budget:
 
 
 def budget_cases(scene: Scene) -> dict[str, Case]:
-    """Return the solutions behind the budget of a scene, by name; a name ``finer ...`` is that of a mesh twice as fine."""
+    """Return the solutions behind the budget by name; a name ``finer ...`` is that of a mesh twice as fine."""
     short = replace(scene, load_parameters=STEPS)
     free: Changes = {("contact", "penalty"): None, ("contact", "penetration"): 1e-12}
     rod_law: Changes = {("beam", "material"): "biot-linear"}
+    halved: Changes = {("beam", one.name, "mesh"): (2 * one.mesh[0], 2 * one.mesh[1]) for one in scene.beams}
     solids = {
         "bodies": short,
         "linear": changed(short, rod_law),
         "free": changed(short, free),
         "like rods": changed(short, {**rod_law, **free}),
+        "finer bodies": changed(short, halved),
+        "finer like rods": changed(short, {**rod_law, **free, **halved}),
+        "careful": replace(short, load_parameters=2 * STEPS),
     }
-    solids |= {f"finer {name}": _refined(solids[name]) for name in ("bodies", "like rods")}
-    solids["careful"] = replace(short, load_parameters=2 * STEPS)
+    beams = {"beams": ELEMENTS, "finer beams": 2 * ELEMENTS}
     return {
         "rods": Case(scene=short, model=ROD.name),
-        "beams": Case(scene=short, model=TSM.name, options=Options(elements=ELEMENTS)),
-        "finer beams": Case(scene=short, model=TSM.name, options=Options(elements=2 * ELEMENTS)),
+        **{name: Case(scene=short, model=TSM.name, options=Options(elements=n)) for name, n in beams.items()},
         **{name: Case(scene=one, model=SOLID.name) for name, one in solids.items()},
     }
-
-
-def _refined(scene: Scene) -> Scene:
-    beams = (replace(beam, mesh=(2 * beam.mesh[0], 2 * beam.mesh[1])) for beam in scene.beams)
-    return replace(scene, beams=tuple(beams))
 
 
 def error_budget(scene: Scene, count: Count = uncounted) -> Budget:
@@ -108,38 +95,37 @@ def error_budget(scene: Scene, count: Count = uncounted) -> Budget:
     ModelError
         If the solid cannot state the scene, a solution behind the budget stops, or no quantity has a value.
     """
-    found: dict[str, Values] = {}
+    found: dict[str, Array] = {}  # of shape (quantities, 4)
+    names: list[str] = []
     cases = budget_cases(scene)
     for name, case in cases.items():
-        found[name] = _values(case)
-        count(len(found), len(cases))
-        if not any(np.isfinite(values).any() for values in found["rods"].values()):
+        values = _values(case)
+        names = names or [q for q, one in values.items() if np.isfinite(one).any()]
+        if not names:
             raise ModelError(
                 "the budget is relative to the exact rods, which have no force at its load parameters"
             )
-
-    def parts(q: str) -> dict[str, Array]:
-        rod, beams, solid, like_rod = (found[name][q] for name in ("rods", "beams", "bodies", "like rods"))
-        # the limit minus the answer, from that on a mesh twice as fine (Richardson)
-        beam_step, solid_step, like_rod_step = (
-            (found[f"finer {name}"][q] - found[name][q]) / (1.0 - 2.0**-order)
-            for name, order in (("beams", 4), ("bodies", 2), ("like rods", 2))
-        )
-        return {
-            "TSM mesh": -beam_step,
-            "TSM theory": beams + beam_step - rod,
-            "solid beside the rod": rod - like_rod - like_rod_step,
-            "material law": found["linear"][q] - solid,
-            "solid mesh": solid_step,
-            "penalty": found["free"][q] - solid,
-            "load steps": found["careful"][q] - solid,
-        }
-
-    rods = {q: values for q, values in found["rods"].items() if np.isfinite(values).any()}
+        found[name] = np.array([values[q] for q in names])
+        count(len(found), len(cases))
+    rod, beams, solid, like_rod = (found[name] for name in ("rods", "beams", "bodies", "like rods"))
+    # the limit minus the answer, from that on a mesh twice as fine (Richardson)
+    beam_step, solid_step, like_rod_step = (
+        (found[f"finer {name}"] - found[name]) / (1.0 - 2.0**-order)
+        for name, order in (("beams", 4), ("bodies", 2), ("like rods", 2))
+    )
+    parts = {
+        "TSM mesh": -beam_step,
+        "TSM theory": beams + beam_step - rod,
+        "solid beside the rod": rod - like_rod - like_rod_step,
+        "material law": found["linear"] - solid,
+        "solid mesh": solid_step,
+        "penalty": found["free"] - solid,
+        "load steps": found["careful"] - solid,
+    }
     return Budget(
         scene=scene.name,
-        total={q: (found["beams"][q] - found["bodies"][q]) / rod for q, rod in rods.items()},
-        parts={q: {name: part / rod for name, part in parts(q).items()} for q, rod in rods.items()},
+        total=dict(zip(names, (beams - solid) / rod, strict=True)),
+        parts={q: {name: part[k] / rod[k] for name, part in parts.items()} for k, q in enumerate(names)},
     )
 
 
@@ -148,25 +134,21 @@ def _values(case: Case) -> Values:
     response = solve(case.scene, case.model, case.options)
     if not response.completed:
         raise ModelError(f"the budget's {case.model} stopped: {response.message}")
+    held = {item.node for item in case.scene.all_supports if "rotation" in item.held}
+    acting = {name: size(values) for name, values in forces(response).items()}
+    kinds = {
+        f"{'contact' if response.contacts else 'support'}_force": acting,
+        "arc_position": {pair: contact.arc_position for pair, contact in response.contacts.items()},
+        "clamp_moment": {node: values for node, values in moments(response).items() if node in held},
+    }
     ks = [int(np.argmin(np.abs(response.load_parameter - t))) for t in TIMES]
     found = {}
-    for kind, columns in _kinds(response, case.scene).items():
+    for kind, columns in kinds.items():
         largest = max((float(np.abs(values).max(initial=0.0)) for values in columns.values()), default=0.0)
         for name, values in columns.items():
             seen = np.abs(values[ks]) > LEAST * largest
             found[f"{kind} {name}" if len(columns) > 1 else kind] = np.where(seen, values[ks], np.nan)
     return found
-
-
-def _kinds(response: Response, scene: Scene) -> dict[str, Values]:
-    """Return the histories of all quantities by kind, and by pair or supported end."""
-    acting = {name: size(values) for name, values in forces(response).items()}
-    held = {item.node for item in scene.all_supports if "rotation" in item.held}
-    turning = {node: values for node, values in moments(response).items() if node in held}
-    if not response.contacts:
-        return {"support_force": acting, "clamp_moment": turning}
-    arcs = {pair: contact.arc_position for pair, contact in response.contacts.items()}
-    return {"contact_force": acting, "arc_position": arcs, "clamp_moment": turning}
 
 
 def budget_rows(budget: Budget) -> Iterator[dict[str, Any]]:

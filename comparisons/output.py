@@ -48,6 +48,12 @@ def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool] = ()) -> list[s
     return ["  ".join(side(text, width) for side, text, width in line).rstrip() for line in lines]
 
 
+def markdown(rows: Sequence[Sequence[str]]) -> str:
+    """Return rows of cells, the header first, as a table in Markdown."""
+    lines = ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |\n" for row in rows]
+    return "".join([lines[0], "|" + "---|" * len(rows[0]) + "\n", *lines[1:]])
+
+
 def cell(value: Any) -> str:
     """Return a value as text: a number in three digits, what is not there as a dash."""
     if value is None or (isinstance(value, float) and math.isnan(value)):

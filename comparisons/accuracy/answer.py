@@ -1,7 +1,8 @@
 """The answer to a scene at a requested accuracy: the model that the scene requires, and the cheapest setting that suffices."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import combinations
 from time import perf_counter
 from typing import Any
 
@@ -156,12 +157,10 @@ def _checked(scene: Scene, quantity: str, model: str, element: str | None) -> Mo
         raise ModelError(f"model = {model}: has no resolution to choose; {refinable} have")
     if element is not None and "element" not in chosen.options:
         raise ModelError(f"{model}: element = {element}: not an option of this model")
-    refused = chosen.refusal(scene)
-    if refused is not None:
+    unknown = QUANTITIES[quantity].refusal(scene, chosen.continuum)
+    refused = chosen.refusal(scene) or (unknown and f"quantity = {quantity}: {unknown}")
+    if refused:
         raise ModelError(refused)
-    refused = QUANTITIES[quantity].refusal(scene, chosen.continuum)
-    if refused is not None:
-        raise ModelError(f"quantity = {quantity}: {refused}")
     return chosen
 
 
@@ -172,61 +171,47 @@ def without_idle(scene: Scene) -> tuple[Scene, tuple[str, ...]]:
     loaded |= {history.load.beam for history in scene.load_histories}
     loaded |= {beam.name for beam in scene.beams if beam.density is not None}
     loaded |= {motion.support.beam for motion in scene.prescribed_motions.values() if motion.moves}
-    meeting = [
-        {contact.node.split(".")[0], contact.beam} for contact in scene.contacts if contact.node not in pins
-    ]
-    meeting += [
-        {one.name, other.name}
-        for one in scene.beams
-        for other in scene.beams
-        if {one.start, one.end} & {other.start, other.end}
-    ]
+    meeting = [{one.node.split(".")[0], one.beam} for one in scene.contacts if one.node not in pins]
+    ends = {beam.name: {beam.start, beam.end} for beam in scene.beams}
+    meeting += [{one, other} for one, other in combinations(ends, 2) if ends[one] & ends[other]]
     while more := {name for beams in meeting if beams & loaded for name in beams} - loaded:
         loaded |= more
-    idle = [beam.name for beam in scene.beams if beam.name not in loaded]
-    if not idle:
-        return scene, ()
-    kept = replace(
-        scene,
-        beams=tuple(beam for beam in scene.beams if beam.name in loaded),
-        supports=tuple(support for support in scene.supports if support.beam in loaded),
-        springs=tuple(spring for spring in scene.springs if spring.beam in loaded),
-        hinges=tuple(hinge for hinge in scene.hinges if hinge.beam in loaded),
-        contacts=tuple(contact for contact in scene.contacts if contact.beam in loaded),
-    )
-    return kept, tuple(f'beam "{name}" lies on no load path: left out' for name in idle)
+    said = tuple(f'beam "{name}" lies on no load path: left out' for name in ends if name not in loaded)
+    kept: dict[str, Any] = {
+        kind: tuple(one for one in getattr(scene, kind) if one.beam in loaded)
+        for kind in ("supports", "springs", "hinges", "contacts")
+    }
+    beams = tuple(beam for beam in scene.beams if beam.name in loaded)
+    return (replace(scene, beams=beams, **kept), said) if said else (scene, said)
 
 
 def beam_theory(response: Response, scene: Scene) -> Theory | None:
-    """Return an estimate of the difference between beams and the solid bodies that they approximate.
-
-    Plane sections of height h neglect terms of second order in the face strain ``h kappa/2`` and in ``h/l``, with l the beam's length,
-    or the radius of its undeformed arc if that is smaller. A section that tapers has its own height and stiffness at every place.
-    The estimate is the larger of half the first square and the second square. The effect of the material law is not included.
-    On the main scene, `crossval run thin-beams` prints the differences 8.6e-4, 2.1e-4 and 5.7e-5 for h/L = .02, .01 and .005.
-    The estimates are 1.0e-3, 2.5e-4 and 6.3e-5. None if no beam's height is known, or no load parameter was reached.
-    """
+    """Return an estimate of the difference between beams and the solid bodies that they approximate."""
+    # plane sections neglect second orders of the face strain h kappa/2 and of h/l, l the length or the radius
+    # of an undeformed arc; on KS with h/L = .02, .01, .005 `crossval run thin-beams` prints 8.6e-4, 2.1e-4,
+    # 5.7e-5, and this 1.0e-3, 2.5e-4, 6.3e-5
     known = [(number, beam) for number, beam in enumerate(scene.beams) if beam.height is not None]
     steps = len(response.load_parameter)
     if not known or not steps:
         return None
     grids = [response.grid(k).point_data for k in np.unique(np.linspace(0, steps - 1, LOOKED_AT).astype(int))]
-    strain = kink = slender = 0.0
-    for number, beam in known:
-        slender = max(slender, beam.rectangle_height * max(1.0 / beam.length, abs(beam.curvature)))
-        for data in grids:
-            own = data["beam"] == number
-            strain = max(strain, _face_strain(beam, data["arc"][own], data["M"][own]))
-        for pair, contact in response.contacts.items():
-            if pair.endswith(f"->{beam.name}"):
-                kink = max(kink, float(np.abs(contact.force).max()) / beam.GA)
-    return Theory(error=max(strain**2 / 2, slender**2), slenderness=slender, strain=strain, kink=kink)
+    slender = max(beam.rectangle_height * max(1.0 / beam.length, abs(beam.curvature)) for _, beam in known)
+    strain = max(_face_strain(beam, data, data["beam"] == number) for number, beam in known for data in grids)
+    kinks = (
+        float(np.abs(contact.force).max()) / beam.GA
+        for _, beam in known
+        for pair, contact in response.contacts.items()
+        if pair.endswith(f"->{beam.name}")
+    )
+    error = max(strain**2 / 2, slender**2)
+    return Theory(error=error, slenderness=slender, strain=strain, kink=max(kinks, default=0.0))
 
 
-def _face_strain(beam: BeamSpec, arc: Array, moment: Array) -> float:
-    """Return the largest bending strain at a face, ``h M/(2 EI)``, at arc lengths with their moments, shape (m,)."""
+def _face_strain(beam: BeamSpec, data: Mapping[str, Array], own: Array) -> float:
+    """Return the largest bending strain at a face, ``h M/(2 EI)``, of the own points of a grid."""
+    moment = data["M"][own]
     if not beam.tapers:
         return beam.rectangle_height / 2 * float(np.abs(moment).max()) / beam.EI
-    parts = np.clip(arc / beam.length, 0.0, 1.0).tolist()
+    parts = np.clip(data["arc"][own] / beam.length, 0.0, 1.0).tolist()
     compliance = [beam.height_at(part) / (2.0 * beam.stiffness(part)[2]) for part in parts]
     return float(np.abs(moment * compliance).max())

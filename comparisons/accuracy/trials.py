@@ -48,12 +48,9 @@ class Trial(NamedTuple):
 
 
 def exact(scene: Scene, accuracy: float, quantity: str, *, alone: bool) -> Iterator[Trial]:
-    """Yield trials with one exact element a beam, at the tolerance of its integration that the accuracy needs.
-
-    The estimate is the integration error inside the elements plus Newton's tolerance, both divided by the size of the quantity.
-    A small load therefore needs a more accurate integration for the same relative error. Graded elements follow where the exact ones cannot
-    be accurate, unless they are to stand `alone`.
-    """
+    """Yield trials with one exact element a beam, at the tolerance of its integration that suffices."""
+    # a small load needs a sharper integration for the same relative error; graded elements follow where the
+    # exact ones fail
     tolerance = 1e-9
     while True:
         options = replace(TSM.reference, integration_tolerance=tolerance)
@@ -93,13 +90,9 @@ def _few(scene: Scene) -> int:
 
 
 def graded(scene: Scene, accuracy: float, quantity: str, kind: ClosedForm) -> Iterator[Trial]:
-    """Yield trials with elements in closed form, refined where the solution is curved and where forces act.
-
-    The answers on a mesh and on the mesh with all elements halved are compared at a few load parameters. Their difference gives the
-    error of the first mesh. If the error is too large, the next mesh has the number of elements that the order p predicts. Its density
-    is the largest of ``(kappa^4 + (N/EI)^2 + (V/EI)^2)^(p/(4 (p + 1)))`` over the load parameters, which gives all elements an equal
-    share of the error.
-    """
+    """Yield trials with elements in closed form, refined where the axis is curved and forces act."""
+    # a mesh is compared with the one of halved elements; the next has the number that the order predicts, with
+    # equal shares of the error: its density is (kappa^4 + (N/EI)^2 + (V/EI)^2)^(p/(4 (p + 1)))
     order, element, options, few = kind.order, kind.name, Options(element=kind.name), _few(scene)
     mesh = _with(scene, {beam.name: np.linspace(0.0, 1.0, FIRST + 1) for beam in scene.beams})
     for _ in range(ROUNDS):
@@ -151,19 +144,22 @@ def _halved(mesh: Scene) -> Scene:
 def _graded(mesh: Scene, response: Response, wanted: int, order: int) -> Scene:
     """Return a mesh of about `wanted` elements whose density follows the response."""
     grids = [response.grid(k).point_data for k in range(len(response.load_parameter))]
-    arcs, densities = {}, {}
+    arcs, densities, ends = {}, {}, {}
     for number, beam in enumerate(mesh.beams):
-        own = [
-            {name: data[name][data["beam"] == number] for name in ("arc", "N", "V", "M")} for data in grids
-        ]
-        arcs[beam.name] = np.append(own[0]["arc"][::2], beam.length)
-        densities[beam.name] = np.max([_density(data, beam.EI, order) for data in own], axis=0)
+        parts = [data["beam"] == number for data in grids]
+        arc, kappa, N, V = (
+            np.array([data[name][own] for data, own in zip(grids, parts, strict=True)])
+            for name in ("arc", *"MNV")
+        )
+        arcs[beam.name] = np.append(arc[0, ::2], beam.length)
+        kappa, N, V = (one.reshape(len(grids), -1, 2).mean(axis=2) / beam.EI for one in (kappa, N, V))
+        densities[beam.name] = ((kappa**4 + N**2 + V**2) ** (order / (4 * (order + 1)))).max(axis=0)
     least = LEAST * max(float(values.max()) for values in densities.values())
     sums = {
         name: np.append(0.0, np.cumsum(np.maximum(values, least) * np.diff(arcs[name])))
         for name, values in densities.items()
     }
-    whole, ends = sum(float(total[-1]) for total in sums.values()), {}
+    whole = sum(float(total[-1]) for total in sums.values())
     for beam in mesh.beams:
         total = sums[beam.name]
         count = max(1, round(wanted * float(total[-1]) / whole))
@@ -172,18 +168,8 @@ def _graded(mesh: Scene, response: Response, wanted: int, order: int) -> Scene:
     return _with(mesh, ends)
 
 
-def _density(data: Mapping[str, Array], EI: float, order: int) -> Array:
-    """Return the density of elements for a state, up to a constant factor."""
-    kappa, N, V = (data[name].reshape(-1, 2).mean(axis=1) / EI for name in ("M", "N", "V"))
-    density: Array = (kappa**4 + N**2 + V**2) ** (order / (4 * (order + 1)))
-    return density
-
-
 def solid(scene: Scene, accuracy: float, quantity: str) -> Iterator[Trial]:
-    """Yield trials with solid elements on meshes that are each twice as fine, compared at a few load parameters.
-
-    The error of a mesh is its difference from the one before over ``2^p - 1`` with p = 2, times a safety factor of two.
-    """
+    """Yield trials with solid meshes, each twice as fine; an error is the last change over ``2^p - 1``."""
     before: Response | None = None
     for mesh in MESHES:
         meshed, name = _strips(scene, mesh), f"solid, {mesh[0]}x{mesh[1]}"

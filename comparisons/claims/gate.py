@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import inf, isnan
 
-from comparisons.claims.claim import Finding
-from comparisons.claims.junit import JUnitCase, junit_text
+from comparisons.claims.finding import Finding, junit_text
 from comparisons.errors import difference, worst_place
 from comparisons.models import ROD, certified, find, solve
 from comparisons.models.options import ModelError, Options
@@ -44,17 +43,18 @@ class Gate:
 
     def junit(self) -> str:
         """Return the bounds as JUnit XML, one test case each."""
-        against = f", against {self.reference.model}"
-        cases = (
-            JUnitCase(
-                classname=f"{self.response.scene}.{self.response.model}",
-                name=item.name,
-                failure=None if item.holds else (self.stopped or item.beyond(item.error, 0.0)) + against,
-                output=item.measured,
+        group, against = f"{self.response.scene}.{self.response.model}", f", against {self.reference.model}"
+        checks = (
+            (
+                group,
+                one.name,
+                0.0,
+                None if one.holds else (self.stopped or one.failure) + against,
+                one.measured,
             )
-            for item in self.bounds
+            for one in self.bounds
         )
-        return junit_text(f"crossval compare {self.response.scene}", cases)
+        return junit_text(f"crossval compare {self.response.scene}", checks)
 
 
 def gate(

@@ -6,8 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from comparisons.claims.paper.figures import FIGURES
-from comparisons.claims.solid.questions import QUESTIONS
+from comparisons.claims.names import FIGURES, QUESTIONS
 from comparisons.cli.options import Command, workers
 from comparisons.cli.outcome import DONE, STOPPED, WRONG, report
 from comparisons.files import result_file, writable_folder, write_text
@@ -76,19 +75,19 @@ def _manual(given: "argparse.Namespace") -> int:
     stated = problems(given.of or None)
     folder = _out(given, "index.md", "manual.json")
     file = None if given.junit is None else result_file(Path(given.junit))
-    from comparisons.claims.junit import junit_text
+    from comparisons.claims.finding import junit_text
     from comparisons.claims.manual import write_manual
-    from comparisons.claims.manual.write import junit_cases
+    from comparisons.claims.manual.write import checks
 
-    manual = write_manual(folder, _told(given), stated)
+    cases, files = write_manual(folder, _told(given), stated)
     if file is not None:
-        write_text(file, junit_text("crossval run manual", junit_cases(manual.cases)))
-    answers = [(case, one) for case in manual.cases for one in case.judgements]
+        write_text(file, junit_text("crossval run manual", checks(cases)))
+    answers = [(case, one) for case in cases for one in case.judgements]
     failed = [(case, one) for case, one in answers if not one.passed]
-    print(f"{len(manual.cases)} cases, {len(answers)} answers, {len(failed)} beyond their tolerance")
-    _files(*manual.files, *([file] if file else []))
+    print(f"{len(cases)} cases, {len(answers)} answers, {len(failed)} beyond their tolerance")
+    _files(*files, *([file] if file else []))
     for case, one in failed:
-        report(f"crossval: {case.problem.name}, {one.claim.name}: {one.failure}")
+        report(f"crossval: {case.problem.name}, {one.trial.label}: {one.failure}")
     return WRONG if failed else DONE
 
 
@@ -99,12 +98,13 @@ def _extremes(given: "argparse.Namespace") -> int:
     from comparisons.output import tabulated
 
     with shown(quiet=given.quiet) as progress:
-        found = extremes(folder, workers(given), progress, quick=given.quick)
-    print(tabulated([{"axis": axis, **number} for axis, number in counts(found.judgements).items()]))
-    _files(*found.files)
-    for item in found.wrong:
-        report(f"crossval: {item.sentence}")
-    return WRONG if found.wrong else DONE
+        judgements, files = extremes(folder, workers(given), progress, quick=given.quick)
+    print(tabulated([{"axis": axis, **number} for axis, number in counts(judgements).items()]))
+    _files(*files)
+    wrong = [item.sentence for item in judgements if item.verdict == "wrong"]
+    for sentence in wrong:
+        report(f"crossval: {sentence}")
+    return WRONG if wrong else DONE
 
 
 def _trade(given: "argparse.Namespace") -> int:
@@ -132,7 +132,7 @@ def _trade(given: "argparse.Namespace") -> int:
 
 def _question(given: "argparse.Namespace") -> int:
     folder = _out(given, f"{given.suite}.csv")
-    from comparisons.claims.solid.solid_accuracy import STUDIES
+    from comparisons.claims.solid_accuracy import STUDIES
     from comparisons.output import tabulated, write_rows
 
     rows = list(STUDIES[given.suite](report))

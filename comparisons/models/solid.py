@@ -59,9 +59,7 @@ class Solid(Model):
         from comparisons.response.material import Deferred
 
         def report(step: Any) -> None:
-            touching = (
-                f"{touch.pair.name} at {touch.at.zeta:.4g}" for touch in step.state.closed
-            )
+            touching = (f"{touch.pair.name} at {touch.at.zeta:.4g}" for touch in step.state.closed)
             watch(Reached(step.load_parameter, step.iterations, tuple(touching)))
 
         problem = to_solid(scene, mesh=options.mesh)

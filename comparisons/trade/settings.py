@@ -21,10 +21,7 @@ PENETRATION = 1e-10
 
 
 def sweep_cases(scene: Scene, *, quick: bool = False) -> list[Case]:
-    """Return the cases of the sweep, each once: the settings of every model, whether or not it can state the scene.
-
-    Fewer load steps hit a part of the scene's load parameters. If quick, the settings that take longest are left out.
-    """
+    """Return the cases of the sweep, each once, without the longest if quick."""
     every = (case for model in MODELS.values() for case in _settings(model, scene, quick=quick))
     return list(dict.fromkeys(every))
 

@@ -18,7 +18,6 @@ from comparisons.quantities import KEPT, SCOPES
 from comparisons.response import ContactHistory, Response, SupportHistory
 from comparisons.response.axis import STATIONS, SampledAxes
 from comparisons.scene import built_in_scenes, load_scene
-from comparisons.trade.fits import convergence, pareto, power_law
 from comparisons.trade.reference import (
     NoReferenceError,
     Reference,
@@ -27,7 +26,7 @@ from comparisons.trade.reference import (
     reference_cases,
 )
 from comparisons.trade.settings import chains, limit_cases, load_steps, sweep_cases
-from comparisons.trade.trade import TARGETS, Trade, cheapest, front, orders
+from comparisons.trade.trade import TARGETS, Trade, cheapest, convergence, front, orders, pareto, power_law
 from tests.comparisons.show.pages.markup import check_alone
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)
@@ -45,7 +44,7 @@ def test_fronts_and_orders():
     assert [tuple(points[k]) for k in pareto(*points.T)] == best
     assert pareto([np.nan, 1.0, 2.0], [0.0, np.nan, 0.5]) == [2]
     for y in ([1.0, 2.0], [1.0, 0.0, 2.0]):
-        assert power_law([1.0, 2.0, 4.0][: len(y)], y) is None
+        assert power_law([1.0, 2.0, 4.0][: len(y)], y).exponent is None
     spoilt = N**-4.0
     spoilt[0], spoilt[4] = 1.1e-4, spoilt[3] / 1.5
     cases = [(order, 7.0 * N**-order, (10.0, 80.0, 4)) for order in (1.0, 2.0, 4.0)]
@@ -55,7 +54,7 @@ def test_fronts_and_orders():
         assert (fit.first, fit.last, fit.points) == where
     unknown = [0.1, 0.01, np.nan, np.nan, np.nan]
     for error, uncertainty in ((N**-4.0, 1e-4), (N**1.0, 0.0), (unknown, 0.0)):
-        assert convergence(list(N), list(error), uncertainty) is None
+        assert convergence(list(N), list(error), uncertainty).exponent is None
 
 
 def response_of(h, order=2.0):
@@ -193,7 +192,7 @@ def test_the_quick_trade_of_ks(tmp_path, capsys):
     assert main(["run", "trade", str(scene), "--quick", "--out", str(folder)]) == 0
     with (folder / "trade.csv").open() as file:
         rows = list(csv.DictReader(file))
-    whole = [row for row in rows if row["load_steps"] == "10" and row["status"] == "COMPLETED"]
+    whole = [row for row in rows if row["scene.load_parameters"] == "10" and row["status"] == "COMPLETED"]
     errors_of = {row["label"]: float(row["error_path_force"]) for row in whole}
     assert errors_of["tsm exact 1"] < 1e-9
     assert 1e-4 < errors_of["elastica"] < 2e-3
@@ -205,7 +204,7 @@ def test_the_quick_trade_of_ks(tmp_path, capsys):
     html = (folder / "report.html").read_text()
     check_alone(html, folder)
     for row in stopped:
-        assert f"{row['label']} [{row['load_steps']}]: {row['status']}: " in out
+        assert f"{row['label']} [{row['scene.load_parameters']}]: {row['status']}: " in out
         assert f"{row['status']}: " in html
     assert html.count("data:image/svg+xml") == len(list(folder.glob("*.svg"))) > 0
     numbers = json.loads((folder / "trade.json").read_text())

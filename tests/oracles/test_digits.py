@@ -8,11 +8,11 @@ import pytest
 from scipy.special import ellipe, ellipk
 
 from comparisons.claims.manual import problems, read_problem
-from comparisons.claims.manual.answers import (
+from comparisons.claims.manual.measures import (
     Answers,
     readings,
 )  # not public: what a problem reads, of the exact rod
-from comparisons.claims.problems.double_beam import HAND_OVER
+from comparisons.claims.paper.fig9 import HAND_OVER
 from comparisons.exact import elastica_under_pin, rod_under_pin
 from comparisons.models import solve
 from comparisons.models.options import Options

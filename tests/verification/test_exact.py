@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import tsm
-from comparisons.claims.problems import double_beam
+from comparisons.claims.paper import fig9 as double_beam
 from comparisons.models import solve as solve_scene
 from comparisons.models.options import Options
 from comparisons.models.tsm import to_structure

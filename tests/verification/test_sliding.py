@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tsm
-from comparisons.claims.problems import double_beam
+from comparisons.claims.paper import fig9 as double_beam
 from comparisons.errors import errors
 from comparisons.models import solve
 from comparisons.models.options import Options

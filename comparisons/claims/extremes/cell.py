@@ -1,15 +1,16 @@
-"""One cell of the matrix: its checks, against another answer, the energy of a rod in closed form or a circle, and its verdict."""
+"""One cell of the matrix: what must hold of its answer, against other answers or by a law in closed form, and its verdict."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from enum import StrEnum
+from typing import NamedTuple
 
 import numpy as np
 
 from comparisons.cases.case import Case
 from comparisons.cases.measure import Row
 from comparisons.cases.run import COMPLETED, UNSETTLED
-from comparisons.claims.claim import Allowance, Finding, Verdict, decided
+from comparisons.claims.finding import Finding
 from comparisons.errors import difference
 from comparisons.models import MODELS, TSM
 from comparisons.models.theory import FLOOR, Bending, bending, chord_term, element_lengths, ordinal
@@ -23,43 +24,44 @@ COMPARED = ("force", "arc", "moment", "tip")
 INVARIANT = 1e-12
 NEXT_TERM = 1.05
 """Error of a roll-up over its first neglected term, with all further terms."""
-
-Results = Mapping[Case, Row]
-"""Rows by case."""
 LARGEST = 0.2
 """Largest allowed error for any model; an answer with a larger error should have stopped."""
+Results = Mapping[Case, Row]
+"""Rows by case."""
+Law = Callable[[Case, Response], Finding]
+"""What a case's response must obey by itself."""
+
+
+class Allowance(NamedTuple):
+    """The largest error allowed, and its reason: the largest part of it in words."""
+
+    error: float
+    why: str
 
 
 def allowance(case: Case, bent: Bending) -> Allowance:
-    """Return the error allowed to `case` against the Reissner rod that bends as `bent` says, `LARGEST` at most.
-
-    A model of another rod, as the elastica, is allowed a larger error, because it does not approximate this rod.
-    """
-    model = MODELS[case.model]
-    parts = model.error_parts(case.scene, case.options, bent)
-    largest = max(parts, key=lambda why: parts[why])
-    error = sum(parts.values())
-    if model.rod and not error <= LARGEST:
-        return Allowance(error=LARGEST, why=f"more is wrong, although theory allows it: {largest}")
-    return Allowance(error=error, why=largest)
+    """Return the error allowed to `case` against Reissner's rod, bent so; of a rod at most `LARGEST`."""
+    parts = case.found.error_parts(case.scene, case.options, bent)
+    error, largest = sum(parts.values()), max(parts, key=lambda why: parts[why])
+    if case.found.rod and not error <= LARGEST:
+        return Allowance(LARGEST, f"more is wrong, although theory allows it: {largest}")
+    return Allowance(error, largest)
 
 
 def in_units_of(other: BeamSpec, beam: BeamSpec, response: Response) -> Response:
-    """Return the response of `beam` in the units of `other`, a beam that differs in units only. Axes and gaps are not converted.
-
-    Lengths are scaled by the ratio of the lengths L, forces by the ratio of ``EI/L^2``, moments by the ratio of ``EI/L``.
-    """
+    """Return the response of `beam` in the units of `other`, which differs in units only."""
     length = other.length / beam.length
     force = other.EI / beam.EI / length**2
+    contacts, supports = response.contacts.items(), response.supports.items()
     return replace(
         response,
         contacts={
-            pair: replace(one, force=force * one.force, arc_position=length * one.arc_position)
-            for pair, one in response.contacts.items()
+            name: replace(one, force=force * one.force, arc_position=length * one.arc_position)
+            for name, one in contacts
         },
         supports={
             name: replace(one, force=force * one.force, moment=force * length * one.moment)
-            for name, one in response.supports.items()
+            for name, one in supports
         },
         tips={name: length * values for name, values in response.tips.items()},
     )
@@ -67,137 +69,108 @@ def in_units_of(other: BeamSpec, beam: BeamSpec, response: Response) -> Response
 
 @dataclass(frozen=True, kw_only=True)
 class Against:
-    """Comparison with the answer of another case, at the load parameters of both; units may differ.
-
-    What is allowed is `allowance` by default, which takes the other case for the exact answer.
-    """
+    """Comparison with the answer of another case in any units; by default theory says what is allowed."""
 
     case: Case
     name: str = "exact rod"
     allowed: Allowance | None = None
 
-    @property
-    def needs(self) -> tuple[Case, ...]:
-        """The cases that must have been measured."""
-        return (self.case,)
-
     def finding(self, case: Case, own: Response, results: Results) -> Finding | None:
-        """Return the error of `own`, the response to `case`; infinite if it reached a larger load parameter than its reference.
-
-        The elastica, a model of another rod, may go further. The finding is None if the reference has no common load parameter, or is too
-        soft to be a reference.
-        """
+        """Return the error of `own` at the load parameters of both; None where the other is no reference."""
+        # a model of another rod, as the elastica, may go further than its reference, or be too soft for one
         other, beam = results[self.case].response, self.case.scene.beams[0]
-        allowed = self.allowed or allowance(case, bending(beam, other))
-        if not MODELS[case.model].rod:
-            if allowed.error > LARGEST or not len(other.load_parameter):
-                return None
-        elif len(own.load_parameter) > len(other.load_parameter):
+        allowed, why = self.allowed or allowance(case, bending(beam, other))
+        if not MODELS[case.model].rod and (allowed > LARGEST or not len(other.load_parameter)):
+            return None
+        if MODELS[case.model].rod and len(own.load_parameter) > len(other.load_parameter):
             why = f"it went on where the {self.name} stopped: {other.status}: {other.message}"
-            return Finding(name=self.name, error=np.inf, allowed=allowed.error, why=why)
+            return Finding(name=self.name, error=np.inf, allowed=allowed, why=why)
         answer = in_units_of(beam, case.scene.beams[0], own)
         found = [difference(answer, other, self.case.scene, quantity) for quantity in COMPARED]
         error = float(np.fmax.reduce(found, initial=0.0))
-        return Finding(name=self.name, error=error, allowed=allowed.error, why=allowed.why)
+        return Finding(name=self.name, error=error, allowed=allowed, why=why)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Energy:
-    """Energy of the loaded part of a rod under a pin on its axis, in closed form.
-
-    With the force ``F (-sin b, cos b)`` at (x, y), ``c = 1/EA - 1/GA`` and ``S = (F/GA)/(1 + sqrt(1 - F^2 c/GA))``
-
-        F (x cos b + y sin b)^2 = 2 EI (sin b - S) (1 - F c (sin b + S)/2)
-
-    and for the elastica, where b is the tangent's angle at the contact, ``F (x cos tc + y sin tc)^2 = 2 EI sin tc``.
-
-    `rigid`: whether the rod is rigid in stretch and shear.
-    """
-
-    rigid: bool = False
-    needs: ClassVar[tuple[Case, ...]] = ()
-
-    def finding(self, case: Case, own: Response, _: Results) -> Finding:
-        """Return the largest violation over ``2 EI sin b``."""
-        beam, pin = case.scene.beams[0], case.scene.pins[0]
-        force = -own.supports[f"{beam.name}.start"].force
-        F = np.hypot(*force.T)
-        closed = F > 0.0
-        x, y = np.array([pin.position(float(t)) for t in own.load_parameter[closed]]).reshape(-1, 2).T
-        F, sine, cosine = F[closed], -force[closed, 0] / F[closed], force[closed, 1] / F[closed]
-        shear, stretch = (0.0, 0.0) if self.rigid else (1 / beam.GA, 1 / beam.EA)
-        c = stretch - shear
-        S = F * shear / (1 + np.sqrt(1 - F**2 * c * shear))
-        left = F * (x * cosine + y * sine) ** 2
-        right = 2 * beam.EI * (sine - S) * (1 - F * c * (sine + S) / 2)
-        error = float((np.abs(left - right) / (2 * beam.EI * sine)).max(initial=0.0))
-        what = "2 EI sin tc of the elastica" if self.rigid else "its energy integral"
-        return Finding(name=what, error=error, allowed=INVARIANT, why="an identity, to round-off")
+def energy(case: Case, own: Response) -> Finding:
+    """Energy integral of a rod under a pin on its axis: its largest violation over ``2 EI sin b``."""
+    # with the force F (-sin b, cos b) at (x, y), c = 1/EA - 1/GA and S = (F/GA)/(1 + sqrt(1 - F^2 c/GA)):
+    #     F (x cos b + y sin b)^2 = 2 EI (sin b - S) (1 - F c (sin b + S)/2);  S = c = 0 for the elastica
+    beam, pin, rod = case.scene.beams[0], case.scene.pins[0], MODELS[case.model].rod
+    force = -own.supports[f"{beam.name}.start"].force
+    F = np.hypot(*force.T)
+    closed = F > 0.0
+    x, y = np.array([pin.position(float(t)) for t in own.load_parameter[closed]]).reshape(-1, 2).T
+    F, sine, cosine = F[closed], -force[closed, 0] / F[closed], force[closed, 1] / F[closed]
+    shear, stretch = (1 / beam.GA, 1 / beam.EA) if rod else (0.0, 0.0)
+    c = stretch - shear
+    S = F * shear / (1 + np.sqrt(1 - F**2 * c * shear))
+    left = F * (x * cosine + y * sine) ** 2
+    right = 2 * beam.EI * (sine - S) * (1 - F * c * (sine + S) / 2)
+    error = float((np.abs(left - right) / (2 * beam.EI * sine)).max(initial=0.0))
+    what = "its energy integral" if rod else "2 EI sin tc of the elastica"
+    return Finding(name=what, error=error, allowed=INVARIANT, why="an identity, to round-off")
 
 
-@dataclass(frozen=True, kw_only=True)
-class Circle:
-    """A beam rolled up by a moment at its tip: an arc, whatever EA and GA.
-
-    Every element bends to the same arc of the angle t. The first term that the strain measures neglect makes the chord of an element, and
-    with it the whole circle, too large: by t^2/24 with the paper's element, by t^4/1920 with `mixed`. The error of the tip is this term
-    times the distance of the tip from the clamp.
-    """
-
-    needs: ClassVar[tuple[Case, ...]] = ()
-
-    def finding(self, case: Case, own: Response, _: Results) -> Finding:
-        """Return the largest error of the tip's position over the length."""
-        beam, load = case.scene.beams[0], case.scene.loads[0]
-        angle = load.moment * beam.length / beam.EI * own.load_parameter
-        half = angle / (2.0 * np.pi)
-        exact = np.stack([np.sinc(2.0 * half), np.sin(angle / 2.0) * np.sinc(half)], axis=1)
-        error = float(np.hypot(*(own.tips[beam.name] / beam.length - exact).T).max(initial=0.0))
-        longest = element_lengths(case.scene, case.options)[0]
-        turn = load.moment * longest * beam.length / beam.EI * own.load_parameter
-        kind = TSM.element(case.options)
-        if not isinstance(kind, ClosedForm):
-            return Finding(name="circle", error=error, allowed=FLOOR, why="accuracy of the integration")
-        term = float((chord_term(turn, kind.order) * np.hypot(*exact.T)).max(initial=0.0))
-        why = f"{ordinal(kind.order)} order of the element"
-        return Finding(name="circle", error=error, allowed=FLOOR + NEXT_TERM * term, why=why)
-
-
-Check = Against | Energy | Circle
+def circle(case: Case, own: Response) -> Finding:
+    """A beam rolled up to an arc by a moment: the largest error of the tip's position over the length."""
+    # the first term that the strains neglect makes an element's chord, and so the whole circle, too large
+    beam, load, kind = case.scene.beams[0], case.scene.loads[0], TSM.element(case.options)
+    angle = load.moment * beam.length / beam.EI * own.load_parameter
+    half = angle / (2.0 * np.pi)
+    exact = np.stack([np.sinc(2.0 * half), np.sin(angle / 2.0) * np.sinc(half)], axis=1)
+    error = float(np.hypot(*(own.tips[beam.name] / beam.length - exact).T).max(initial=0.0))
+    if not isinstance(kind, ClosedForm):
+        return Finding(name="circle", error=error, allowed=FLOOR, why="accuracy of the integration")
+    turns = angle * element_lengths(case.scene, case.options)[0]
+    term = float((chord_term(turns, kind.order) * np.hypot(*exact.T)).max(initial=0.0))
+    why = f"{ordinal(kind.order)} order of the element"
+    return Finding(name="circle", error=error, allowed=FLOOR + NEXT_TERM * term, why=why)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Cell:
-    """A case at one position of the matrix, the varied quantity, the model and the value, with its checks, which all must hold."""
+    """A case at one position of the matrix, the varied quantity, the model and the value, with what must hold of it."""
 
     axis: str = ""
     row: str
     column: str
     case: Case
-    checks: tuple[Check, ...]
+    against: tuple[Against, ...] = ()
+    law: Law | None = None
 
     @property
     def cases(self) -> tuple[Case, ...]:
-        """The case, and those that its checks need."""
-        return (self.case, *(case for check in self.checks for case in check.needs))
+        """The case, and those that it is compared with."""
+        return (self.case, *(one.case for one in self.against))
 
-    def also(self, *checks: Check) -> "Cell":
-        """Return the cell with further checks."""
-        return replace(self, checks=(*self.checks, *checks))
+
+class Verdict(StrEnum):
+    """Verdict on a cell."""
+
+    RIGHT = "right"
+    STOPPED = "stopped"
+    WITHDRAWN = "withdrawn"
+    """The checks of the response refuse the answer. It counts neither as right nor as stopped."""
+    WRONG = "wrong"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Judgement:
-    """The verdict on a cell by its own measurement and the findings of its checks over the load parameters that were reached.
-
-    Wrong: an error is above its allowance at a load parameter that was reached, or the case raised or lost its worker. Withdrawn: the
-    answer fails the checks of a response; it counts neither as right nor as stopped.
-    """
+    """A cell, its measurement and what was found over the load parameters that were reached."""
 
     cell: Cell
     own: Row
     findings: tuple[Finding, ...]
-    verdict: Verdict
+
+    @property
+    def verdict(self) -> Verdict:
+        """Wrong: an error is above its allowance, also if the solution stopped later, or the case raised or lost its worker."""
+        status = self.own.response.status
+        if status == CHECK_FAILED:
+            return Verdict.WITHDRAWN
+        if status in UNSETTLED or not all(one.holds for one in self.findings):
+            return Verdict.WRONG
+        return Verdict.RIGHT if status == COMPLETED else Verdict.STOPPED
 
     @property
     def reached(self) -> float:
@@ -207,8 +180,7 @@ class Judgement:
     @property
     def needless(self) -> bool:
         """Whether the answer is withdrawn although all its errors are within their allowances."""
-        decisive = self.decisive
-        return self.verdict is Verdict.WITHDRAWN and decisive is not None and bool(decisive.holds)
+        return self.verdict is Verdict.WITHDRAWN and bool(self.decisive and self.decisive.holds)
 
     @property
     def decisive(self) -> Finding | None:
@@ -226,16 +198,10 @@ class Judgement:
 
 
 def judged(cell: Cell, results: Results) -> Judgement:
-    """Return the verdict on `cell` by the `results` of its `cases`."""
+    """Return the judgement on `cell` by the `results` of its `cases`."""
     measured = results[cell.case]
-    own = measured.response
-    checks = cell.checks if len(own.load_parameter) else ()
-    found = (check.finding(cell.case, own, results) for check in checks)
-    findings = tuple(finding for finding in found if finding is not None)
-    if own.status == CHECK_FAILED:
-        verdict = Verdict.WITHDRAWN
-    elif own.status in UNSETTLED:
-        verdict = Verdict.WRONG
-    else:
-        verdict = decided(findings, completed=own.status == COMPLETED)
-    return Judgement(cell=cell, own=measured, findings=findings, verdict=verdict)
+    own, found = measured.response, list[Finding | None]()
+    if len(own.load_parameter):
+        found += [cell.law(cell.case, own)] if cell.law else []
+        found += (one.finding(cell.case, own, results) for one in cell.against)
+    return Judgement(cell=cell, own=measured, findings=tuple(one for one in found if one is not None))

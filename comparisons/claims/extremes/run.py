@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 from shutil import rmtree
-from typing import NamedTuple
 
 import numpy as np
 
@@ -14,9 +13,8 @@ from comparisons.cases.case import Case
 from comparisons.cases.run import Progress
 from comparisons.cases.run import run as run_cases
 from comparisons.cases.workers import Workers
-from comparisons.claims.claim import Verdict
 from comparisons.claims.extremes.axes import AXES, matrix
-from comparisons.claims.extremes.cell import Judgement, judged
+from comparisons.claims.extremes.cell import Judgement, Verdict, judged
 from comparisons.output import Row, write_numbers, write_rows
 from comparisons.show.pages import Section, write_page
 
@@ -36,11 +34,20 @@ def sections(judgements: Sequence[Judgement]) -> list[Section]:
     """Return the key and one map for each axis that has cells."""
     style = STYLE.read_text(encoding="utf-8")
     parts = [Section(title="How to read the maps", html=f"<style>{style}</style><p>{LEGEND}</p>{_key()}")]
-    for axis in AXES:
-        own = [item for item in judgements if item.cell.axis == axis.name]
-        if own:
-            about = f"<p>{escape(axis.scene)}. {counted(own)}.</p>"
-            parts.append(Section(title=axis.title, html=about + _map(own)))
+    for name, axis in AXES.items():
+        own = [item for item in judgements if item.cell.axis == name]
+        if not own:
+            continue
+        at = {(item.cell.row, item.cell.column): item for item in own}
+        rows, columns = (list(dict.fromkeys(names)) for names in zip(*at, strict=True))
+        head = "".join(f'<th scope="col">{escape(column)}</th>' for column in ("", *columns))
+        body = "\n".join(
+            f'<tr><th scope="row">{escape(row)}</th>{"".join(_cell(at.get((row, column))) for column in columns)}</tr>'
+            for row in rows
+        )
+        table = f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>"
+        html = f'<p>{escape(axis.scene)}. {counted(own)}.</p><div class="map">{table}</div>'
+        parts.append(Section(title=axis.title, html=html))
     return parts
 
 
@@ -60,18 +67,6 @@ def _key() -> str:
     }  # fmt: skip
     marks = "".join(f'<td class="{verdict}">{MARKS[verdict]}{text}</td>' for verdict, text in words.items())
     return f'<table class="key"><tr><th>completed and right, error</th>{shades}{marks}</tr></table>'
-
-
-def _map(judgements: Sequence[Judgement]) -> str:
-    rows = dict.fromkeys(item.cell.row for item in judgements)
-    columns = dict.fromkeys(item.cell.column for item in judgements)
-    at = {(item.cell.row, item.cell.column): item for item in judgements}
-    head = "".join(f'<th scope="col">{escape(column)}</th>' for column in columns)
-    body = "\n".join(
-        f'<tr><th scope="row">{escape(row)}</th>{"".join(_cell(at.get((row, column))) for column in columns)}</tr>'
-        for row in rows
-    )
-    return f'<div class="map"><table><thead><tr><th></th>{head}</tr></thead><tbody>\n{body}\n</tbody></table></div>'
 
 
 def _cell(item: Judgement | None) -> str:
@@ -110,32 +105,22 @@ def _shaded(error: float, about: str = "") -> str:
     return f'<td{about} style="background:rgb({red},{green},{blue});color:{ink}">{_number(error)}</td>'
 
 
-class Extremes(NamedTuple):
-    """What became of every cell of the matrix, and the files that were written."""
-
-    judgements: tuple[Judgement, ...]
-    files: tuple[Path, ...]
-
-    @property
-    def wrong(self) -> tuple[Judgement, ...]:
-        """The cells that are wrong."""
-        return tuple(item for item in self.judgements if item.verdict is Verdict.WRONG)
-
-
-def extremes(folder: Path, workers: Workers, progress: Progress, *, quick: bool = False) -> Extremes:
-    """Run the matrix and write ``extremes.html``, ``.csv`` and ``.json`` into `folder`.
-
-    A run that was interrupted is taken up where it was; one that ended starts anew.
-
-    Raises OutputError, WorkersError if a file cannot be written, or the workers are gone.
-    """
+def extremes(
+    folder: Path, workers: Workers, progress: Progress, *, quick: bool = False
+) -> tuple[list[Judgement], tuple[Path, ...]]:
+    """Run the matrix, or take it up where it was interrupted, and write page, table and numbers."""
     cells, kept = matrix(quick=quick), folder / ".extremes"
     cases = sorted(dict.fromkeys(case for cell in cells for case in cell.cases), key=_cost, reverse=True)
     results = run_cases(cases, kept, workers, repeats=0, progress=progress)
-    judgements = tuple(judged(cell, results) for cell in cells)
-    files = write(folder, judgements, quick=quick)
+    judgements = [judged(cell, results) for cell in cells]
+    html, rows = folder / "extremes.html", [row(item) for item in judgements]
+    numbers = {"quick": quick, "verdicts": counts(judgements), "cells": rows}
+    tables = (write_rows(folder / "extremes.csv", rows), write_numbers(folder / "extremes.json", numbers))
+    part = ", a part of the matrix (quick)" if quick else ""
+    lead = f"{counted(judgements)}{part}."
+    write_page(folder, "Where it holds, where it stops", lead, sections(judgements), (), tables, html.name)
     rmtree(kept)
-    return Extremes(judgements=judgements, files=files)
+    return judgements, (html, *tables)
 
 
 def _cost(case: Case) -> int:
@@ -145,31 +130,17 @@ def _cost(case: Case) -> int:
     return case.scene.load_parameters * (elements + 40 * along * across)
 
 
-def write(folder: Path, judgements: Sequence[Judgement], *, quick: bool) -> tuple[Path, ...]:
-    """Write the three files and return their names."""
-    html, rows = folder / "extremes.html", [row(item) for item in judgements]
-    numbers = {"quick": quick, "verdicts": counts(judgements), "cells": rows}
-    tables = (write_rows(folder / "extremes.csv", rows), write_numbers(folder / "extremes.json", numbers))
-    part = ", a part of the matrix (quick)" if quick else ""
-    lead = f"{counted(judgements)}{part}."
-    write_page(folder, "Where it holds, where it stops", lead, sections(judgements), (), tables, html.name)
-    return html, *tables
-
-
 def counts(judgements: Sequence[Judgement]) -> dict[str, dict[str, int]]:
     """Return how many cells of each axis are right, stopped, withdrawn and wrong."""
-    return {
-        axis.name: {str(verdict): number[verdict] for verdict in Verdict}
-        for axis in AXES
-        if (number := Counter(item.verdict for item in judgements if item.cell.axis == axis.name))
-    }
+    number = Counter((item.cell.axis, item.verdict) for item in judgements)
+    axes = dict.fromkeys(item.cell.axis for item in judgements)
+    return {axis: {str(verdict): number[axis, verdict] for verdict in Verdict} for axis in axes}
 
 
 def row(item: Judgement) -> Row:
     """Return one line of the table: the cell, its verdict, and the comparison that decides it."""
     own, decisive = item.own.response, item.decisive
-    about = ("error", "allowed", "against", "why")
-    found = (decisive.error, decisive.allowed, decisive.name, decisive.why) if decisive else (None,) * 4
+    about = {"error": "error", "allowed": "allowed", "against": "name", "why": "why"}
     return {
         "axis": item.cell.axis,
         "model": item.cell.row,
@@ -179,7 +150,7 @@ def row(item: Judgement) -> Row:
         "needless": item.needless,
         "status": own.status,
         "reached": item.reached,
-        **dict(zip(about, found, strict=True)),
+        **{column: decisive and getattr(decisive, name) for column, name in about.items()},
         "iterations": own.iterations,
         "cutbacks": own.cutbacks,
         "seconds": item.own.seconds,

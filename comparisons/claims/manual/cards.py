@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from comparisons.claims.claim import Quantity
-from comparisons.claims.manual.problem import Problem, read_problem
+from comparisons.claims.manual.problem import Problem, Quantity, read_problem
 from comparisons.files import writable_folder, write_text
 from comparisons.output import Report, json_text
 from comparisons.scene import to_tables
@@ -53,13 +52,9 @@ def card(problem: Problem) -> dict[str, Any]:
 
 
 def _quantity(quantity: Quantity, uncertainty: float) -> dict[str, Any]:
-    """Return a quantity with its uncertainty in the quantity's own unit, and the number of significant digits that this leaves.
-
-    Of zero they are the decimals, in parts of the quantity's scale.
-    """
-    scale = abs(quantity.exact) if quantity.scale is None else quantity.scale
-    size = abs(quantity.exact) or scale
-    error = uncertainty * scale
+    """Return a quantity with its uncertainty, and the significant digits (decimals of zero) it leaves."""
+    size = abs(quantity.exact) or quantity.size
+    error = uncertainty * quantity.size
     digits = MOST_DIGITS if error == 0.0 else min(MOST_DIGITS, max(0, math.floor(-math.log10(error / size))))
     return {"name": quantity.name, "value": quantity.exact, "digits": digits, "uncertainty": error}
 
@@ -73,10 +68,7 @@ def card_schema() -> dict[str, Any]:
 
 
 def write_cards(folder: Path, report: Report, stated: Sequence[Path]) -> tuple[Path, ...]:
-    """Write the cards of problems, ``NAME.json``, and their schema, ``card.schema.json``, the last of the files that are returned.
-
-    Raises `OutputError` if the folder, which is made if it is not there, cannot be written in.
-    """
+    """Write the cards of problems, ``NAME.json``, and their schema; return the files, the schema last."""
     writable_folder(folder)
     written = {}
     for problem in map(read_problem, stated):

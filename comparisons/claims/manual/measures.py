@@ -1,20 +1,117 @@
-"""What problems of the manual measure that no answer has as a number: limits, orders, identities, invariance."""
+"""What is read from the answers to a problem, and what no answer has as a number: limits, orders."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from comparisons.claims.claim import Quantity, StoppedError
-from comparisons.claims.manual.answers import ANSWER, Answers, answered, readings, undeformed
-from comparisons.claims.manual.problem import Problem, varied
-from comparisons.claims.solid.peers import solved
-from comparisons.models import ROD, SOLID
+from comparisons.claims.manual.problem import Line, Problem, Quantity, Trial, varied
+from comparisons.claims.solid_accuracy import solved
+from comparisons.models import ROD, SOLID, solve
+from comparisons.models.options import Options
 from comparisons.models.solid import to_solid
 from comparisons.models.tsm import to_structure
-from comparisons.response import Array
+from comparisons.response import Array, Response
+from comparisons.response.axis import STATIONS, axes_at_stations
+from comparisons.response.table import table
 from comparisons.scene import LoadSpec, Scene, read_scene
+
+ANSWER = "exact answer"
+"""Style of lines of the exact answer, which no model computed."""
+
+
+class StoppedError(RuntimeError):
+    """A solution that stopped before it had an answer: its status and sentence."""
+
+
+class Answers:
+    """A model at a problem, and the lines that it adds to the picture."""
+
+    def __init__(self, problem: Problem, trial: Trial) -> None:
+        self.trial, self.scene, self.shown = trial, trial.scene, problem.picture.shown
+        self.lines: list[Line] = []
+
+    def solved(
+        self, scene: Scene | None = None, *, draw: bool = True, options: Options | None = None
+    ) -> Response:
+        """Return the response to the trial's scene or another one, whose deflected axes are drawn."""
+        scene = scene or self.scene
+        response = answered(scene, self.trial.key, options or self.trial.options)
+        if draw:
+            self.lines.extend(deflected(scene, response, self.trial.model, self.shown))
+        return response
+
+    def draw(self, *lines: ArrayLike, style: str = "") -> None:
+        """Draw lines of points (n, 2), by default in the style of the model."""
+        self.lines.extend((style or self.trial.model, np.asarray(line, dtype=float)) for line in lines)
+
+
+def answered(scene: Scene, model: str, options: Options | None = None) -> Response:
+    """Return the response of a model to a scene; one that is not complete and checked is a `StoppedError`."""
+    response = solve(scene, model, options)
+    if not response.completed:
+        raise StoppedError(f"{response.status}: {response.message}")
+    return response
+
+
+def readings(problem: Problem, answers: Answers) -> list[float]:
+    """Read every quantity from the answer to the problem's scene, with what each changes in it."""
+    found: dict[str, Response] = {}
+    for one in problem.quantities:
+        if repr(one.changes) not in found:
+            found[repr(one.changes)] = answers.solved(varied(answers.scene, one.changes))
+    return [one.times * _read(found[repr(one.changes)], one) for one in problem.quantities]
+
+
+def _read(response: Response, quantity: Quantity) -> float:
+    found = value(response, quantity.read, quantity.at)
+    if quantity.since is not None:
+        found -= value(response, quantity.read, quantity.since)
+    return found / _read(response, quantity.over) if quantity.over else found
+
+
+def value(response: Response, words: str, at: float) -> float:
+    """Return a number of a response at a load parameter; nan for an event that it does not have."""
+    # a name of `comparisons.response.table`, of a vector without _x for its size; "axis BEAM .5 x", a place
+    # of the axis at half the length; "slip-off PAIR"; "event KIND PAIR 0", that of the first one
+    what, *more = words.split()
+    if what == "slip-off":
+        return response.contacts[more[0]].slip_off
+    if what == "event":
+        kind, pair, number = more
+        events = [one for one in response.events or () if [one.kind, one.pair] == [kind, pair]]
+        return next((one.load_parameter for one in events[int(number) :]), np.nan)
+    k = step(response, at)
+    if what == "axis":
+        beam, part, direction = more
+        station = round(float(part) * (len(STATIONS) - 1))
+        return float(axes_at_stations(response, beam, [k])[0, station, "xy".index(direction)])
+    columns = table(replace(response, definition=None))
+    if what in columns:
+        return float(columns[what][k])
+    return float(np.hypot(columns[f"{what}_x"][k], columns[f"{what}_y"][k]))
+
+
+def step(response: Response, load_parameter: float) -> int:
+    """Return the number of a load parameter of the scene."""
+    k = int(np.argmin(np.abs(response.load_parameter - load_parameter)))
+    assert abs(response.load_parameter[k] - load_parameter) < 1e-9, "must be one of the scene's"
+    return k
+
+
+def deflected(scene: Scene, response: Response, style: str, shown: Sequence[float]) -> Iterator[Line]:
+    """Yield the deflected axes of all beams at some load parameters."""
+    for beam in scene.beams:
+        yield from ((style, response.axis_line(beam.name, step(response, t))[1]) for t in shown)
+
+
+def undeformed(scene: Scene) -> Iterator[Line]:
+    """Yield the undeformed axes and the paths of the pins."""
+    yield from (("undeformed", np.array([beam.start, beam.end])) for beam in scene.beams)
+    yield from (("path of the pin", np.array(pin.points)) for pin in scene.pins)
+
 
 BESIDE = 5
 """Samples to either side of an extreme one through which a polynomial is drawn."""
@@ -51,10 +148,8 @@ def identity(_: Problem, answers: Answers) -> Sequence[float]:
 
 
 def greatest_load(problem: Problem, answers: Answers) -> Sequence[float]:
-    """Read the greatest load and its place: of a pin that is raised, or of three-point bending, whose half is the same cantilever.
-
-    A pin whose path has a corner turns back there: load and place are read on the way to the corner, then on the way back.
-    """
+    """Read the greatest load and its place: of a pin that is raised, or of half of three-point bending."""
+    # a pin whose path has a corner turns back there: both are read on the way there, then on the way back
     given, response, pin = problem.settings, answers.solved(draw=False), answers.scene.pins[-1]
     t, a, EI = response.load_parameter, pin.points[0][0], answers.scene.beams[0].EI
     rise = np.array([pin.position(one)[1] for one in t]) / a
@@ -128,11 +223,8 @@ def limit_points(problem: Problem, answers: Answers) -> Sequence[float]:
 
 
 def power_law(problem: Problem, answers: Answers) -> Sequence[float]:
-    """Exponent by which the largest error of the contact force against the rod, over the largest force, or the penetration goes with what is varied.
-
-    ``settings``: `varies` is ``elements`` or a setting of the scene, `values` its values; `of` is ``error`` or ``penetration``, and
-    `sign` is -1 where the exponent is that of the inverse.
-    """
+    """Exponent of the error of the force against the rod, or of the penetration, in what is varied."""
+    # ``varies`` is ``elements`` or a setting of the scene; ``sign`` is -1 for that of the inverse
     given, found = problem.settings, []
     for one in given["values"]:
         scene, options = answers.scene, answers.trial.options
@@ -177,10 +269,11 @@ def in_plane_strain(_: Problem, answers: Answers) -> Sequence[float]:
     return float(contact.force[-1]), float(contact.arc_position[-1])
 
 
-def work_over_energy(_: Problem, answers: Answers, panels: int = 20) -> Sequence[float]:
+def work_over_energy(_: Problem, answers: Answers) -> Sequence[float]:
     """Work of a pin, by Gauss quadrature at whose points the solver is called, over the energy stored, a penalty's included."""
     import fem_reference
 
+    panels = 20
     gauss, weights = np.polynomial.legendre.leggauss(4)
     t = np.append(((np.arange(panels)[:, None] + (1.0 + gauss) / 2.0) / panels).ravel(), 1.0)
     result = _solved_directly(answers, t)
@@ -197,7 +290,7 @@ def invariance(problem: Problem, answers: Answers) -> Sequence[float]:
     other = read_scene(problem.settings["other"], problem.name)
     pair = answers.scene.contacts[0].pair
     first, second = answers.solved(draw=False), answers.solved(other)
-    answers.curves.extend(undeformed(other))
+    answers.lines.extend(undeformed(other))
     forces = [response.contacts[pair].force for response in (first, second)]
     moments = [np.abs(next(iter(one.supports.values())).moment) for one in (first, second)]
     return [float(np.abs(b - a).max() / np.abs(a).max()) for a, b in (forces, moments)]

@@ -1,5 +1,6 @@
 """The problems of the verification manual: each is one TOML file of the folder ``problems``."""
 
+import math
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -7,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from comparisons.cases.settings import changed
-from comparisons.claims.claim import Allowance, Judgement, Quantity
+from comparisons.claims.finding import Finding
 from comparisons.models.options import Options
+from comparisons.response import Array
 from comparisons.scene import InputError, Scene, built_in_scenes, load_scene, read_scene
 
 FOLDER = Path(__file__).parent / "problems"
@@ -20,60 +22,53 @@ ORDER = (
     "timoshenko-order", "thin-strips", "penalty-slope", "locking", "energy-balance", "objectivity", "mirror", "reversal",
 )  # fmt: skip
 """The problems in the order of the manual; those that are not named follow by name."""
+Line = tuple[str, Array]
+"""A line of a picture: its style, which also is its label, and its points, shape (n, 2)."""
 Changes = Mapping[str, Any]
 """New values of a scene's settings by the names of a study file, ``contact.friction``."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Picture:
-    """The picture of a problem: labels of the axes, by default places; load parameters whose axes are drawn; a model whose answer is the exact one.
+    """What is drawn."""
 
-    `guide` is the order of a line for the eye and its first value, where both axes are logarithmic.
-    """
-
-    axes: Sequence[str] = ()
-    shown: Sequence[float] = (1.0,)
-    exact: str = ""
-    guide: Sequence[float] = ()
+    axes: Sequence[str] = ()  #: Labels of the axes, by default places.
+    shown: Sequence[float] = (1.0,)  #: Load parameters whose deflected axes are drawn.
+    exact: str = ""  #: A model whose answer is the exact one.
+    guide: Sequence[float] = ()  #: Order and first value of a line for the eye, on logarithmic axes.
 
 
 @dataclass(frozen=True, kw_only=True)
-class Reading:
-    """Where an answer has a quantity: its words, as `answers.value` takes them, a load parameter, a factor, and changes of the scene.
+class Quantity:
+    """A number with its exact value, and where an answer has it."""
 
-    What it is at the load parameter `since` is taken away, and it is divided by what is `over` which it stands.
-    """
+    name: str = ""  #: With the unit, unless the quantity is dimensionless.
+    exact: float = math.nan
+    scale: float | None = None  #: What its error is divided by, the magnitude of the exact value if None.
+    read: str = ""  #: The words of `comparisons.claims.manual.measures.value`; empty where a measure finds the number.
+    at: float = 1.0  #: A load parameter.
+    times: float = 1.0  #: A factor.
+    changes: Changes = field(default_factory=dict)  #: What is changed in the scene.
+    since: float | None = None  #: A load parameter; what the quantity is there is taken away.
+    over: "Quantity | None" = None  #: What it is divided by.
 
-    words: str = ""
-    at: float = 1.0
-    times: float = 1.0
-    changes: Changes = field(default_factory=dict)
-    since: float | None = None
-    over: "Reading | None" = None
+    @property
+    def size(self) -> float:
+        """What its error is divided by."""
+        return abs(self.exact) if self.scale is None else self.scale
 
 
 @dataclass(frozen=True, kw_only=True)
 class Trial:
-    """A model that is put to a problem.
+    """A model that is put to a problem."""
 
-    Attributes
-    ----------
-    model, setting : str
-        Model with its element, and resolution.
-    key, options
-        For `comparisons.models.solve`.
-    scene : Scene
-        What the model solves.
-    allowance : Allowance
-        Allowed error of every quantity.
-    """
-
-    model: str
-    setting: str
-    key: str
+    model: str  #: Model with its element.
+    setting: str  #: Resolution.
+    key: str  #: Name of the model for `comparisons.models.solve`.
     options: Options
-    scene: Scene
-    allowance: Allowance
+    scene: Scene  #: What the model solves.
+    allowed: float  #: Allowed error of every quantity.
+    why: str  #: The reason of this bound.
 
     @property
     def label(self) -> str:
@@ -83,55 +78,55 @@ class Trial:
 
 @dataclass(frozen=True, kw_only=True)
 class Problem:
-    """A problem with an exact answer.
+    """A problem with an exact answer."""
 
-    Attributes
-    ----------
-    name, title : str
-        A short name without spaces, and a title.
-    purpose : str
-        What a wrong answer would show.
-    statement : str
-        The problem with its sizes and units.
-    source : str
-        Where the exact value comes from: literature with author and year, or the closed form.
-    uncertainty : float
-        Bound of the error of the exact values, over their scales.
-    scene : Scene
-        What is solved, or what the scenes that are solved follow from.
-    quantities, readings : tuple
-        What is compared, and where an answer has it.
-    trials : tuple of Trial
-        The models.
-    picture : Picture
-        What is drawn.
-    measure : str
-        Name of a function of `comparisons.claims.manual.measures` that finds the values; by default they are read from the answer.
-    settings : mapping
-        For that function.
-    """
-
-    name: str
+    name: str  #: A short name without spaces.
     title: str
-    purpose: str
-    statement: str
-    source: str
-    uncertainty: float
-    scene: Scene
-    quantities: tuple[Quantity, ...]
-    readings: tuple[Reading, ...]
-    trials: tuple[Trial, ...]
+    purpose: str  #: What a wrong answer would show.
+    statement: str  #: The problem with its sizes and units.
+    source: str  #: Where the exact value comes from: literature with author and year, or the closed form.
+    uncertainty: float  #: Bound of the error of the exact values, over their scales.
+    scene: Scene  #: What is solved, or what the scenes that are solved follow from.
+    quantities: tuple[Quantity, ...]  #: What is compared.
+    trials: tuple[Trial, ...]  #: The models.
     picture: Picture
+    #: Name of a function of `comparisons.claims.manual.measures` that finds the values; by default they are read from the answer.
     measure: str = "readings"
-    settings: Mapping[str, Any] = field(default_factory=dict)
+    settings: Mapping[str, Any] = field(default_factory=dict)  #: What this function takes.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Judgement:
+    """The answer of a model: its findings, one for each quantity, and wall time [s]; `stopped` says why there is no answer."""
+
+    trial: Trial
+    findings: tuple[Finding, ...]
+    seconds: float
+    stopped: str = ""
+
+    @property
+    def passed(self) -> bool:
+        """Whether every error is within what is allowed."""
+        return all(one.holds for one in self.findings)
+
+    @property
+    def worst(self) -> Finding:
+        """The finding with the largest error, the first that is not a number if one is not."""
+        return max(self.findings, key=lambda one: one.share)
+
+    @property
+    def failure(self) -> str | None:
+        """Why the answer fails, with its numbers; None if it is right."""
+        return self.stopped or (None if self.passed else self.worst.failure)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """A problem with a judgement for every model."""
+    """A problem, the judgement on every model, and the lines that the answers add to its picture."""
 
     problem: Problem
     judgements: tuple[Judgement, ...]
+    lines: tuple[Line, ...]
 
     @property
     def passed(self) -> bool:
@@ -157,24 +152,18 @@ def read_problem(path: Path) -> Problem:
     """
     table = tomllib.loads(path.read_text(encoding="utf-8"))
     scene = _scene(table.pop("scene"), table.pop("changes", {}), path)
-    rows, trials = table.pop("quantities"), table.pop("trials")
     return Problem(
         name=path.stem,
         scene=scene,
-        quantities=tuple(
-            Quantity(name=row.pop("name"), exact=row.pop("exact"), scale=row.pop("scale", None))
-            for row in rows
-        ),
-        readings=tuple(map(_reading, rows)),
-        trials=tuple(_trial(row, scene, path) for row in trials),
+        quantities=tuple(map(_quantity, table.pop("quantities"))),
+        trials=tuple(_trial(row, scene, path) for row in table.pop("trials")),
         picture=Picture(**table.pop("picture", {})),
         **table,
     )
 
 
-def _reading(row: dict[str, Any]) -> Reading:
-    over = _reading(row.pop("over")) if "over" in row else None
-    return Reading(words=row.pop("read", ""), over=over, **row)
+def _quantity(row: dict[str, Any]) -> Quantity:
+    return Quantity(**row | {"over": _quantity(row["over"])} if "over" in row else row)
 
 
 def _scene(stated: str, changes: Changes, path: Path) -> Scene:
@@ -189,20 +178,13 @@ def varied(scene: Scene, changes: Changes) -> Scene:
 
 def _trial(row: dict[str, Any], scene: Scene, path: Path) -> Trial:
     key, _, element = row["model"].partition(" ")
-    elements, mesh = row.get("elements"), row.get("mesh")
+    elements, mesh, changes = row.pop("elements", None), row.pop("mesh", None), row.pop("changes", {})
     beams = f"{elements} elements a beam" if elements else "1 element a beam" if element else ""
-    return Trial(
-        model=row["model"],
-        setting=row.get("setting", f"{mesh} elements" if mesh else beams),
-        key=key,
-        options=Options(
-            element=element or None,
-            elements=elements,
-            mesh=tuple(map(int, mesh.split("x"))) if mesh else None,  # type: ignore[arg-type]
-        ),
-        scene=varied(_scene(row["scene"], {}, path) if "scene" in row else scene, row.get("changes", {})),
-        allowance=Allowance(error=row["allowed"], why=row["why"]),
-    )
+    strip: Any = tuple(map(int, mesh.split("x"))) if mesh else None
+    row.setdefault("setting", f"{mesh} elements" if mesh else beams)
+    own = _scene(row.pop("scene"), changes, path) if "scene" in row else varied(scene, changes)
+    options = Options(element=element or None, elements=elements, mesh=strip)
+    return Trial(key=key, options=options, scene=own, **row)
 
 
 def problems(names: Sequence[str] | None = None, folder: Path = FOLDER) -> list[Path]:

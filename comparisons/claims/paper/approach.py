@@ -1,11 +1,9 @@
-"""The smallest distance from a beam node at which Newton's method still finds equilibrium, at a fixed tolerance.
+"""How near to a beam node Newton's method still finds equilibrium, at a fixed tolerance."""
+# `tsm.solve` accepts a residual of the size of a contact's round-off; a program without such an estimate
+# accepts only one below its tolerance. The contact nears the node in steps that shrink with the distance;
+# where none helps, the area of [P] 4.1 begins.
 
-`tsm.solve` estimates the round-off of a contact and accepts a residual of this size. This study accepts only a residual below a stated
-tolerance, as a program without such an estimate does. The contact moves towards the next beam node in steps that shrink with the
-distance. Round-off therefore stops it before the step length or the start of the iteration does. The critical area of [P] section 4.1
-begins where no smaller step helps. Behind the node the march goes on from a state inside the next element.
-"""
-
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,10 +34,7 @@ _BEHIND = (0.1, 0.2, 0.3, 0.4, 0.5)  # places inside the next element, in elemen
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Approach:
-    """Equilibria on the way to a beam node, or to the tip, at an arc position.
-
-    Load parameters and distances from the node in element lengths, l_i/l of [P], shape (k,); empty if there is none in the element.
-    """
+    """Equilibria (k,) on the way to a node at an arc position, and their distances in element lengths."""
 
     node: float
     load_parameter: Array
@@ -51,34 +46,26 @@ class Approach:
         return float(min(self.ratio, default=np.nan))
 
 
-def approaches(structure: Structure, tolerance: float) -> tuple[Approach, ...]:
-    """Lead the only contact of a structure, one beam under one pin, towards every beam node on its way to the tip, the last one.
-
-    The tolerance bounds the scaled residual of `tsm.newton.Newton`, without allowance for round-off.
-    """
-    contact = _Contact(structure, tolerance)
-    history = [initial_state(contact.model)]
-    first = int(np.floor(contact.arc(history[0]) / contact.l0 + NEAREST)) + 1
-    found = []
-    for number in range(first, structure.beams[0].elements + 1):
-        node = number * contact.l0
-        trail = _towards(contact, history, node) if history else []
-        ratio = np.array([(node - contact.arc(state)) / contact.l0 for state in trail])
-        load_parameter = np.array([state.load_parameter for state in trail])
-        found.append(Approach(node=node, load_parameter=load_parameter, ratio=ratio))
-        history = _behind(contact, trail, node) if node < contact.length - NEAREST else []
-    return tuple(found)
+def approaches(structure: Structure, tolerance: float) -> Iterator[Approach]:
+    """Lead the only contact of a structure towards every node up to the tip, at a scaled tolerance."""
+    march = _March(structure, tolerance)
+    history = [initial_state(march.model)]
+    for number in range(int(np.floor(march.arc(history[0]) / march.l0 + NEAREST)) + 1, march.elements + 1):
+        node = number * march.l0
+        trail = march.towards(history, node) if history else []
+        ratio = np.array([(node - march.arc(state)) / march.l0 for state in trail])
+        yield Approach(node=node, load_parameter=np.array([one.load_parameter for one in trail]), ratio=ratio)
+        history = march.behind(trail, node) if number < march.elements else []
 
 
-class _Contact:
-    """The contact's model, its solver and where it is."""
+class _March:
+    """The contact's model and its solver."""
 
     def __init__(self, structure: Structure, tolerance: float) -> None:
         self.model = Model(structure)
         self.newton = Newton(self.model, Settings(tolerance=tolerance, max_iterations=_ITERATIONS))
-        beam = structure.beams[0]
-        self.l0 = beam.length / beam.elements
-        self.length = beam.length
+        self.elements = structure.beams[0].elements
+        self.l0 = structure.beams[0].length / self.elements
 
     def arc(self, state: State) -> float:
         """Arc position of the contact."""
@@ -86,12 +73,15 @@ class _Contact:
         assert touch is not None, "this march opens no contact"
         return arc_position(self.model.pairs[0].target, touch.element, touch.xi)
 
-    def equilibrium(self, state: State) -> State | None:
-        """Newton's method from a start, None unless the residual falls below the tolerance.
+    def rate(self, states: list[State]) -> float:
+        """Element lengths that the contact slides per load parameter."""
+        before, last = states[-2:]
+        way = self.arc(last) - self.arc(before)
+        return max(way / self.l0 / (last.load_parameter - before.load_parameter), _SLOWEST)
 
-        What the solver accepts as round-off is iterated further: a later iteration may hit the tolerance.
-        """
-        spent = 0
+    def equilibrium(self, states: list[State], target: float) -> State | None:
+        """Newton's method down to the tolerance, beyond what the solver takes for round-off, or None."""
+        state, spent = extrapolate(self.model, states, target), 0
         while spent < _ITERATIONS:
             found = self.newton.solve(state)
             if found.residuals[-1] <= self.newton.tolerance:
@@ -101,49 +91,36 @@ class _Contact:
             state, spent = found.state, spent + found.iterations
         return None
 
-
-def _towards(contact: _Contact, history: list[State], node: float) -> list[State]:
-    """Equilibria with the contact nearer and nearer to the node."""
-    states, step = list(history), _LARGEST / 2
-    while (ratio := (node - contact.arc(states[-1])) / contact.l0) > NEAREST:
-        if len(states) > 1:
-            step = min(_LARGEST, _SHRINK * ratio / max(_rate(contact, states), _SLOWEST))
-        targets = (states[-1].load_parameter + step / 2**halvings for halvings in range(_HALVINGS))
-        for target in targets:
-            if target > 1.0:
+    def towards(self, history: list[State], node: float) -> list[State]:
+        """Equilibria with the contact nearer and nearer to the node."""
+        states, step = list(history), _LARGEST / 2
+        while (ratio := (node - self.arc(states[-1])) / self.l0) > NEAREST:
+            if len(states) > 1:
+                step = min(_LARGEST, _SHRINK * ratio / self.rate(states))
+            for halvings in range(_HALVINGS):
+                target = states[-1].load_parameter + step / 2**halvings
+                if target > 1.0:
+                    return states
+                found = self.equilibrium(states[-4:], target)
+                if found is not None and self.arc(found) < node:
+                    states.append(found)
+                    break
+            else:
                 return states
-            found = contact.equilibrium(extrapolate(contact.model, states[-4:], target))
-            if found is not None and contact.arc(found) < node:
-                states.append(found)
-                break
-        else:
-            return states
-    return states
+        return states
 
-
-def _rate(contact: _Contact, states: list[State]) -> float:
-    """Element lengths that the contact slides per load parameter."""
-    before, last = states[-2:]
-    way = contact.arc(last) - contact.arc(before)
-    return way / contact.l0 / (last.load_parameter - before.load_parameter)
-
-
-def _behind(contact: _Contact, trail: list[State], node: float) -> list[State]:
-    """One equilibrium inside the element behind the node, the nearest of a few places; none if none is found.
-
-    The starts are extrapolated from states that lie apart: those crowded before the node know only its round-off.
-    """
-    apart: list[State] = []
-    for state in reversed(trail):
-        if len(apart) < 3 and (not apart or apart[0].load_parameter - state.load_parameter > _LARGEST / 2):
-            apart.insert(0, state)
-    if len(apart) < 2:
+    def behind(self, trail: list[State], node: float) -> list[State]:
+        """One equilibrium inside the element behind the node, the nearest of a few places, if any."""
+        # the starts are extrapolated from states that lie apart: those at the node know only its round-off
+        apart: list[State] = []
+        for state in reversed(trail):
+            if not apart or apart[0].load_parameter - state.load_parameter > _LARGEST / 2:
+                apart.insert(0, state)
+        apart = apart[-3:]
+        for part in _BEHIND if len(apart) > 1 else ():
+            ahead = (node - self.arc(apart[-1])) / self.l0 + part
+            target = apart[-1].load_parameter + ahead / self.rate(apart)
+            found = self.equilibrium(apart, target) if target <= 1.0 else None
+            if found is not None and node < self.arc(found) < node + self.l0:
+                return [found]
         return []
-    rate, last = _rate(contact, apart), apart[-1]
-    for part in _BEHIND:
-        ahead = (node - contact.arc(last)) / contact.l0 + part
-        target = last.load_parameter + ahead / max(rate, _SLOWEST)
-        found = contact.equilibrium(extrapolate(contact.model, apart, target)) if target <= 1.0 else None
-        if found is not None and node < contact.arc(found) < node + contact.l0:
-            return [found]
-    return []

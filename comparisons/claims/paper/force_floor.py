@@ -1,24 +1,54 @@
-"""The least unbalanced force of a contact element beside a beam node: the effect of round-off, as a function of l_i/l.
-
-An element and the node that touches it are put into a state with a given contact force in extended precision. The nodal forces in this
-state balance an outer load. The state is then rounded to double precision, and the forces are evaluated in double precision. The
-difference is an unbalanced force, and an iteration in double precision goes below it only by chance. This floor belongs to the element
-alone; Newton's method, its tolerance and the load step have no effect on it.
-
-A contact stiffness ``K_cc`` times the last bit of a coordinate is what to expect: ``3 EI/b^3`` (Euler-Bernoulli) or ``GA/b``
-(Timoshenko, b below ``sqrt(Psi)``); with the force as an unknown nothing is multiplied. The reference has the same
-amplification with a last bit 2000 times smaller (x86). Elements that divide by b stop at 1e-15 of their length.
-"""
+"""The least unbalanced force of a contact element beside a node, by round-off, over l_i/l."""
+# An element and its node are put into a state with a given contact force in extended precision, which is then
+# rounded to double precision; what the forces differ by, no iteration in double precision goes below but by
+# chance. To expect is a contact stiffness times the last bit of a coordinate: 3 EI/b^3 (Euler-Bernoulli) or
+# GA/b (Timoshenko, b below sqrt(Psi)); with the force as an unknown nothing is multiplied. The reference has
+# the same amplification with a last bit 2000 times smaller (x86).
 
 from __future__ import annotations
 
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
+from tsm.elements.chord_contact import INSIDE
 
-from comparisons.claims.paper import turned_frame
-from tsm.elements import CLOSED_FORM, ClosedForm, beam
+from tsm.elements import CLOSED_FORM, ClosedForm, beam, cantilever
 from tsm.elements.properties import Array, Properties
+
+TURNED = "euler-bernoulli-cantilever, turned frame"
+"""The cantilever contact element in a frame that turns with its clamped section, whatever the rotation."""
+# `tsm` evaluates [P] (7) from the deformations of the chord, to first order in the rotations; in exact
+# arithmetic that is the simply supported element. Here the frame lies along the section at end i, with the
+# directions t and n; with r from end i to the node and d to end j, [Y_j, Y_c, M_j] = K(a) [n.d, n.r, theta_j
+# - theta_i] at a = t.r, with the corrected matrix of (7).
+
+
+def _frame(p: Properties, x: Array) -> tuple[Array, Array]:
+    """Return the directions along and across the section at end i, each of shape (2,)."""
+    c, s = np.cos(x[2]), np.sin(x[2])
+    t = np.array([c * p.dx0 - s * p.dy0, s * p.dx0 + c * p.dy0]) / p.l0
+    return t, np.array([-t[1], t[0]])
+
+
+def _turned(p: Properties, x: Array, lever: Any) -> tuple[Array, Array]:
+    """Forces on element and touching node (8), with ``lever = x_i - x_c``, and K (3, 3)."""
+    t, n = _frame(p, x)
+    d, r = np.array([p.dx0, p.dy0]) + (x[3:5] - x[:2]), -np.asarray(lever)
+    xi = min(max(t @ r / p.l0, INSIDE), 1 - INSIDE)
+    K, _ = cantilever.euler_bernoulli(p, xi)
+    Yj, Yc, Mj = K @ np.array([n @ d, n @ r, x[5] - x[2]])
+    length = np.sqrt(d @ d)
+    du = d - np.array([p.dx0, p.dy0])
+    elongation = (2 * (p.dx0 * du[0] + p.dy0 * du[1]) + du @ du) / (length + p.l0)
+    N = p.EA / p.l0 * elongation * d / length
+    force = np.zeros(8, dtype=K.dtype)
+    force[:2] = -N - (Yj + Yc) * n
+    force[2] = -Yj * (t @ d) - Yc * (t @ r) - Mj
+    force[3:5] = N + Yj * n
+    force[5] = Mj
+    force[6:] = Yc * n
+    return force, K
+
 
 _Extended = np.longdouble
 _SIDE, _OFFSET = 1.0, 0.0
@@ -34,7 +64,7 @@ class _State(NamedTuple):
 
 
 class _Element(NamedTuple):
-    """An element beside its node; `kind` is None for `turned_frame`."""
+    """An element beside its node; `kind` is None for the turned frame."""
 
     kind: ClosedForm | None
     p: Properties
@@ -45,7 +75,7 @@ class _Element(NamedTuple):
         """Gradient of the contact's energy, and its tangent; of the turned frame the stiffnesses of its deformations."""
         lever = self.start + state.x[:2] - state.node
         if self.kind is None:
-            return turned_frame.contact(self.p, state.x, lever)
+            return _turned(self.p, state.x, lever)
         return self.kind.contact.response(self.p, state.x, lever, state.xi, state.force, _SIDE, _OFFSET)
 
     def forces(self, state: _State) -> Array:
@@ -61,23 +91,15 @@ class _Element(NamedTuple):
 def force_floor(
     element: str,
     ratio: float,
-    *,
     end: Literal["start", "end"] = "start",
     Psi: float = 9.0,
+    *,
     elements: int = 10,
     samples: int = 50,
 ) -> float:
-    """Unbalanced force that round-off leaves, median over random states.
-
-    ``ratio``: distance of the contact point from the near end in parts of the element's length. ``end``:
-    which end is near. ``Psi``: ``EI/(G A_e)`` in ``l0^2``: 9 in [P] 4.1, about 0.04 in 4.2 with 20 elements.
-    ``samples``: number of random states: place, direction, rotations and strain. Returns largest entry of the
-    unbalanced force of element and node in ``EI/L^2``, moments in ``EI/L``: the scale that
-    `tsm.Settings.tolerance` has. Raises ValueError if the element has no closed form, the ratio does not lie
-    in [0, 1], or the platform has no floating-point type beyond double precision.
-    """
+    """Return the unbalanced force [EI/L^2] that round-off leaves, the median over random states."""
     kind = CLOSED_FORM.get(element)
-    if (kind is None and element != turned_frame.NAME) or not 0 <= ratio <= 1:
+    if (kind is None and element != TURNED) or not 0 <= ratio <= 1:
         raise ValueError(
             f"element = {element!r}, ratio = {ratio!r}: no element with a closed form and part of its length"
         )
@@ -94,7 +116,13 @@ def _sample(kind: ClosedForm | None, xi: Any, Psi: float, elements: int, rng: np
     p = Properties(np.cos(angle), np.sin(angle), 1.0, 3 / Psi, 1.0, 12 * Psi)
     p = p if kind is None else kind.constants(p)
     element = _Element(kind, p, elements * rng.uniform(-1, 1, 2), 1 / elements**2)
-    x = _random_displacements(p, rng).astype(_Extended)
+    # rigid motion, end rotations about 0.05 from the chord and a strain about 1e-3
+    turn, stretch = rng.uniform(-2, 2), 1 + 1e-3 * rng.normal()
+    c, s = stretch * np.cos(turn), stretch * np.sin(turn)
+    shift = rng.normal(size=2)
+    moved = shift + np.array([c * p.dx0 - s * p.dy0 - p.dx0, s * p.dx0 + c * p.dy0 - p.dy0])
+    theta_i, theta_j = turn + 0.05 * rng.normal(size=2)
+    x = np.array([*shift, theta_i, *moved, theta_j]).astype(_Extended)
     state = (_carried if kind is not None and kind.contact_unknowns else _deflected)(element, x, xi)
     rounded = _State(*(np.asarray(part).astype(float) for part in state))
     error = np.abs(element.forces(rounded) - element.forces(state)) / element.contact_force
@@ -102,20 +130,10 @@ def _sample(kind: ClosedForm | None, xi: Any, Psi: float, elements: int, rng: np
     return float(error.max())
 
 
-def _random_displacements(p: Properties, rng: np.random.Generator) -> Array:
-    """Rigid motion, end rotations about 0.05 from the chord and a strain about 1e-3."""
-    turn, stretch = rng.uniform(-2, 2), 1 + 1e-3 * rng.normal()
-    c, s = stretch * np.cos(turn), stretch * np.sin(turn)
-    shift = rng.normal(size=2)
-    moved = shift + np.array([c * p.dx0 - s * p.dy0 - p.dx0, s * p.dx0 + c * p.dy0 - p.dy0])
-    theta_i, theta_j = turn + 0.05 * rng.normal(size=2)
-    return np.array([*shift, theta_i, *moved, theta_j])
-
-
 def _deflected(element: _Element, x: Array, xi: Any) -> _State:
     """State whose contact force follows from the deflection: the node moves across the chord, or the section at end i, until it is as stated."""
     p, turned = element.p, element.kind is None
-    d = turned_frame.frame(p, x)[0] if turned else np.array([p.dx0, p.dy0]) + (x[3:5] - x[:2])
+    d = _frame(p, x)[0] if turned else np.array([p.dx0, p.dy0]) + (x[3:5] - x[:2])
     n = np.array([-d[1], d[0]]) / (1.0 if turned else np.sqrt(d @ d))
     node = element.start + x[:2] + xi * d
     for _ in range(1 if turned else 3):

@@ -7,37 +7,29 @@ import re
 from collections import Counter
 from dataclasses import replace
 from functools import cache
-from typing import get_args
 
 import numpy as np
 import pytest
 
-from comparisons.cases import Case, measure
-
 # not public: answers off by a known part, allowances before any run, and the whole matrix without its hour of solutions
-from comparisons.claims.claim import Verdict
+from comparisons.cases import measure
 from comparisons.claims.extremes import run as runner
-from comparisons.claims.extremes.axes import AXES, matrix
-from comparisons.claims.extremes.cell import LARGEST, Against, Cell, Check, allowance, judged
-from comparisons.claims.extremes.scenes import (
-    against_rod,
-    beam_case,
-    cantilever,
-    exact_rod,
-    half_circle,
-    kinds,
-    sheared,
-)
+from comparisons.claims.extremes.axes import AXES, beam, cantilever, half_circle, kinds, matrix, rod, sheared
+from comparisons.claims.extremes.cell import LARGEST, Verdict, allowance, judged
 from comparisons.cli import main
-from comparisons.models.options import Options
 from comparisons.models.theory import Bending
 from tests.comparisons.show.pages.markup import check_alone
 from tsm import ELEMENTS
 
 SCENE = half_circle(cantilever())
-CASE = beam_case(SCENE, ELEMENTS["mixed"], 10)
-CELL = Cell(axis="elements", row="mixed", column="10", case=CASE, checks=(against_rod(CASE),))
-ROD = exact_rod(SCENE)
+
+
+def cell_of(element, scene, count):
+    return replace(beam("10", scene, ELEMENTS[element], count), axis="elements")
+
+
+CELL = cell_of("mixed", SCENE, 10)
+CASE, ROD = CELL.cases
 BENT = Bending(force=8.0, curvature=4.0, turn=2.5, nearest=0.6)
 
 
@@ -95,52 +87,53 @@ def test_a_verdict_and_whether_a_check_refused_needlessly(case):
         assert found.reached == 1.0
 
 
-@pytest.mark.parametrize("kind", get_args(Check))
-def test_every_check_holds_a_true_answer_and_finds_a_spoiled_one(kind):
-    """Forces and tips a thousandth too large, in the first cell that has the check."""
-    cell, check = next(
-        (cell, check) for cell in matrix(quick=True) for check in cell.checks if type(check) is kind
-    )
-    true, needed = measured(cell.case).response, {case: measured(case) for case in check.needs}
+@pytest.mark.parametrize("law", ["energy", "circle", None])
+def test_every_check_holds_a_true_answer_and_finds_a_spoiled_one(law):
+    """Forces and tips a thousandth too large, in the first cell that has the law, or the comparison alone."""
+    cell = next(cell for cell in matrix(quick=True) if law == (cell.law and cell.law.__name__))
+    true = measured(cell.case)
     spoiled = replace(
-        off(measured(cell.case), 1e-3).response,
-        supports={node: replace(one, force=1.001 * one.force) for node, one in true.supports.items()},
-        tips={beam: 1.001 * place for beam, place in true.tips.items()},
+        off(true, 1e-3).response,
+        supports={
+            node: replace(one, force=1.001 * one.force) for node, one in true.response.supports.items()
+        },
+        tips={name: 1.001 * place for name, place in true.response.tips.items()},
     )
-    for response, held in ((true, True), (spoiled, False)):
-        found = check.finding(cell.case, response, needed)
-        assert (found.error <= found.allowed) == held, (cell.row, cell.column, found)
+    for own, held in ((true, True), (replace(true, response=spoiled), False)):
+        assert judge(own, cell).findings[0].holds == held, (cell.row, cell.column)
 
 
 @pytest.mark.slow
 def test_what_is_allowed_falls_with_the_order_of_the_element_and_has_a_cap():
     """Lengths 1 : 1e6: `mixed`, whose force is an unknown, may be off by its order alone; inside, the moment is larger than at the clamp."""
     slender = half_circle(cantilever(slenderness=1e4))
-    fine, coarse = (
-        {count: allowance(beam_case(slender, ELEMENTS[element], count), BENT).error for count in (10, 20)}
-        for element in ("mixed", "timoshenko")
+
+    def allowed(element, scene, count):
+        return allowance(cell_of(element, scene, count).case, BENT)
+
+    fine, coarse, exact = (
+        {count: allowed(element, slender, count).error for count in (10, 20)}
+        for element in ("mixed", "timoshenko", "exact")
     )
     assert coarse[10] / coarse[20] == pytest.approx(4, rel=0.01)
     assert fine[10] / fine[20] == pytest.approx(16, rel=0.01)
-    exact = [allowance(beam_case(slender, ELEMENTS["exact"], count), BENT).error for count in (1, 7)]
-    assert exact[0] == exact[1] < 1e-7
-    most = allowance(beam_case(half_circle(sheared(25.0)), ELEMENTS["mixed"], 20), BENT)
+    assert exact[10] == exact[20] < 1e-7
+    most = allowed("mixed", half_circle(sheared(25.0)), 20)
     assert most.error == LARGEST
     assert "third power of the shear strain" in most.why
     lengths = np.logspace(0, 6, 20)
     nodes = tuple((1 - np.cumsum(lengths / lengths.sum())[:-1][::-1]).tolist())
     graded = half_circle(cantilever(nodes=nodes))
-    mixed, paper = (beam_case(graded, ELEMENTS[element], None) for element in ("mixed", "timoshenko"))
-    assert allowance(mixed, BENT).why == "fourth order of the element"
-    assert allowance(mixed, BENT).error == pytest.approx(2 * (4.0 * nodes[0]) ** 4 / 1920, rel=1e-2)
-    assert allowance(paper, BENT).error == LARGEST
-    uneven = replace(CELL, case=mixed, checks=(against_rod(mixed),))
+    mixed = allowed("mixed", graded, None)
+    assert mixed.why == "fourth order of the element"
+    assert mixed.error == pytest.approx(2 * (4.0 * nodes[0]) ** 4 / 1920, rel=1e-2)
+    assert allowed("timoshenko", graded, None).error == LARGEST
+    uneven = cell_of("mixed", graded, None)
     for part, verdict in ((0.0, Verdict.RIGHT), (0.05, Verdict.WRONG)):
-        assert judge(off(measured(mixed), part), uneven).verdict is verdict
+        assert judge(off(measured(uneven.case), part), uneven).verdict is verdict
     last = half_circle(cantilever(slenderness=1e5), steps=1)
-    check = Against(case=exact_rod(last))
-    case = Case(scene=last, model="tsm", options=Options(element="timoshenko", elements=20))
-    found = check.finding(case, measured(case).response, {check.case: measured(check.case)})
+    cell = replace(cell_of("timoshenko", last, 20), against=(rod(last),))
+    (found,) = judge(measured(cell.case), cell).findings
     assert found.allowed == pytest.approx(4 * (np.sqrt(2 * 8.18212814018414) / 20) ** 2 / 24, rel=1e-3)
 
 
@@ -166,10 +159,10 @@ def test_every_place_is_there_once_and_axes_reach_their_ends():
     assert len(places) == len(cells) > len(few) / 0.6
     assert {(cell.axis, cell.row, cell.column) for cell in few} < places
     for found in (few, cells):
-        assert list(dict.fromkeys(cell.axis for cell in found)) == [axis.name for axis in AXES] == list(ENDS)
+        assert list(dict.fromkeys(cell.axis for cell in found)) == list(AXES) == list(ENDS)
         models = {cell.case.options.element or cell.case.model for cell in found}
         assert models == {*(kind.name for kind in kinds()), "solid", "rod", "elastica"}
-    assert all(cell.checks for cell in cells)
+    assert all(cell.law or cell.against for cell in cells)
     columns = {(axis, column) for axis, _, column in places}
     assert {(axis, column) for axis, ends in ENDS.items() for column in ends} <= columns
     starts = {one.column: one.case.scene.pins[0].points[0][0] for one in cells if one.axis == "contact"}

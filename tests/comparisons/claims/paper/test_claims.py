@@ -4,17 +4,15 @@ import numpy as np
 import pytest
 
 # not public: verdicts on numbers that no run gives, and the floor of an element's forces, which no solution shows
-from comparisons.claims.paper import critical_area as study
+from comparisons.claims.paper import fig7 as study
 from comparisons.claims.paper.approach import NEAREST, approaches
-from comparisons.claims.paper.claims import CLAIMS, Verdict, claims_text, judged
-from comparisons.claims.paper.claims import verdict as verdict_of
-from comparisons.claims.paper.facts import KS
-from comparisons.claims.paper.figure_study import Study
-from comparisons.claims.paper.force_floor import force_floor
-from comparisons.claims.paper.formulations import CANTILEVER, MIXED, SIMPLE, TIMOSHENKO
-from comparisons.claims.paper.turned_frame import NAME as TURNED
-from comparisons.claims.problems.double_beam import EVENTS as EXACT
-from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER
+from comparisons.claims.paper.fig8 import KS
+from comparisons.claims.paper.fig9 import EVENTS as EXACT
+from comparisons.claims.paper.fig9 import LOWER, TIP, UPPER
+from comparisons.claims.paper.figure import CANTILEVER, MIXED, SIMPLE, TIMOSHENKO, Study
+from comparisons.claims.paper.force_floor import TURNED, force_floor
+from comparisons.claims.paper.reproduce import CLAIMS, Verdict, claims_text, judged
+from comparisons.claims.paper.reproduce import verdict as verdict_of
 from comparisons.compare import PAPER, SOLID
 from comparisons.models.tsm import to_structure
 from comparisons.quantities import KEPT
@@ -165,7 +163,7 @@ def test_every_claim_is_judged_by_its_numbers():
 
 def ways(element, tolerance):
     """The ways of the contact to the beam's nodes at a fixed tolerance."""
-    return approaches(to_structure(study.lifted(4.2), element=element), tolerance)
+    return list(approaches(to_structure(study.lifted(4.2), element=element), tolerance))
 
 
 @pytest.mark.slow

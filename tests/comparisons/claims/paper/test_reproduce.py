@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from comparisons.claims.paper.claims import CLAIMS
-from comparisons.claims.paper.critical_area import PRINTED
+from comparisons.claims.paper.fig7 import PRINTED
+from comparisons.claims.paper.reproduce import CLAIMS
 from comparisons.cli import main
 from tests.comparisons.show.pages.markup import block, check_alone
 

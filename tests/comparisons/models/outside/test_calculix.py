@@ -10,7 +10,7 @@ import pytest
 import fem_reference
 
 # the study whose numbers the pages state, and the input file and the output of CalculiX, which is not everywhere
-from comparisons.claims.solid.peers import contact_forces, peers, press
+from comparisons.claims.solid_accuracy import contact_forces, peers, press
 from comparisons.cli import main
 from comparisons.models.outside.adapters.calculix import parse, run, tip_load
 from comparisons.models.outside.child import ProgramError

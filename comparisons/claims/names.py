@@ -1,4 +1,13 @@
-"""What is asked of the solid model."""
+"""What the figures of [P] show, and what is asked of the solid, by name."""
+
+FIGURES = {
+    "fig7a": "the cantilever lifted by a pin from six starting positions",
+    "fig7b": "the critical area of every element formulation",
+    "fig8": "the cantilever of Konyukhov and Schweizerhof by TSM and by solid elements",
+    "fig9": "two cantilevers in contact under one pin",
+}
+"""What they show, by name."""
+
 
 QUESTIONS = {
     "locking": "which element locks, in thin strips and with nearly incompressible materials",

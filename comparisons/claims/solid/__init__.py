@@ -1,1 +1,0 @@
-"""How far the solid can be trusted: one question each."""
