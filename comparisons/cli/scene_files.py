@@ -24,7 +24,7 @@ def run_scenes(given: Namespace) -> int:
             said = re.split(r"(?<!al)[:.]\s", text)[0].replace("\n# ", " ").removeprefix("# ")
             print(f"{scene:26s} {said}")
         return DONE
-    from comparisons.scene.toml import json_schema
+    from comparisons.scene.read import json_schema
 
     sys.stdout.write(json.dumps(json_schema(), indent=1) + "\n")
     return DONE

@@ -4,7 +4,7 @@ import math
 
 from comparisons.scene import rules
 from comparisons.scene.record import Record, key, one_of, optional, refused
-from comparisons.scene.rules import LARGEST, RANGE, FieldError, Mistakes, Point
+from comparisons.scene.rules import LARGEST, RANGE, TURN, FieldError, Mistakes, Point
 
 Dimension = float | tuple[float, float]
 
@@ -138,6 +138,18 @@ class BeamSpec(Record):
         chord = fraction * self.length * (math.sin(half) / half if half else 1.0)
         return x0 + chord * tx, y0 + chord * ty
 
+    def projected(self, point: Point) -> Point:
+        """Return the distance of a point to the left of the undeformed axis, and the fraction of the length at its projection."""
+        (tx, ty), (x0, y0) = self.tangent(0.0), self.start
+        dx, dy = point[0] - x0, point[1] - y0
+        along, left = tx * dx + ty * dy, tx * dy - ty * dx
+        if not self.turn:
+            return left, along / self.length
+        k = self.curvature
+        far = math.hypot(k * along, k * left - 1.0)
+        turned = math.remainder(math.atan2(k * along, 1.0 - k * left) - self.turn / 2.0, TURN)
+        return (2.0 * left - k * (along * along + left * left)) / (1.0 + far), turned / self.turn + 0.5
+
     @property
     def tapers(self) -> bool:
         """Whether the section changes along the beam."""
@@ -171,9 +183,9 @@ class BeamSpec(Record):
 
     def section(self, fraction: float) -> tuple[float, float, float]:
         """Return area, second moment of area and effective shear area at a fraction of the length."""
-        width, height = _between(self.width, fraction), _between(self.height, fraction)
+        width, height = _between(self.width, fraction), self.height_at(fraction)
         if width and height:
-            A, inertia, kappa = width * height, width * _cube(height) / 12.0, 5.0 / 6.0
+            A, inertia, kappa = width * height, width * height**3 / 12.0, 5.0 / 6.0
         else:
             A, inertia, kappa = self.area or 0.0, self.second_moment or 0.0, 1.0
         return A, inertia, self.shear_area or kappa * A
@@ -199,13 +211,13 @@ class BeamSpec(Record):
 
     def mass_coefficients(self) -> tuple[float, ...]:
         """Return the coefficients of the mass per length as a polynomial in the fraction of the length, the constant one first."""
-        start, middle, end = (self.mass_per_length(fraction) for fraction in (0.0, 0.5, 1.0))
+        start, middle, end = map(self.mass_per_length, (0.0, 0.5, 1.0))
         if not self.tapers:
             return (middle,)
         return start, -3 * start + 4 * middle - end, 2 * start - 4 * middle + 2 * end
 
 
-def _between(dimension: float | tuple[float, float] | None, fraction: float) -> float | None:
+def _between(dimension: Dimension | None, fraction: float) -> float | None:
     """Return a dimension at a fraction of the length."""
     if not isinstance(dimension, tuple):
         return dimension
@@ -216,11 +228,3 @@ def _between(dimension: float | tuple[float, float] | None, fraction: float) -> 
 def _turned(vector: Point, angle: float) -> Point:
     (x, y), c, s = vector, math.cos(angle), math.sin(angle)
     return c * x - s * y, s * x + c * y
-
-
-def _cube(number: float) -> float:
-    """Third power; infinite where Python's power raises OverflowError."""
-    try:
-        return number**3
-    except OverflowError:
-        return math.inf

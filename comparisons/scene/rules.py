@@ -6,15 +6,13 @@ A rule is a value: called, it returns the stored form of a value, or raises its 
 import dataclasses
 import math
 import operator
+import re
 from collections.abc import Callable, Collection, Iterator, Sequence
 from itertools import pairwise
-from typing import Any, Generic, TypeVar
-
-from comparisons.scene.values import toml_value
+from typing import Any
 
 Point = tuple[float, float]
 Rule = Callable[[object], object]
-T_co = TypeVar("T_co", covariant=True)
 
 LARGEST = 1e50
 """Largest magnitude of a number: squares, products and quotients of such numbers stay in floating-point range."""
@@ -60,7 +58,7 @@ class RecordError(FieldError):
     """Several mistakes, each in one line, the first one's key, value and rule; `found` has the values that are right."""
 
     def __init__(self, mistakes: Collection[FieldError], found: Any = None) -> None:
-        first = next(iter(mistakes))
+        first, *_ = mistakes
         super().__init__(first.key, first.value, first.rule)
         self.args = ("\n".join(map(str, mistakes)),)
         self.mistakes, self.found = tuple(mistakes), found
@@ -73,6 +71,20 @@ class RecordError(FieldError):
 Mistakes = Iterator[FieldError]
 
 
+def toml_value(value: object) -> str:
+    """Return `value` as TOML writes it in one line."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        escaped = value.replace("\\", "\\\\").replace('"', '\\"')
+        return '"' + "".join(c if c.isprintable() else f"\\U{ord(c):08x}" for c in escaped) + '"'
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(toml_value, value))}]"
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key} = {toml_value(item)}" for key, item in value.items()) + "}"
+    return str(value)
+
+
 def shown(value: object) -> str:
     """Return `value` as it would stand in a TOML file, in one line of at most 60 characters."""
     try:
@@ -82,15 +94,19 @@ def shown(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-class ValueRule(Generic[T_co]):
-    """A rule as a value: what it accepts in words, whether a value is right, the form in which it is stored, and the JSON Schema."""
+class ValueRule:
+    """A rule as a value: what it accepts in words, whether a value is right, its stored form (itself), and the JSON Schema."""
 
     def __init__(
-        self, accepts: str, right: Callable[[Any], object], stored: Callable[[Any], T_co], **schema: Any
+        self,
+        accepts: str,
+        right: Callable[[Any], object],
+        stored: Callable[[Any], Any] = lambda value: value,
+        **schema: Any,
     ) -> None:
         self.accepts, self.right, self.stored, self.schema = accepts, right, stored, schema
 
-    def __call__(self, value: object) -> T_co:
+    def __call__(self, value: object) -> Any:
         """Return the stored form of `value`, or raise `RuleError`."""
         if not self.right(value):
             raise RuleError(f"must be {self.accepts}")
@@ -106,105 +122,94 @@ COMPARED: dict[str, Callable[[float, float], bool]] = {
 """Limits of a number by their names in JSON Schema."""
 
 
-def limited(accepts: str, *, scaled: bool = False, **limits: float) -> ValueRule[float]:
-    """Return the rule: a finite number within `limits`; `scaled`, it is zero or within `RANGE`."""
+def limited(accepts: str, form: type[float] = float, *, scaled: bool = False, **limits: float) -> ValueRule:
+    """Return the rule: a finite number within `limits`, a whole one in the form int; `scaled`, zero or within `RANGE`."""
     least, most = RANGE if scaled else (0.0, LARGEST)
 
     def right(value: Any) -> bool:
-        is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        if not is_number or not all(COMPARED[name](value, limit) for name, limit in limits.items()):
-            return False
-        return not value or least <= abs(value) <= most
+        is_number = isinstance(value, int | form) and not isinstance(value, bool)
+        within = is_number and all(COMPARED[name](value, limit) for name, limit in limits.items())
+        return within and (not value or least <= abs(value) <= most)
 
-    return ValueRule(
-        accepts, right, lambda value: abs(float(value)) if scaled else float(value), type="number", **limits
-    )
+    name = "integer" if form is int else "number"
+    return ValueRule(accepts, right, lambda value: form(value) or form(), type=name, **limits)
 
 
+def whole(largest: int = 100_000) -> ValueRule:
+    """Return the rule: a whole number from 1 to `largest`."""
+    return limited(f"a whole number from 1 to {largest}", int, minimum=1, maximum=largest)
+
+
+TURN = 2.0 * math.pi
 number = limited("a finite number of at most 1e50 in size")
 positive = limited("a positive number, from 1e-100 to 1e100", scaled=True, exclusiveMinimum=0)
 not_negative = limited("zero, or a positive number from 1e-100 to 1e100", scaled=True, minimum=0)
-TURN = 2.0 * math.pi
 turn = limited("an angle in rad of less than 2 pi in size", exclusiveMinimum=-TURN, exclusiveMaximum=TURN)
 friction = limited("a coefficient between 0 and 100", minimum=0, maximum=100.0)
 fraction = limited("a number between 0 and 1", exclusiveMinimum=0, exclusiveMaximum=1)
 poissons_ratio = limited(
     "a number between -1 and 0.5, both excluded", exclusiveMinimum=-1, exclusiveMaximum=0.5
 )
-
-
-def whole(largest: int = 100_000) -> ValueRule[int]:
-    """Return the rule: a whole number from 1 to `largest`."""
-
-    def right(value: Any) -> bool:
-        return isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= largest
-
-    return ValueRule(
-        f"a whole number from 1 to {largest}", right, int, type="integer", minimum=1, maximum=largest
-    )
-
-
 whole_number = whole()
 
 
 def several(
-    accepts: str, item: ValueRule[Any], right: Callable[[Sequence[Any]], object], **schema: Any
-) -> ValueRule[Any]:
-    """Return the rule: a list of items that are `right` together."""
-    return ValueRule(
-        accepts,
-        lambda value: isinstance(value, list | tuple) and all(map(item.right, value)) and right(value),
-        lambda value: tuple(map(item.stored, value)),
-        **{"type": "array", "items": item.schema, **schema},
-    )
-
-
-def two(
     accepts: str,
-    item: ValueRule[Any],
-    right: Callable[[Any, Any], object] = lambda a, b: True,  # noqa: ARG005
+    item: ValueRule,
+    least: int = 0,
+    most: int | None = None,
+    right: Callable[[Sequence[Any]], object] = lambda _: True,
     **schema: Any,
-) -> ValueRule[Any]:
-    """Return the rule: a list of two items that are `right` together."""
-    return several(
-        accepts, item, lambda pair: len(pair) == 2 and right(*pair), minItems=2, maxItems=2, **schema
-    )
+) -> ValueRule:
+    """Return the rule: a list of `least` to `most` items that are `right` together."""
+    sizes = {"minItems": least} if most is None else {"minItems": least, "maxItems": most}
+
+    def all_right(value: Any) -> object:
+        fits = isinstance(value, list | tuple) and least <= len(value) <= (most or len(value))
+        return fits and all(map(item.right, value)) and right(value)
+
+    def stored(value: Any) -> Any:
+        return tuple(map(item.stored, value))
+
+    return ValueRule(accepts, all_right, stored, **{"type": "array", "items": item.schema, **sizes, **schema})
 
 
-def polyline(at_least: int) -> ValueRule[Any]:
+def rising(values: Sequence[float]) -> bool:
+    """Whether each number is larger than the one before it."""
+    return all(a < b for a, b in pairwise(values))
+
+
+point = several("two numbers [x, y], a third dimension is not modelled", number, 2, 2)
+stiffnesses = several("two numbers [x, y], neither negative", not_negative, 2, 2)
+span = several(
+    "two fractions of the length that rise from 0 to 1",
+    *(limited("", minimum=0, maximum=1), 2, 2),
+    rising,
+)
+mesh = several("[elements along, elements across]", whole_number, 2, 2)
+parts = several(
+    "a list of numbers that rise between 0 and 1, both excluded",
+    fraction,
+    right=rising,
+)
+
+
+def polyline(at_least: int) -> ValueRule:
     """Return the rule: points, no two consecutive ones equal."""
     return several(
         f"a list of {at_least} or more points [x, y], no two consecutive ones equal",
         point,
-        lambda points: len(points) >= at_least and all(a != b for a, b in pairwise(map(tuple, points))),
-        minItems=at_least,
+        at_least,
+        right=lambda points: all(a != b for a, b in pairwise(map(tuple, points))),
     )
 
 
-sequence = ValueRule("a list", lambda value: isinstance(value, list | tuple), tuple[object, ...])
-point = two("two numbers [x, y], a third dimension is not modelled", number)
-stiffnesses = two("two numbers [x, y], neither negative", not_negative)
-span = two(
-    "two fractions of the length that rise from 0 to 1",
-    number,
-    lambda a, b: 0.0 <= a < b <= 1.0,
-    items={"type": "number", "minimum": 0, "maximum": 1},
-)
-mesh = two("[elements along, elements across]", whole_number)
-parts = several(
-    "a list of numbers that rise between 0 and 1, both excluded",
-    number,
-    lambda parts: all(a < b for a, b in pairwise((0.0, *parts, 1.0))),
-    items=fraction.schema,
-)
-_ends = two("", positive)
+_ends = several("", positive, 2, 2)
 
 
 def _dimension(value: Any) -> float | tuple[float, float]:
     """Return a number, or two where they differ."""
-    if not _ends.right(value):
-        return positive.stored(value)
-    start, end = _ends.stored(value)
+    start, end = _ends.stored(value) if _ends.right(value) else (positive.stored(value),) * 2
     return start if start == end else (start, end)
 
 
@@ -218,60 +223,43 @@ dimension = ValueRule(
 
 def mesh_text(value: object) -> tuple[int, int]:
     """Accept the numbers of elements along and across as ``50x2``."""
-    along, separator, across = value.partition("x") if isinstance(value, str) else ("", "", "")
-    if not separator or not (along + across).isdecimal():
+    if not re.fullmatch(r"[0-9]+x[0-9]+", str(value)):
         raise RuleError("must be NXxNY, as 50x2")
-    found: tuple[int, int] = mesh((int(along), int(across)))
+    found: tuple[int, int] = mesh(tuple(map(int, str(value).split("x"))))
     return found
 
 
-text = ValueRule(
-    "a printable text, not empty",
-    lambda value: isinstance(value, str) and value.strip() and value.isprintable(),
-    str,
-    type="string",
-    minLength=1,
-)
-name = ValueRule(
-    "a name of letters, digits, '-' and '_'",
-    lambda value: text.right(value) and all(c.isalnum() or c in "-_" for c in value),
-    str,
-    type="string",
-    pattern=r"^[\w-]+$",
-)
-units = ValueRule(
-    'the units of force and of length, as "N, m"',
-    lambda value: text.right(value) and [bool(part.strip()) for part in value.split(",")] == [True, True],
-    str,
-    type="string",
-    pattern="^[^,]*[^, ][^,]*,[^,]*[^, ][^,]*$",
-)
-truth = ValueRule("true or false", lambda value: isinstance(value, bool), bool, type="boolean")
-
-
-def choice(*options: str) -> ValueRule[str]:
-    """Return the rule: one of `options`."""
-    listed = ", ".join(map(shown, options))
+def worded(accepts: str, pattern: str) -> ValueRule:
+    """Return the rule: a printable text with a regular expression in it."""
     return ValueRule(
-        f"one of {listed}",
-        lambda value: isinstance(value, str) and value in options,
-        str,
-        enum=list(options),
+        accepts,
+        lambda value: isinstance(value, str) and value.isprintable() and re.search(pattern, value),
+        type="string",
+        pattern=pattern,
     )
 
 
-def subset(*options: str, at_least: int = 0) -> ValueRule[Any]:
+text = worded("a printable text, not empty", r"\S")
+name = worded("a name of letters, digits, '-' and '_'", r"^[\w-]+$")
+units = worded('the units of force and of length, as "N, m"', "^[^,]*[^, ][^,]*,[^,]*[^, ][^,]*$")
+truth = ValueRule("true or false", lambda value: isinstance(value, bool), type="boolean")
+sequence = ValueRule("a list", lambda value: isinstance(value, list | tuple), tuple[object, ...])
+
+
+def choice(*options: str) -> ValueRule:
+    """Return the rule: one of `options`."""
+    accepts = f"one of {', '.join(map(shown, options))}"
+    return ValueRule(accepts, lambda value: isinstance(value, str) and value in options, enum=list(options))
+
+
+def subset(*options: str, at_least: int = 0) -> ValueRule:
     """Return the rule: some of `options`, each once."""
-    return several(
-        f"a list of some of {', '.join(map(shown, options))}, each once",
-        choice(*options),
-        lambda items: at_least <= len(items) == len(set(items)),
-        uniqueItems=True,
-        minItems=at_least,
-    )
+    accepts = f"a list of some of {', '.join(map(shown, options))}, each once"
+    each_once = lambda items: len(items) == len(set(items))  # noqa: E731
+    return several(accepts, choice(*options), at_least, right=each_once, uniqueItems=True)
 
 
-class Records(ValueRule[tuple[Any, ...]]):
+class Records(ValueRule):
     """The rule: a list of tables ``[[name]]``, each of which states a record of one kind, or of such records."""
 
     def __init__(self, name: str, kind: type, at_least: int = 0) -> None:

@@ -1,6 +1,6 @@
 """The record of a whole scene, which checks the rules between its records at construction."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from functools import cached_property
 from typing import Any
 
@@ -15,10 +15,7 @@ from comparisons.scene.stages import LoadHistory, PinMove, PrescribedMotion, Sta
 
 
 class Named(dict[str, Any]):
-    """Records by their names, without those whose name is wrong; a name that none has raises `Unjudged`, a ``KeyError``."""
-
-    def __init__(self, records: Iterable[Any]) -> None:
-        super().__init__((record.name, record) for record in records if record.has("name"))
+    """Records by their names; a name that none has raises `Unjudged`, a ``KeyError``."""
 
     def __missing__(self, name: str) -> Any:
         raise Unjudged(name)
@@ -53,11 +50,11 @@ class Scene(Record):
         rules.Records("stage", StageSpec), "Stages after the first one.", ()
     )
 
+    obeys = (scene_rules,)
+
     def _settle(self) -> None:
         if self.has("pins"):
             vars(self)["pins"] = tuple(copied(pin, moves=self._moves(pin)) for pin in self.pins)
-
-    obeys = (scene_rules,)
 
     def _moves(self, pin: PinSpec) -> tuple[PinMove | None, ...] | None:
         """Return the motions of a pin in the stages; None where one is wrong."""
@@ -68,11 +65,11 @@ class Scene(Record):
 
     @cached_property
     def _beams(self) -> dict[str, BeamSpec]:
-        return Named(self.beams)
+        return Named((beam.name, beam) for beam in self.beams if beam.has("name"))
 
     @cached_property
     def _pins(self) -> dict[str, PinSpec]:
-        return Named(self.pins)
+        return Named((pin.name, pin) for pin in self.pins if pin.has("name"))
 
     def beam(self, name: str) -> BeamSpec:
         """Return the beam called `name`."""
@@ -95,12 +92,8 @@ class Scene(Record):
     @cached_property
     def all_supports(self) -> tuple[SupportSpec, ...]:
         """The clamped ends of the beams, then `supports`."""
-        clamps = (
-            SupportSpec(beam=beam.name, end=end, kind="clamped")
-            for beam in self.beams
-            for end in beam.clamped
-        )
-        return (*clamps, *self.supports)
+        ends = ((beam.name, end) for beam in self.beams for end in beam.clamped)
+        return (*(SupportSpec(beam=name, end=end, kind="clamped") for name, end in ends), *self.supports)
 
     @property
     def holding(self) -> tuple[SupportSpec | SpringSpec, ...]:
@@ -119,36 +112,29 @@ class Scene(Record):
         return motions
 
     @property
-    def stage_loads(self) -> tuple[tuple[LoadSpec, ...], ...]:
-        """The loads that are added in every stage."""
-        return (self.loads, *(stage.load for stage in self.stages))
-
-    @property
     def stage_gravities(self) -> tuple[Point, ...]:
         """The change of the acceleration of gravity in every stage."""
         return (self.gravity or (0.0, 0.0), *(stage.gravity for stage in self.stages))
-
-    def numbered_loads(self) -> Iterator[tuple[int, LoadSpec]]:
-        """Yield the number of the stage, from 0, of every load, and the load."""
-        yield from ((number, load) for number, loads in enumerate(self.stage_loads) for load in loads)
-
-    @cached_property
-    def load_histories(self) -> tuple[LoadHistory, ...]:
-        """The dead loads through all stages, place by place in the order of the file."""
-        stages = [{load.node: load for load in loads} for loads in self.stage_loads]
-        first = {node: load for loads in reversed(stages) for node, load in loads.items()}
-        return tuple(
-            LoadHistory(
-                first[node],
-                tuple(loads[node].amount if node in loads else (0.0, 0.0, 0.0) for loads in stages),
-            )
-            for node in dict.fromkeys(node for loads in stages for node in loads)
-        )
 
     def gravity_at(self, load_parameter: float) -> Point:
         """Return the acceleration of gravity at `load_parameter`."""
         x, y = amount(self.stage_gravities, load_parameter)
         return x, y
+
+    def numbered_loads(self) -> Iterator[tuple[int, LoadSpec]]:
+        """Yield the number of the stage, from 0, of every load, and the load."""
+        stages = enumerate((self.loads, *(stage.load for stage in self.stages)))
+        yield from ((number, load) for number, loads in stages for load in loads)
+
+    @cached_property
+    def load_histories(self) -> tuple[LoadHistory, ...]:
+        """The dead loads through all stages, place by place in the order of the file."""
+        found: dict[str, LoadHistory] = {}
+        for number, load in self.numbered_loads():
+            rest = ((0.0, 0.0, 0.0),) * (len(self.stages) + 1)
+            first, amounts = found.setdefault(load.node, LoadHistory(load, rest))
+            found[load.node] = LoadHistory(first, (*amounts[:number], load.amount, *amounts[number + 1 :]))
+        return tuple(found.values())
 
     def place(self, node: str) -> Point:
         """Return the undeformed position of a beam's end, ``upper.end``."""
@@ -171,6 +157,4 @@ class Scene(Record):
     def times(self) -> tuple[float, ...]:
         """The load parameters: ``j + k/n``, k = 1..n, of the stage j = 0, 1, ... with n load parameters."""
         counts = (self.load_parameters, *(stage.load_parameters for stage in self.stages))
-        return tuple(
-            before + k / n if before else k / n for before, n in enumerate(counts) for k in range(1, n + 1)
-        )
+        return tuple(before + k / n for before, n in enumerate(counts) for k in range(1, n + 1))

@@ -5,9 +5,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from comparisons.scene import rules
-from comparisons.scene.conditions import COMPONENTS, AtEnd, LoadSpec, SupportSpec
+from comparisons.scene.conditions import COMPONENTS, END, AtEnd, LoadSpec, SupportSpec
 from comparisons.scene.record import Record, key, one_of, optional, refused
 from comparisons.scene.rules import Point
+
+AT_REST = "must not be zero: the pin does not move"
+IDLE = "give pin, support, load or gravity: nothing happens in the stage"
 
 
 class PinMove(Record):
@@ -22,18 +25,14 @@ class PinMove(Record):
 
     obeys = (
         one_of(("displacement",), ("path",)),
-        refused(
-            "displacement",
-            "must not be zero: the pin does not move",
-            lambda it: it.displacement == (0.0, 0.0),
-        ),
+        refused("displacement", AT_REST, lambda it: it.displacement == (0.0, 0.0)),
     )
 
 
 class SupportMove(AtEnd):
     """A support's motion during a stage, in proportion to the load parameter."""
 
-    end: str = key(rules.choice("start", "end"), "Which end; it has a support.")
+    end: str = key(END, "Which end; it has a support.")
     displacement: Point = optional(
         rules.point, "Displacement during the stage [length]; zero in a free direction.", (0.0, 0.0)
     )
@@ -77,13 +76,7 @@ class StageSpec(Record):
         rules.point, "Change of the acceleration of gravity [length/time^2].", (0.0, 0.0)
     )
 
-    obeys = (
-        refused(
-            "pin",
-            "give pin, support, load or gravity: nothing happens in the stage",
-            lambda it: not (it.pin or it.support or it.load or any(it.gravity)),
-        ),
-    )
+    obeys = (refused("pin", IDLE, lambda it: not (it.pin or it.support or it.load or any(it.gravity))),)
 
 
 def stage_of(load_parameter: float, stages: int) -> int:

@@ -24,8 +24,8 @@ ERRORS = {"RuleError", "FieldError", "InputError", "SceneError", "kind"}
 """Names by which the reader calls its errors; `kind` is the class of error that a caller hands down."""
 HANDED = {"read_text", "refused"}
 """Functions that are given a sentence as their second argument."""
-NAMES = {"rule", "absent", "reason", "APART", "ROLLS", "sentence"}
-"""Variables that hold a sentence."""
+NAMES = {"rule", "absent", "reason", "sentence"}
+"""Variables that hold a sentence, as constants of a module in capitals do."""
 RULE = "must be {}"
 """The sentence of a rule for a single value: what the rule accepts."""
 
@@ -35,13 +35,19 @@ def sentences(source: str) -> set[str]:
 
     Raises ValueError for a sentence that is made in a way that is not understood here.
     """
-    said = []
+    said: list[ast.expr] = []
+    constants: dict[str, ast.expr] = {}
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
             said += node.args[-1:] if node.func.id in ERRORS else []
             said += node.args[1:2] if node.func.id in HANDED else []
         elif isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
-            said += [node.value] if node.targets[0].id in {"rule", "absent", "APART", "ROLLS"} else []
+            said += [node.value] if node.targets[0].id in {"rule", "absent"} else []
+            constants[node.targets[0].id] = node.value
+    said = [
+        constants.get(value.id, value) if isinstance(value, ast.Name) and value.id.isupper() else value
+        for value in said
+    ]
     return {words for value in said for words in _template(value)}
 
 
