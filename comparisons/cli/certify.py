@@ -5,8 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from comparisons.cli.options import STANDARD, Command, outputs, write
-from comparisons.cli.outcome import DONE, STOPPED, WRONG
-from comparisons.cli.progress import watching
+from comparisons.cli.screen import DONE, STOPPED, WRONG, watching
 from comparisons.files import OutputError
 from comparisons.models import TSM, certified, restored, solve
 from comparisons.models.options import ModelError

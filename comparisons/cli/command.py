@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import NoReturn
 
 from comparisons.cli import certify, compare, run, scene_files, solve, view
-from comparisons.cli.outcome import BAD_INPUT, DONE, EPILOG, INTERRUPTED, STOPPED, WRONG, report
-from comparisons.extras import install
+from comparisons.cli.screen import BAD_INPUT, DONE, EPILOG, INTERRUPTED, STOPPED, WRONG, report
+from comparisons.extras import EXTRAS, install
 from comparisons.files import OutputError, printable
 from comparisons.models.options import ModelError
 from comparisons.models.outside.child import CalculixError
@@ -44,8 +44,12 @@ GONE = {
     "--few": "crossval solve, which judges as many",
     "--only": "crossval run manual PROBLEM ...",
     "--cards": "crossval run cards",
+    "--junit": "--out FILE.xml of compare, junit.xml in the folder of run manual",
+    "--cluster": "--workers ADDRESS",
 }
 """Commands and options of earlier versions, and what does their work."""
+NEEDED = ("numpy", "scipy", "scikit-fem", "meshio", "matplotlib")
+"""Libraries that no command does without."""
 OWN = ("comparisons", "tsm", "fem_reference")
 """Packages whose absence is a bug and no missing library."""
 
@@ -126,29 +130,42 @@ def _told(reason: object, status: int) -> int:
     return status
 
 
+def _drop_output() -> None:
+    """Spare the interpreter a last flush that fails."""
+    with suppress(OSError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _version() -> int:
+    """Print the version, and the version of every library and program, or how the missing one is had."""
+    import shutil
+    from importlib import metadata
+
+    from comparisons.show.render import renders
+
+    def found(name: str) -> str | None:
+        with suppress(metadata.PackageNotFoundError):
+            return metadata.version(name)
+        return None
+
+    uses = {name: f"missing, extra {extra.name}: {extra.use}" for name, extra in EXTRAS.items()}
+    uses["ccx"] = "missing, Debian's calculix-ccx: --model calculix, crossval run peers"
+    uses["OpenGL"] = "missing: pictures by matplotlib instead of pyvista"
+    states: dict[str, str | None] = {"python": ".".join(map(str, sys.version_info[:3]))}
+    states |= {name: found(name) for name in (*NEEDED, *EXTRAS)}
+    states |= {"ccx": shutil.which("ccx"), "OpenGL": "off-screen rendering works" if renders() else None}
+    print(f"crossval {metadata.version('tsm-crossval')}")
+    for name, state in states.items():
+        mark = "ok" if state else "-" if name in uses else "MISSING"
+        print(f"{mark:8s}{name:14s} {state or uses.get(name, 'missing')}")
+    return DONE if all(states[name] for name in NEEDED) else WRONG
+
+
 class _Parser(argparse.ArgumentParser):
     """A parser whose errors show arguments that a terminal would obey as escapes."""
 
     def error(self, message: str) -> NoReturn:
         super().error(printable(message))
-
-
-def _version() -> int:
-    """Print the version and what this machine has."""
-    from comparisons.cli.machine import examined
-    from comparisons.version import release
-
-    print(f"crossval {release()}")
-    findings = list(examined())
-    for mark, what, state in findings:
-        print(f"{mark:8s}{what:14s} {state}")
-    return WRONG if any(mark == "MISSING" for mark, *_ in findings) else DONE
-
-
-def _drop_output() -> None:
-    """Spare the interpreter a last flush that fails."""
-    with suppress(OSError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def command_parser() -> argparse.ArgumentParser:

@@ -2,13 +2,13 @@
 
 import argparse
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from comparisons.files import OutputError, result_file, write_text
 from comparisons.models import MODELS, TSM
-from comparisons.models.options import BRANCHES, ModelError, Options
+from comparisons.models.options import BRANCHES, Options
 from comparisons.models.outside.programs import ADAPTERS, known
 from comparisons.scene import rules
 from comparisons.scene.rules import Rule, RuleError
@@ -17,35 +17,36 @@ if TYPE_CHECKING:
     from comparisons.cases.workers import Workers
 
 
-class ModelNames:
-    """The values of ``--model``: the models of this package, programs of others, and program files, which are read only when they are used."""
+class Names:
+    """Names that are looked up where they are asked for, and whether a name is one of them."""
+
+    def __init__(self, listed: Callable[[], Iterable[str]], known: Callable[[str], bool]) -> None:
+        self.listed, self.known = listed, known
 
     def __iter__(self) -> Iterator[str]:
-        """Iterate over the models and adapters of this package."""
-        return iter((*MODELS, *ADAPTERS))
+        return iter(self.listed())
 
-    def __contains__(self, name: object) -> bool:
-        """Whether a name is known, or is the name of a file that may state a program."""
-        return name in MODELS or known(str(name))
-
-
-class Quantities:
-    """The names of the quantities, which are imported where they are asked for; those of the path with `path`."""
-
-    def __init__(self, *, path: bool) -> None:
-        self.path = path
-
-    def __iter__(self) -> Iterator[str]:
-        """Iterate over the names."""
-        from comparisons.quantities import names
-
-        return iter(names(path=self.path))
+    def __contains__(self, name: str) -> bool:
+        return name in self.listed() or self.known(name)
 
     def __str__(self) -> str:
         return ", ".join(self)
 
 
-QUANTITIES = {"--accuracy": Quantities(path=False), "--max-error": Quantities(path=True)}
+def _quantities(*, path: bool) -> Names:
+    """Return the names of the quantities, or of those of the path."""
+
+    def listed() -> Iterable[str]:
+        from comparisons.quantities import names
+
+        return names(path=path)
+
+    return Names(listed, lambda _: False)
+
+
+MODEL_NAMES = Names(lambda: (*MODELS, *ADAPTERS), known)
+"""The models of this package, programs of others, and program files, which are read only when they are used."""
+QUANTITIES = {"--accuracy": _quantities(path=False), "--max-error": _quantities(path=True)}
 """The quantities that an argument names."""
 
 
@@ -62,7 +63,7 @@ def checked(rule: Rule, read: Callable[[str], object] = str) -> Callable[[str], 
     return value
 
 
-def bound(names: Quantities, rule: Rule, default: str = "") -> Callable[[str], tuple[str, float]]:
+def bound(names: Names, rule: Rule, default: str = "") -> Callable[[str], tuple[str, float]]:
     """Return the type of an argument ``QUANTITY=X`` with one of some names; without a name it is `default`."""
 
     def value(text: str) -> tuple[str, float]:
@@ -79,18 +80,25 @@ def _of(option: str, meaning: str) -> str:
     return f"{', '.join(model.name for model in MODELS.values() if option in model.options)}: {meaning}"
 
 
+def _workers(text: str) -> int | str:
+    """Return a number of processes, or an address, which has letters."""
+    found: int | str = text if any(map(str.isalpha, text)) else checked(rules.whole_number, int)(text)
+    return found
+
+
 PART = {"type": checked(rules.fraction, float), "metavar": "X"}
 COUNT = {"type": checked(rules.whole_number, int), "metavar": "N"}
-FOLDER = {"type": Path, "metavar": "FOLDER"}
 SWITCH = {"action": "store_true"}
 MANY = {"action": "append", "default": []}
 _REST = "at a critical point stop (the default), turn to the stable branch, or go on along the primary one, unstable"
 _SHARED = (
-    "processes (one for each core; 1 where seconds are measured: cases side by side slow each other down)"
+    "processes (one for each core; 1 where seconds are measured: cases side by side slow each other down), or the scheduler "
+    "of a Dask cluster, as tcp://127.0.0.1:8786"
 )
 _HELD = "load parameters to hold against the exact equilibrium: the last of every stage and those beside events (the default), all, none"
 _CHOSEN = "choose model and resolution for this relative error of the force, or of another quantity, in place of elements and meshes: "
 _WITH = "a program of others as well, any number of them: its name, or a program file NAME.toml"
+_WITHIN = "error allowed to the integration inside exact elements (1e-9)"
 ARGUMENTS: dict[str, tuple[str, dict[str, Any]]] = {
     "scene": ("a built-in scene or a TOML file", {"metavar": "SCENE"}),
     "scenes": ("built-in scenes or TOML files; all: every built-in one", {"nargs": "+", "metavar": "SCENE"}),
@@ -105,15 +113,12 @@ ARGUMENTS: dict[str, tuple[str, dict[str, Any]]] = {
     "--like": ("a built-in scene to start from", {"metavar": "SCENE"}),
     "--schema": ("print the JSON Schema of scene files, for editors", SWITCH),
     "--scene": ("of a response, where it is not a built-in one", {"metavar": "SCENE"}),
-    "--model": (f"the model that solves ({TSM.name})", {"choices": ModelNames()}),
-    "--with": (_WITH, {**MANY, "dest": "others", "choices": ModelNames(), "metavar": "MODEL"}),
-    "--against": ("bounds: the model to measure against (rod)", {"choices": ModelNames()}),
+    "--model": (f"the model that solves ({TSM.name})", {"choices": MODEL_NAMES}),
+    "--with": (_WITH, {**MANY, "dest": "others", "choices": MODEL_NAMES, "metavar": "MODEL"}),
+    "--against": ("bounds: the model to measure against (rod)", {"choices": MODEL_NAMES}),
     "--elements": (_of("elements", "elements of every beam"), COUNT),
     "--element": (_of("element", "type of the elements"), {"metavar": "ELEMENT"}),
-    "--integration-tolerance": (
-        _of("integration_tolerance", "error allowed to the integration inside exact elements (1e-9)"),
-        PART,
-    ),
+    "--integration-tolerance": (_of("integration_tolerance", _WITHIN), PART),
     "--mesh": (
         _of("mesh", "elements along and across"),
         {"type": checked(rules.mesh_text), "metavar": "NXxNY"},
@@ -134,11 +139,9 @@ ARGUMENTS: dict[str, tuple[str, dict[str, Any]]] = {
         {"type": checked(rules.positive, float), "default": 1.0, "metavar": "FACTOR"},
     ),
     "--out=FILE": ("", {**MANY, "metavar": "FILE"}),
-    "--out": ("folder of the results (out/NAME)", FOLDER),
-    "--junit": ("write the bounds, or every answer of the manual, as JUnit XML", {"metavar": "FILE"}),
+    "--out": ("folder of the results (out/NAME)", {"type": Path, "metavar": "FOLDER"}),
     "--quick": ("fewer or coarse settings", SWITCH),
-    "--workers": (_SHARED, COUNT),
-    "--cluster": ("the scheduler of a Dask cluster, instead of --workers", {"metavar": "ADDRESS"}),
+    "--workers": (_SHARED, {"type": _workers, "metavar": "N|ADDRESS"}),
     "--quiet": ("tell of no progress", SWITCH),
 }
 """The help of every argument, and how it is read."""
@@ -157,9 +160,8 @@ class Command(NamedTuple):
 
     def add_to(self, commands: Any) -> None:
         """Add the command to the subparsers of the parser."""
-        parser = commands.add_parser(
-            self.name, help=self.help, description=self.description, epilog=self.epilog
-        )
+        texts = {"help": self.help, "description": self.description, "epilog": self.epilog}
+        parser = commands.add_parser(self.name, **texts)
         for name in self.arguments.split():
             meaning, reading = ARGUMENTS[name]
             action = parser.add_argument(name.partition("=")[0], help=self.own.get(name, meaning), **reading)
@@ -178,12 +180,10 @@ def chosen(given: argparse.Namespace) -> Options:
 
 
 def workers(given: argparse.Namespace, number: int | None = None) -> "Workers":
-    """Return where the cases run: ``--cluster``, or ``--workers`` processes, by default `number` of them or one for each core."""
+    """Return where the cases run, by default `number` processes or one for each core."""
     from comparisons.cases.workers import cluster, local
 
-    if given.workers and given.cluster:
-        raise ModelError("--cluster: is not allowed with argument --workers")
-    return local(given.workers or number) if given.cluster is None else cluster(given.cluster)
+    return cluster(given.workers) if isinstance(given.workers, str) else local(given.workers or number)
 
 
 STANDARD = Path("-")
@@ -196,8 +196,7 @@ def outputs(names: Sequence[str], *kinds: str) -> list[tuple[str, Path]]:
     Raises OutputError for a file of another kind, or one that cannot be written or is not this program's.
     """
     found = []
-    for name in names:
-        path = Path(name)
+    for name, path in zip(names, map(Path, names), strict=True):
         kind = ".json" if path == STANDARD else "" if path.is_dir() else path.suffix
         if kind not in kinds:
             raise OutputError(f"{name}: must end in {', '.join(filter(None, kinds))}")

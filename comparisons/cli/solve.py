@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from comparisons.cli.options import STANDARD, Command, argument, chosen, outputs, write
-from comparisons.cli.outcome import DONE, EPILOG, STOPPED, exit_status, report
-from comparisons.cli.progress import watching
+from comparisons.cli.screen import DONE, EPILOG, STOPPED, exit_status, report, watching
 from comparisons.files import writable_folder
 from comparisons.models import TSM, certified, find, solve
 from comparisons.models.options import ModelError

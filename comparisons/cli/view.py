@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from comparisons.cli.options import Command
-from comparisons.cli.outcome import DONE, EPILOG, exit_status, report
-from comparisons.cli.progress import staging, watching
+from comparisons.cli.screen import DONE, EPILOG, exit_status, files_named, report, staging, watching
 from comparisons.files import OutputError, writable_folder
 from comparisons.models import SOLID, TSM, solve
 from comparisons.models.options import ModelError, Options
@@ -76,7 +75,7 @@ def _present(series: "list[Series]", factor: float, out: Path | None) -> int:
         files, sentence = write(shown, out, count)
     if sentence is not None:
         report(sentence)
-    print("files:", *(f"  {path}" for path in files), sep="\n")
+    files_named(*files)
     return DONE
 
 

@@ -30,7 +30,8 @@ HEAD = {item.name for item in fields(Scene)} - lists_of(Scene).keys()
 
 def built_in_scenes() -> dict[str, str]:
     """Return the TOML text of the scenes that come with the package, by name."""
-    return {path.stem: path.read_text(encoding="utf-8") for path in sorted(FOLDER.glob("*.toml"))}
+    files = sorted(FOLDER.glob("*.toml"), key=lambda path: path.stem)
+    return {path.stem: path.read_text(encoding="utf-8") for path in files}
 
 
 def load_scene(scene: str) -> Scene:
