@@ -11,42 +11,26 @@ from pathlib import Path
 from typing import NoReturn
 
 from comparisons.cli import certify, compare, run, scene_files, solve, view
-from comparisons.cli.screen import BAD_INPUT, DONE, EPILOG, INTERRUPTED, STOPPED, WRONG, report
+from comparisons.cli.options import STATED, add_command
+from comparisons.cli.screen import BAD_INPUT, DONE, INTERRUPTED, STOPPED, WRONG, report
 from comparisons.extras import EXTRAS, install
 from comparisons.files import OutputError, printable
 from comparisons.models.options import ModelError
 from comparisons.models.outside.child import CalculixError
 from comparisons.scene import InputError
 
-COMMANDS = tuple(
-    command for module in (scene_files, solve, compare, certify, run, view) for command in module.COMMANDS
-)
-"""The commands in the order of the help."""
-GONE = {
-    "doctor": "crossval --version",
-    "completion": "crossval --help",
-    "results": "the CSV file that crossval run FILE.toml writes",
-    "schema": "crossval scenes --schema",
-    "gate": "crossval compare SCENE --max-error QUANTITY=X",
-    "league": "crossval compare SCENE SCENE ..., crossval compare all",
-    "reproduce": "crossval run paper, crossval run fig9",
-    "trade": "crossval run trade SCENE",
-    "study": "crossval run FILE.toml",
-    "manual": "crossval run manual",
-    "extremes": "crossval run extremes",
-    "--json": "--out FILE.json",
-    "--csv": "--out FILE.csv",
-    "--plot": "--out FILE.png",
-    "--vtk": "--out FOLDER",
-    "--times": "wall_seconds in --out FILE.json",
-    "--explain": "--accuracy, which says what it decides",
-    "--quantity": "--accuracy QUANTITY=X",
-    "--few": "crossval solve, which judges as many",
-    "--only": "crossval run manual PROBLEM ...",
-    "--cards": "crossval run cards",
-    "--junit": "--out FILE.xml of compare, junit.xml in the folder of run manual",
-    "--cluster": "--workers ADDRESS",
+COMMANDS = {
+    "scenes": scene_files.run_scenes,
+    "new": scene_files.run_new,
+    "check": scene_files.run_check,
+    "solve": solve.run,
+    "compare": compare.run,
+    "certify": certify.run,
+    "run": run.run,
+    "view": view.run,
 }
+"""What runs each command, in the order of the help."""
+GONE: dict[str, str] = STATED["gone"]
 """Commands and options of earlier versions, and what does their work."""
 NEEDED = ("numpy", "scipy", "scikit-fem", "meshio", "matplotlib")
 """Libraries that no command does without."""
@@ -173,11 +157,12 @@ def command_parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog="crossval",
         description="Contact of beams: tangent stiffness method, 2D solid elements and exact answers on one scene.",
-        epilog=EPILOG,
+        epilog=STATED["command"]["solve"]["epilog"],
     )
     looked_up = "print the version, and which libraries and programs are here"
     parser.add_argument("--version", action="store_true", help=looked_up)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for command in COMMANDS:
-        command.add_to(commands)
+    for name, function in COMMANDS.items():
+        add_command(commands, name, function, suites=", ".join(run.SUITES))
+    commands.choices["run"].description = "; ".join(f"{name}: {one.what}" for name, one in run.SUITES.items())
     return parser

@@ -4,7 +4,7 @@ import argparse
 from functools import partial
 from pathlib import Path
 
-from comparisons.cli.options import Command, argument, chosen, outputs, workers
+from comparisons.cli.options import argument, chosen, outputs, workers
 from comparisons.cli.screen import (
     DONE,
     STOPPED,
@@ -28,9 +28,6 @@ FOREIGN = {
     "several scenes": (*MODEL, "against"),
 }
 """The options that each of the three ways of comparing does not have."""
-EPILOG = """exit status: 0 compared, or every bound holds, 1 an error lies beyond its bound, 2 bad input, 3 the exact rods stopped, an
-answer was refused by its checks or the referee, or a solution that has a bound stopped, 130 interrupted. A model that stops with a named
-status is a row of the table. Of several scenes what is done is kept, and the same command goes on from there."""
 
 
 def run(given: argparse.Namespace) -> int:
@@ -110,22 +107,3 @@ def _league(scenes: list[Scene], given: argparse.Namespace) -> int:
     print()
     files_named(*write_league(league, folder))
     return DONE
-
-
-COMMANDS = (
-    Command(
-        "compare",
-        "compare models on a scene, hold errors to bounds, or measure every program on several scenes",
-        run,
-        "scenes --with --model --elements --element --mesh --max-error --against --out --quick --workers --quiet",
-        {
-            "--model": "a bound's model (tsm), or one more row",
-            "--out": "folder of the results (out/SCENE, out/league); the bounds as a file of JUnit, .xml",
-            "--quick": "several scenes: at most two resolutions of every program",
-        },
-        "One scene is solved with every model. With --max-error one model is solved, and its errors, relative and the largest "
-        "over all load parameters, are held to bounds. Several scenes are solved with every program at up to five of its own resolutions: "
-        "errors, spurious friction, processor seconds, and how often a program said success and was wrong.",
-        EPILOG,
-    ),
-)

@@ -1,13 +1,14 @@
-"""The commands and their arguments: each argument is declared once, and a command names those that it has."""
+"""The arguments of the commands: their words are in ``commands.toml``, here is how they are read."""
 
 import argparse
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+import tomllib
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from comparisons.files import OutputError, result_file, write_text
-from comparisons.models import MODELS, TSM
+from comparisons.models import MODELS
 from comparisons.models.options import BRANCHES, Options
 from comparisons.models.outside.programs import ADAPTERS, known
 from comparisons.scene import rules
@@ -75,98 +76,43 @@ def bound(names: Names, rule: Rule, default: str = "") -> Callable[[str], tuple[
     return value
 
 
-def _of(option: str, meaning: str) -> str:
-    """Return the help of a field of `Options`, with the models that have it."""
-    return f"{', '.join(model.name for model in MODELS.values() if option in model.options)}: {meaning}"
-
-
 def _workers(text: str) -> int | str:
     """Return a number of processes, or an address, which has letters."""
     found: int | str = text if any(map(str.isalpha, text)) else checked(rules.whole_number, int)(text)
     return found
 
 
-PART = {"type": checked(rules.fraction, float), "metavar": "X"}
-COUNT = {"type": checked(rules.whole_number, int), "metavar": "N"}
-SWITCH = {"action": "store_true"}
-MANY = {"action": "append", "default": []}
-_REST = "at a critical point stop (the default), turn to the stable branch, or go on along the primary one, unstable"
-_SHARED = (
-    "processes (one for each core; 1 where seconds are measured: cases side by side slow each other down), or the scheduler "
-    "of a Dask cluster, as tcp://127.0.0.1:8786"
-)
-_HELD = "load parameters to hold against the exact equilibrium: the last of every stage and those beside events (the default), all, none"
-_CHOSEN = "choose model and resolution for this relative error of the force, or of another quantity, in place of elements and meshes: "
-_WITH = "a program of others as well, any number of them: its name, or a program file NAME.toml"
-_WITHIN = "error allowed to the integration inside exact elements (1e-9)"
-ARGUMENTS: dict[str, tuple[str, dict[str, Any]]] = {
-    "scene": ("a built-in scene or a TOML file", {"metavar": "SCENE"}),
-    "scenes": ("built-in scenes or TOML files; all: every built-in one", {"nargs": "+", "metavar": "SCENE"}),
-    "answer": ("what solve --out wrote, or a scene that tsm solves", {"metavar": "RESPONSE.json|SCENE"}),
-    "what": ("a scene, or a folder of VTK files of `compare` or `solve --out`", {"metavar": "SCENE|FOLDER"}),
-    "suite": ("a study file, or a suite", {"metavar": "NAME|FILE.toml"}),
-    "of": (
-        "trade: the scene; manual, cards: these problems only",
-        {"nargs": "*", "metavar": "SCENE|PROBLEM"},
-    ),
-    "name": ("of the scene; the file is NAME.toml", {"metavar": "NAME"}),
-    "--like": ("a built-in scene to start from", {"metavar": "SCENE"}),
-    "--schema": ("print the JSON Schema of scene files, for editors", SWITCH),
-    "--scene": ("of a response, where it is not a built-in one", {"metavar": "SCENE"}),
-    "--model": (f"the model that solves ({TSM.name})", {"choices": MODEL_NAMES}),
-    "--with": (_WITH, {**MANY, "dest": "others", "choices": MODEL_NAMES, "metavar": "MODEL"}),
-    "--against": ("bounds: the model to measure against (rod)", {"choices": MODEL_NAMES}),
-    "--elements": (_of("elements", "elements of every beam"), COUNT),
-    "--element": (_of("element", "type of the elements"), {"metavar": "ELEMENT"}),
-    "--integration-tolerance": (_of("integration_tolerance", _WITHIN), PART),
-    "--mesh": (
-        _of("mesh", "elements along and across"),
-        {"type": checked(rules.mesh_text), "metavar": "NXxNY"},
-    ),
-    "--branch": (_of("branch", _REST), {"choices": BRANCHES}),
-    "--accuracy": (
-        _CHOSEN + "%(quantities)s",
-        {"type": bound(QUANTITIES["--accuracy"], rules.fraction, "force"), "metavar": "[QUANTITY=]X"},
-    ),
-    "--max-error": (
-        "a bound, any number of them: %(quantities)s",
-        {**MANY, "type": bound(QUANTITIES["--max-error"], rules.positive), "metavar": "QUANTITY=X"},
-    ),
-    "--certify": (_HELD, {"choices": ("last", "all", "none"), "default": "last"}),
-    "--allowance": ("largest relative distance from the exact equilibrium (.05)", PART),
-    "--scale": (
-        "enlarge the deformation, and say so in the picture (1)",
-        {"type": checked(rules.positive, float), "default": 1.0, "metavar": "FACTOR"},
-    ),
-    "--out=FILE": ("", {**MANY, "metavar": "FILE"}),
-    "--out": ("folder of the results (out/NAME)", {"type": Path, "metavar": "FOLDER"}),
-    "--quick": ("fewer or coarse settings", SWITCH),
-    "--workers": (_SHARED, {"type": _workers, "metavar": "N|ADDRESS"}),
-    "--quiet": ("tell of no progress", SWITCH),
+STATED = tomllib.loads(Path(__file__).with_name("commands.toml").read_text(encoding="utf-8"))
+"""The commands and their arguments, in words."""
+PART = {"type": checked(rules.fraction, float)}
+READING: dict[str, dict[str, Any]] = {
+    **{name: {"choices": MODEL_NAMES} for name in ("--model", "--with", "--against")},
+    "--elements": {"type": checked(rules.whole_number, int)},
+    "--mesh": {"type": checked(rules.mesh_text)},
+    "--integration-tolerance": PART,
+    "--branch": {"choices": BRANCHES},
+    "--accuracy": {"type": bound(QUANTITIES["--accuracy"], rules.fraction, "force")},
+    "--max-error": {"type": bound(QUANTITIES["--max-error"], rules.positive)},
+    "--allowance": PART,
+    "--scale": {"type": checked(rules.positive, float)},
+    "--out": {"type": Path},
+    "--workers": {"type": _workers},
 }
-"""The help of every argument, and how it is read."""
+"""How the value of an argument is read."""
 
 
-class Command(NamedTuple):
-    """A command: what it is for, what runs it, and the names of its arguments, in words; `own` is their help where it is another."""
-
-    name: str
-    help: str
-    run: Callable[[argparse.Namespace], int]
-    arguments: str
-    own: Mapping[str, str] = {}
-    description: str = ""
-    epilog: str = ""
-
-    def add_to(self, commands: Any) -> None:
-        """Add the command to the subparsers of the parser."""
-        texts = {"help": self.help, "description": self.description, "epilog": self.epilog}
-        parser = commands.add_parser(self.name, **texts)
-        for name in self.arguments.split():
-            meaning, reading = ARGUMENTS[name]
-            action = parser.add_argument(name.partition("=")[0], help=self.own.get(name, meaning), **reading)
-            vars(action)["quantities"] = QUANTITIES.get(name)
-        parser.set_defaults(run=self.run)
+def add_command(commands: Any, name: str, run: Callable[[argparse.Namespace], int], **words: object) -> None:
+    """Add a command to the subparsers of the parser; `words` are those of its help that are not stated."""
+    stated = STATED["command"][name]
+    texts = {key: stated.get(key, "") for key in ("help", "description", "epilog")}
+    parser = commands.add_parser(name, **texts)
+    for argument in stated["arguments"].split():
+        reading = {**STATED["argument"][argument], **READING.get(argument, {})}
+        reading["help"] = stated.get("own", {}).get(argument, reading.get("help"))
+        action = parser.add_argument(argument.partition("=")[0], **reading)
+        models = ", ".join(model.name for model in MODELS.values() if action.dest in model.options)
+        vars(action).update(words, models=models, quantities=QUANTITIES.get(argument))
+    parser.set_defaults(run=run)
 
 
 def argument(name: str) -> str:

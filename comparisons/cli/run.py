@@ -9,15 +9,10 @@ from typing import NamedTuple
 
 from comparisons.claims.paper.figures import FIGURES
 from comparisons.claims.solid.questions import QUESTIONS
-from comparisons.cli.options import Command, argument, workers
+from comparisons.cli.options import argument, workers
 from comparisons.cli.screen import DONE, STOPPED, WRONG, files_named, report
 from comparisons.files import writable_folder, write_text
 from comparisons.scene import InputError, load_scene
-
-EPILOG = """exit status: 0 done (a solution that stopped is a result, and is named), 1 an answer of the manual is beyond its tolerance,
-or a cell of the extremes is wrong, 2 bad input or a place that cannot be used, 3 a figure's run stopped, a case has no result, or nothing
-is there to measure errors against, 130 interrupted; what is done of a study, a trade and the extremes is kept, and the same command goes
-on from there"""
 
 
 def run(given: Namespace) -> int:
@@ -181,14 +176,3 @@ SUITES = {
     **{name: Suite(what, "", _question) for name, what in QUESTIONS.items()},
 }
 STUDY_FILE = Suite("a scene, and what is varied in it", "workers", _study)
-COMMANDS = (
-    Command(
-        "run",
-        "run a suite: figures of the paper, the manual, the extremes, a trade, a question to the solid, or a study file",
-        run,
-        "suite of --out --quick --workers --quiet",
-        {"suite": f"a study file, or {', '.join(SUITES)}"},
-        "; ".join(f"{name}: {suite.what}" for name, suite in SUITES.items()),
-        EPILOG,
-    ),
-)

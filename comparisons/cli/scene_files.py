@@ -6,7 +6,7 @@ import sys
 from argparse import Namespace
 from pathlib import Path
 
-from comparisons.cli.options import STANDARD, Command, outputs, write
+from comparisons.cli.options import STANDARD, outputs, write
 from comparisons.cli.screen import DONE
 from comparisons.files import OutputError
 from comparisons.scene import InputError, built_in_scenes, load_scene
@@ -65,17 +65,3 @@ def run_check(given: Namespace) -> int:
         if path != STANDARD:
             print(f"written: {file}", file=sys.stderr if printed else sys.stdout)
     return DONE
-
-
-DRAWN = "draw it, .png or .svg, or write the resolved scene, which programs read, .json; - is standard output"
-COMMANDS = (
-    Command("scenes", "list the built-in scenes", run_scenes, "--schema"),
-    Command("new", "write a commented scene file to start from", run_new, "name --like"),
-    Command(
-        "check",
-        "validate a scene file, ask all models whether they can state it, draw it",
-        run_check,
-        "scene --with --out=FILE",
-        {"--out=FILE": DRAWN},
-    ),
-)

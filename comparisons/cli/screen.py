@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from comparisons.scene import Scene
 
 DONE, WRONG, BAD_INPUT, STOPPED, INTERRUPTED = 0, 1, 2, 3, 130
-EPILOG = "exit status: 0 completed and checked, 2 bad input, 3 the solution stopped (the reason is named)"
 PATIENCE = 2.0
 """Seconds that a work takes without a bar."""
 

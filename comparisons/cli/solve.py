@@ -5,8 +5,8 @@ from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from comparisons.cli.options import STANDARD, Command, argument, chosen, outputs, write
-from comparisons.cli.screen import DONE, EPILOG, STOPPED, exit_status, report, watching
+from comparisons.cli.options import STANDARD, argument, chosen, outputs, write
+from comparisons.cli.screen import DONE, STOPPED, exit_status, report, watching
 from comparisons.files import writable_folder
 from comparisons.models import TSM, certified, find, solve
 from comparisons.models.options import ModelError
@@ -103,19 +103,3 @@ def _answer(scene: "Scene", given: Namespace) -> "Answer | None":
     for line in () if given.quiet else answer.decisions:
         report(line)
     return answer
-
-
-COMMANDS = (
-    Command(
-        "solve",
-        "solve a scene with one model",
-        run,
-        "scene --model --accuracy --elements --element --integration-tolerance --mesh --branch --certify --out=FILE --quiet",
-        {
-            "--model": f"left to the scene with --accuracy, else {TSM.name}",
-            "--out=FILE": "write a file, any number of them: the response .json (- is standard output), the histories with units "
-            f".csv, shape, section forces and forces {', '.join(PICTURES)}, or a folder of VTK files",
-        },
-        epilog=EPILOG,
-    ),
-)

@@ -6,8 +6,7 @@ from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from comparisons.cli.options import Command
-from comparisons.cli.screen import DONE, EPILOG, exit_status, files_named, report, staging, watching
+from comparisons.cli.screen import DONE, exit_status, files_named, report, staging, watching
 from comparisons.files import OutputError, writable_folder
 from comparisons.models import SOLID, TSM, solve
 from comparisons.models.options import ModelError, Options
@@ -77,16 +76,3 @@ def _present(series: "list[Series]", factor: float, out: Path | None) -> int:
         report(sentence)
     files_named(*files)
     return DONE
-
-
-COMMANDS = (
-    Command(
-        "view",
-        "show the motion: beams and solid side by side, with axial stress, supports, and the forces of pins and between beams",
-        run,
-        "what --out --scale",
-        {"--out": "write into this folder (out/SCENE-view)"},
-        "Opens a window with a slider; with --out, or where there is no display, writes view.png and view.gif.",
-        EPILOG,
-    ),
-)

@@ -25,9 +25,8 @@ from comparisons.scene import (
 )
 
 # where a key is declared, and what follows from it
-from comparisons.scene.read import LISTS
+from comparisons.scene.read import LISTS, json_schema
 from comparisons.scene.record import optional, rule_of
-from comparisons.scene.read import json_schema
 from docs.extensions.generated import scene_file
 
 SCHEMA = json_schema()
