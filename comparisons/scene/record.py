@@ -88,7 +88,7 @@ class Record:
         raise FrozenInstanceError(f"cannot assign to field {name!r}")
 
     def __delattr__(self, name: str) -> None:
-        raise FrozenInstanceError(f"cannot delete field {name!r}")
+        self.__setattr__(name, None)
 
     def _values(self) -> list[Any]:
         return [vars(self).get(name) for name in self._rules]

@@ -13,6 +13,7 @@ from typing import Any
 
 Point = tuple[float, float]
 Rule = Callable[[object], object]
+Test = Callable[[Any], object]
 
 LARGEST = 1e50
 """Largest magnitude of a number: squares, products and quotients of such numbers stay in floating-point range."""
@@ -98,11 +99,7 @@ class ValueRule:
     """A rule as a value: what it accepts in words, whether a value is right, its stored form (itself), and the JSON Schema."""
 
     def __init__(
-        self,
-        accepts: str,
-        right: Callable[[Any], object],
-        stored: Callable[[Any], Any] = lambda value: value,
-        **schema: Any,
+        self, accepts: str, right: Test, stored: Callable[[Any], Any] = lambda value: value, **schema: Any
     ) -> None:
         self.accepts, self.right, self.stored, self.schema = accepts, right, stored, schema
 
@@ -153,19 +150,19 @@ poissons_ratio = limited(
 whole_number = whole()
 
 
+def always(_: object) -> bool:
+    """Accept everything."""
+    return True
+
+
 def several(
-    accepts: str,
-    item: ValueRule,
-    least: int = 0,
-    most: int | None = None,
-    right: Callable[[Sequence[Any]], object] = lambda _: True,
-    **schema: Any,
+    accepts: str, item: ValueRule, least: int = 0, most: float = math.inf, right: Test = always, **schema: Any
 ) -> ValueRule:
     """Return the rule: a list of `least` to `most` items that are `right` together."""
-    sizes = {"minItems": least} if most is None else {"minItems": least, "maxItems": most}
+    sizes = {"minItems": least} if math.isinf(most) else {"minItems": least, "maxItems": most}
 
     def all_right(value: Any) -> object:
-        fits = isinstance(value, list | tuple) and least <= len(value) <= (most or len(value))
+        fits = isinstance(value, list | tuple) and least <= len(value) <= most
         return fits and all(map(item.right, value)) and right(value)
 
     def stored(value: Any) -> Any:
