@@ -126,8 +126,8 @@ def json_schema() -> Table:
 
     Examples
     --------
-    >>> json_schema()["properties"]["beam"]["items"]["properties"]["youngs_modulus"]["exclusiveMinimum"]
-    0
+    >>> json_schema()["properties"]["beam"]["items"]["properties"]["youngs_modulus"]["minimum"]
+    1e-100
     """
     lists = _schema(Scene, lists_of(Scene))["properties"].items()
     return {

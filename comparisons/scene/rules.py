@@ -5,15 +5,16 @@ A rule is a value: called, it returns the stored form of a value, or raises its 
 
 import dataclasses
 import math
-import operator
 import re
 from collections.abc import Callable, Collection, Iterator, Sequence
 from itertools import pairwise
+from operator import ge, gt, le, lt
 from typing import Any
 
 Point = tuple[float, float]
 Rule = Callable[[object], object]
 Test = Callable[[Any], object]
+Schema = dict[str, Any]
 
 LARGEST = 1e50
 """Largest magnitude of a number: squares, products and quotients of such numbers stay in floating-point range."""
@@ -95,80 +96,79 @@ def shown(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
+TYPES: dict[str, Any] = {
+    "number": int | float,
+    "integer": int,
+    "string": str,
+    "boolean": bool,
+    "array": list | tuple,
+}
+LIMITS = {"minimum": ge, "maximum": le, "exclusiveMinimum": gt, "exclusiveMaximum": lt}
+"""Types and limits of values by their names in JSON Schema."""
+
+
+def fits(value: Any, schema: Schema) -> bool:
+    """Whether a value obeys a JSON Schema, of the words that stand in this module; a text is printable."""
+    if "anyOf" in schema:
+        return any(fits(value, one) for one in schema["anyOf"])
+    kind = schema["type"]
+    if not isinstance(value, TYPES.get(kind, object)) or isinstance(value, bool) != (kind == "boolean"):
+        return False
+    if kind == "array":
+        sized = schema["minItems"] <= len(value) <= schema.get("maxItems", math.inf)
+        return sized and all(fits(item, schema["items"]) for item in value)
+    if kind == "string":
+        found = re.search(schema.get("pattern", ""), value)
+        return value.isprintable() and bool(found) and value in schema.get("enum", (value,))
+    return all(LIMITS[word](value, limit) for word, limit in schema.items() if word in LIMITS)
+
+
+def stored(value: Any, schema: Schema) -> Any:
+    """Return a value in the form in which a record has it: a list as a tuple, a number as a float."""
+    if isinstance(value, list | tuple):
+        return tuple(stored(item, schema["items"]) for item in value)
+    return float(value) or 0.0 if schema["type"] == "number" else value
+
+
 class ValueRule:
-    """A rule as a value: what it accepts in words, whether a value is right, its stored form (itself), and the JSON Schema."""
+    """A rule as a value: what it accepts in words, its JSON Schema, what that cannot say, and its own form of a value if any."""
 
     def __init__(
-        self, accepts: str, right: Test, stored: Callable[[Any], Any] = lambda value: value, **schema: Any
+        self,
+        accepts: str,
+        schema: Schema,
+        also: Test = lambda _: True,
+        form: Callable[[Any], Any] | None = None,
     ) -> None:
-        self.accepts, self.right, self.stored, self.schema = accepts, right, stored, schema
+        self.accepts, self.schema, self.also = accepts, schema, also
+        self.form = form or (lambda value: stored(value, schema))
 
     def __call__(self, value: object) -> Any:
         """Return the stored form of `value`, or raise `RuleError`."""
-        if not self.right(value):
+        if not (fits(value, self.schema) and self.also(value)):
             raise RuleError(f"must be {self.accepts}")
-        return self.stored(value)
+        return self.form(value)
 
 
-COMPARED: dict[str, Callable[[float, float], bool]] = {
-    "minimum": operator.ge,
-    "maximum": operator.le,
-    "exclusiveMinimum": operator.gt,
-    "exclusiveMaximum": operator.lt,
-}
-"""Limits of a number by their names in JSON Schema."""
+def within(least: float, most: float, kind: str = "number") -> Schema:
+    """Return the schema of numbers from `least` to `most`."""
+    return {"type": kind, "minimum": least, "maximum": most}
 
 
-def limited(accepts: str, form: type[float] = float, *, scaled: bool = False, **limits: float) -> ValueRule:
-    """Return the rule: a finite number within `limits`, a whole one in the form int; `scaled`, zero or within `RANGE`."""
-    least, most = RANGE if scaled else (0.0, LARGEST)
-
-    def right(value: Any) -> bool:
-        is_number = isinstance(value, int | form) and not isinstance(value, bool)
-        within = is_number and all(COMPARED[name](value, limit) for name, limit in limits.items())
-        return within and (not value or least <= abs(value) <= most)
-
-    name = "integer" if form is int else "number"
-    return ValueRule(accepts, right, lambda value: form(value) or form(), type=name, **limits)
+def between(least: float, most: float) -> Schema:
+    """Return the schema of numbers larger than `least` and smaller than `most`."""
+    return {"type": "number", "exclusiveMinimum": least, "exclusiveMaximum": most}
 
 
-def whole(largest: int = 100_000) -> ValueRule:
-    """Return the rule: a whole number from 1 to `largest`."""
-    return limited(f"a whole number from 1 to {largest}", int, minimum=1, maximum=largest)
+def several(item: Schema, least: int = 0, most: int | None = None) -> Schema:
+    """Return the schema of lists with `least` to `most` items."""
+    sizes = {"minItems": least} if most is None else {"minItems": least, "maxItems": most}
+    return {"type": "array", "items": item, **sizes}
 
 
-TURN = 2.0 * math.pi
-number = limited("a finite number of at most 1e50 in size")
-positive = limited("a positive number, from 1e-100 to 1e100", scaled=True, exclusiveMinimum=0)
-not_negative = limited("zero, or a positive number from 1e-100 to 1e100", scaled=True, minimum=0)
-turn = limited("an angle in rad of less than 2 pi in size", exclusiveMinimum=-TURN, exclusiveMaximum=TURN)
-friction = limited("a coefficient between 0 and 100", minimum=0, maximum=100.0)
-fraction = limited("a number between 0 and 1", exclusiveMinimum=0, exclusiveMaximum=1)
-poissons_ratio = limited(
-    "a number between -1 and 0.5, both excluded", exclusiveMinimum=-1, exclusiveMaximum=0.5
-)
-whole_number = whole()
-
-
-def always(_: object) -> bool:
-    """Accept everything."""
-    return True
-
-
-def several(
-    accepts: str, item: ValueRule, least: int = 0, most: float = math.inf, right: Test = always, **schema: Any
-) -> ValueRule:
-    """Return the rule: a list of `least` to `most` items that are `right` together."""
-    sizes = {"minItems": least} if math.isinf(most) else {"minItems": least, "maxItems": most}
-
-    def all_right(value: Any) -> object:
-        fits = isinstance(value, list | tuple) and least <= len(value) <= most
-        return fits and all(map(item.right, value)) and right(value)
-
-    def stored(value: Any) -> Any:
-        return tuple(map(item.stored, value))
-
-    return ValueRule(accepts, all_right, stored, **{"type": "array", "items": item.schema, **sizes, **schema})
+def worded(pattern: str) -> Schema:
+    """Return the schema of texts with a regular expression in them."""
+    return {"type": "string", "pattern": pattern}
 
 
 def rising(values: Sequence[float]) -> bool:
@@ -176,46 +176,52 @@ def rising(values: Sequence[float]) -> bool:
     return all(a < b for a, b in pairwise(values))
 
 
-point = several("two numbers [x, y], a third dimension is not modelled", number, 2, 2)
-stiffnesses = several("two numbers [x, y], neither negative", not_negative, 2, 2)
-span = several(
-    "two fractions of the length that rise from 0 to 1",
-    *(limited("", minimum=0, maximum=1), 2, 2),
-    rising,
+TURN = 2.0 * math.pi
+NUMBER, SCALED, ZERO_OR_SCALED = within(-LARGEST, LARGEST), within(*RANGE), within(0, RANGE[1])
+POINT, PAIR = several(NUMBER, 2, 2), several(SCALED, 2, 2)
+
+
+def _scaled(*sizes: float) -> bool:
+    """Whether each size is zero or large enough."""
+    return all(not size or size >= RANGE[0] for size in sizes)
+
+
+number = ValueRule("a finite number of at most 1e50 in size", NUMBER)
+positive = ValueRule("a positive number, from 1e-100 to 1e100", SCALED)
+not_negative = ValueRule("zero, or a positive number from 1e-100 to 1e100", ZERO_OR_SCALED, _scaled)
+turn = ValueRule("an angle in rad of less than 2 pi in size", between(-TURN, TURN))
+friction = ValueRule("a coefficient between 0 and 100", within(0, 100.0))
+fraction = ValueRule("a number between 0 and 1", between(0, 1))
+poissons_ratio = ValueRule("a number between -1 and 0.5, both excluded", between(-1, 0.5))
+point = ValueRule("two numbers [x, y], a third dimension is not modelled", POINT)
+stiffnesses = ValueRule(
+    "two numbers [x, y], neither negative", several(ZERO_OR_SCALED, 2, 2), lambda pair: _scaled(*pair)
 )
-mesh = several("[elements along, elements across]", whole_number, 2, 2)
-parts = several(
-    "a list of numbers that rise between 0 and 1, both excluded",
-    fraction,
-    right=rising,
+span = ValueRule("two fractions of the length that rise from 0 to 1", several(within(0, 1), 2, 2), rising)
+parts = ValueRule(
+    "a list of numbers that rise between 0 and 1, both excluded", several(between(0, 1)), rising
 )
-
-
-def polyline(at_least: int) -> ValueRule:
-    """Return the rule: points, no two consecutive ones equal."""
-    return several(
-        f"a list of {at_least} or more points [x, y], no two consecutive ones equal",
-        point,
-        at_least,
-        right=lambda points: all(a != b for a, b in pairwise(map(tuple, points))),
-    )
-
-
-_ends = several("", positive, 2, 2)
-
-
-def _dimension(value: Any) -> float | tuple[float, float]:
-    """Return a number, or two where they differ."""
-    start, end = _ends.stored(value) if _ends.right(value) else (positive.stored(value),) * 2
-    return start if start == end else (start, end)
-
-
 dimension = ValueRule(
     "a positive number, or two [at the start, at the end]",
-    lambda value: positive.right(value) or _ends.right(value),
-    _dimension,
-    anyOf=[positive.schema, _ends.schema],
+    {"anyOf": [SCALED, PAIR]},
+    form=lambda size: (
+        float(size) if fits(size, SCALED) else float(size[0]) if size[0] == size[1] else stored(size, PAIR)
+    ),
 )
+text = ValueRule("a printable text, not empty", worded(r"\S"))
+name = ValueRule("a name of letters, digits, '-' and '_'", worded(r"^[\w-]+$"))
+units = ValueRule('the units of force and of length, as "N, m"', worded("^[^,]*[^, ][^,]*,[^,]*[^, ][^,]*$"))
+truth = ValueRule("true or false", {"type": "boolean"})
+sequence = ValueRule("a list", several({"type": "object"}))
+
+
+def whole(largest: int = 100_000) -> ValueRule:
+    """Return the rule: a whole number from 1 to `largest`."""
+    return ValueRule(f"a whole number from 1 to {largest}", within(1, largest, "integer"))
+
+
+whole_number = whole()
+mesh = ValueRule("[elements along, elements across]", several(whole_number.schema, 2, 2))
 
 
 def mesh_text(value: object) -> tuple[int, int]:
@@ -226,34 +232,26 @@ def mesh_text(value: object) -> tuple[int, int]:
     return found
 
 
-def worded(accepts: str, pattern: str) -> ValueRule:
-    """Return the rule: a printable text with a regular expression in it."""
+def polyline(at_least: int) -> ValueRule:
+    """Return the rule: points, no two consecutive ones equal."""
     return ValueRule(
-        accepts,
-        lambda value: isinstance(value, str) and value.isprintable() and re.search(pattern, value),
-        type="string",
-        pattern=pattern,
+        f"a list of {at_least} or more points [x, y], no two consecutive ones equal",
+        several(POINT, at_least),
+        lambda points: all(a != b for a, b in pairwise(map(tuple, points))),
     )
-
-
-text = worded("a printable text, not empty", r"\S")
-name = worded("a name of letters, digits, '-' and '_'", r"^[\w-]+$")
-units = worded('the units of force and of length, as "N, m"', "^[^,]*[^, ][^,]*,[^,]*[^, ][^,]*$")
-truth = ValueRule("true or false", lambda value: isinstance(value, bool), type="boolean")
-sequence = ValueRule("a list", lambda value: isinstance(value, list | tuple), tuple[object, ...])
 
 
 def choice(*options: str) -> ValueRule:
     """Return the rule: one of `options`."""
-    accepts = f"one of {', '.join(map(shown, options))}"
-    return ValueRule(accepts, lambda value: isinstance(value, str) and value in options, enum=list(options))
+    schema = {"type": "string", "enum": list(options)}
+    return ValueRule(f"one of {', '.join(map(shown, options))}", schema)
 
 
 def subset(*options: str, at_least: int = 0) -> ValueRule:
     """Return the rule: some of `options`, each once."""
+    schema = {**several(choice(*options).schema, at_least), "uniqueItems": True}
     accepts = f"a list of some of {', '.join(map(shown, options))}, each once"
-    each_once = lambda items: len(items) == len(set(items))  # noqa: E731
-    return several(accepts, choice(*options), at_least, right=each_once, uniqueItems=True)
+    return ValueRule(accepts, schema, lambda items: len(items) == len(set(items)))
 
 
 class Records(ValueRule):
@@ -263,14 +261,9 @@ class Records(ValueRule):
         self.name, self.kind = name, kind
         super().__init__(
             f"a list of tables, [[{name}]]",
-            lambda value: (
-                isinstance(value, list | tuple)
-                and len(value) >= at_least
-                and all(isinstance(item, (kind, dict)) for item in value)
-            ),
+            several({"type": "object"}, at_least),
+            lambda value: all(isinstance(item, (kind, dict)) for item in value),
             self._read,
-            type="array",
-            minItems=at_least,
         )
 
     def _read(self, value: Sequence[Any]) -> tuple[Any, ...]:
