@@ -27,47 +27,39 @@ class BeamSpec(Record):
     )
     turn: float = optional(
         rules.turn,
-        "Natural curvature: the angle by which the undeformed axis turns left from start to end, an arc of a circle [rad].",
+        "Natural curvature: the angle by which the undeformed axis turns left, an arc of a circle [rad].",
         0.0,
     )
     width: Dimension | None = optional(
-        rules.dimension,
-        "Width of the section, out of plane; two numbers state it at the start and at the end, linear between them [length].",
+        rules.dimension, "Width of the section, out of plane; two numbers where it tapers linearly [length]."
     )
     height: Dimension | None = optional(
         rules.dimension, "Height of the section, in plane; a number or two like `width` [length]."
     )
     area: float | None = optional(
-        rules.positive,
-        "Area of the section, with `second_moment` instead of `width` and `height` [length^2].",
+        rules.positive, "Area, with `second_moment` instead of `width` and `height` [length^2]."
     )
     second_moment: float | None = optional(rules.positive, "Second moment of area, with `area` [length^4].")
     shear_area: float | None = optional(rules.positive, "Effective shear area [length^2].")
     density: float | None = optional(
-        rules.positive,
-        "Mass per undeformed volume, for the weight by the scene's `gravity` [mass/length^3]; "
-        "a mass times a `gravity` is a force.",
+        rules.positive, "Mass per undeformed volume, weighs by the `gravity` of ``[scene]`` [mass/length^3]."
     )
     clamped: tuple[str, ...] = optional(
         rules.subset("start", "end"), "Clamped ends, none by default: the short form of a `SupportSpec`.", ()
     )
     elements: int | None = optional(
-        rules.whole_number,
-        "Number of TSM elements, all of one length; without one, one exact element or twenty others.",
+        rules.whole_number, "Number of equal TSM elements; without one, one exact element or twenty others."
     )
     nodes: tuple[float, ...] = optional(
         rules.parts, "Positions of the inner TSM nodes as parts of the length, instead of `elements`.", ()
     )
     mesh: tuple[int, int] = optional(rules.mesh, "Elements of the solid along and across.", (50, 2))
     solid_clamp: str = optional(
-        rules.choice("rod", "full"),
-        "Clamp of the solid: free to contract, or both displacements of the whole edge held.",
-        "rod",
+        rules.choice("rod", "full"), "Clamp of the solid: free to contract, or the whole edge held.", "rod"
     )
     solid_mesh_file: str | None = optional(
         rules.text,
-        "File with a mesh of the solid in the beam's frame and with named edges, instead of `mesh`: see "
-        "`fem_reference.mesh_file.read_mesh`.",
+        "File with a mesh of the solid and named edges, instead of `mesh`: `fem_reference.mesh_file.read_mesh`.",
     )
     solid_element: str = optional(rules.choice("Q1", "Q2", "Q2-full"), "Elements of the solid.", "Q2")
     material: str = optional(

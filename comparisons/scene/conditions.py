@@ -97,11 +97,10 @@ class LoadSpec(Record):
     moment: float = optional(rules.number, "At load parameter 1, anticlockwise [force length].", 0.0)
     force_per_length: Point | None = optional(
         rules.point,
-        "Force per undeformed length at load parameter 1, instead of `end` and `at`; it keeps its direction [force/length].",
+        "Force per undeformed length, instead of `end` and `at`; it keeps its direction [force/length].",
     )
     part: Point | None = optional(
-        rules.span,
-        "The fractions of the undeformed length between which `force_per_length` acts; the whole beam if not given.",
+        rules.span, "The fractions of the length between which `force_per_length` acts; else the whole beam."
     )
 
     obeys = (

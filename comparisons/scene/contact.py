@@ -53,7 +53,7 @@ class PinSpec(Record):
     )
     radius: float | None = optional(
         rules.positive,
-        "Radius of a round pin, whose centre is on the path [length]; without a radius the pin is a point.",
+        "Radius of a round pin, whose centre is on the path [length]; else the pin is a point.",
     )
     moves: ClassVar[tuple[PinMove | None, ...] | None] = ()
     """Motions in the stages after the first one, which the scene states; one is None where the pin rests, all are where one is wrong."""
@@ -112,10 +112,7 @@ class ContactSpec(Record):
 
     node: str = key(rules.text, "A pin's name, or a beam's end as ``upper.end``.")
     beam: str = key(rules.name, "The beam touched.")
-    side: str = key(
-        rules.choice("right", "left"),
-        "Side of the beam's direction, start to end, from which the node comes.",
-    )
+    side: str = key(rules.choice("right", "left"), "Side of the beam's direction from which the node comes.")
     surface: str = optional(
         rules.choice("axis", "face"), "The beam's axis, or its face at half the height.", "axis"
     )
@@ -124,17 +121,14 @@ class ContactSpec(Record):
     )
     penetration: float | None = optional(
         rules.positive,
-        "Largest penetration in the solid model, relative to the beam's length, reached by augmented Lagrangian steps; if not given, "
-        "the penalty alone bounds the penetration.",
+        "Largest penetration in the solid model over the beam's length, by augmented Lagrangian steps; else the penalty bounds it.",
     )
     keep: bool = optional(
-        rules.truth,
-        "Whether the contact, once closed, must persist: a release or a slip-off then ends the solution.",
-        False,
+        rules.truth, "Whether a release or a slip-off of the closed contact ends the solution.", False
     )
     friction: float = optional(
         rules.friction,
-        "Coulomb's coefficient of friction, which acts on the beam's `surface`; the contact is frictionless if not given.",
+        "Coulomb's coefficient of friction, which acts on the beam's `surface`.",
         0.0,
     )
 

@@ -30,6 +30,11 @@ def optional(rule: ValueRule, meaning: str, default: Any = None) -> Any:
     return field(default=default, metadata={"rule": rule, "meaning": meaning})
 
 
+def listed(name: str, kind: type["Record"], meaning: str) -> Any:
+    """Declare tables ``[[name]]``, each of which states a record of a kind; there may be none."""
+    return optional(Records(name, kind), meaning, ())
+
+
 @dataclass_transform(kw_only_default=True, frozen_default=True, field_specifiers=(key,))
 class Record:
     """Immutable, hashable values that obey the rules of their keys, and those between them, `obeys`.

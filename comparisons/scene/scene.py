@@ -9,7 +9,7 @@ from comparisons.scene.beam import BeamSpec
 from comparisons.scene.coherence import scene_rules
 from comparisons.scene.conditions import HingeSpec, LoadSpec, SpringSpec, SupportSpec
 from comparisons.scene.contact import ContactSpec, PinSpec
-from comparisons.scene.record import Record, Unjudged, copied, key, optional
+from comparisons.scene.record import Record, Unjudged, copied, key, listed, optional
 from comparisons.scene.rules import Point
 from comparisons.scene.stages import LoadHistory, PinMove, PrescribedMotion, StageSpec, amount
 
@@ -34,21 +34,16 @@ class Scene(Record):
     load_parameters: int = key(rules.whole_number, "Number n of load parameters.")
     gravity: Point | None = optional(
         rules.point,
-        "Acceleration of gravity at load parameter 1, for beams with a `density`, in the units of the scene [length/time^2]; the unit of "
-        "time is free, the product with the density is a force per volume.",
+        "Acceleration of gravity at load parameter 1, for beams with a `density` [length/time^2]; their product is a force per volume.",
     )
     beams: tuple[BeamSpec, ...] = key(rules.Records("beam", BeamSpec, at_least=1), "The beams.")
-    supports: tuple[SupportSpec, ...] = optional(rules.Records("support", SupportSpec), "The supports.", ())
-    loads: tuple[LoadSpec, ...] = optional(
-        rules.Records("load", LoadSpec), "The loads of the first stage.", ()
-    )
-    pins: tuple[PinSpec, ...] = optional(rules.Records("pin", PinSpec), "The pins.", ())
-    contacts: tuple[ContactSpec, ...] = optional(rules.Records("contact", ContactSpec), "The contacts.", ())
-    hinges: tuple[HingeSpec, ...] = optional(rules.Records("hinge", HingeSpec), "The hinges.", ())
-    springs: tuple[SpringSpec, ...] = optional(rules.Records("spring", SpringSpec), "The springs.", ())
-    stages: tuple[StageSpec, ...] = optional(
-        rules.Records("stage", StageSpec), "Stages after the first one.", ()
-    )
+    supports: tuple[SupportSpec, ...] = listed("support", SupportSpec, "The supports.")
+    loads: tuple[LoadSpec, ...] = listed("load", LoadSpec, "The loads of the first stage.")
+    pins: tuple[PinSpec, ...] = listed("pin", PinSpec, "The pins.")
+    contacts: tuple[ContactSpec, ...] = listed("contact", ContactSpec, "The contacts.")
+    hinges: tuple[HingeSpec, ...] = listed("hinge", HingeSpec, "The hinges.")
+    springs: tuple[SpringSpec, ...] = listed("spring", SpringSpec, "The springs.")
+    stages: tuple[StageSpec, ...] = listed("stage", StageSpec, "Stages after the first one.")
 
     obeys = (scene_rules,)
 
