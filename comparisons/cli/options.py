@@ -4,6 +4,8 @@ import argparse
 import sys
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +23,9 @@ if TYPE_CHECKING:
 class Names:
     """Names that are looked up where they are asked for, and whether a name is one of them."""
 
-    def __init__(self, listed: Callable[[], Iterable[str]], known: Callable[[str], bool]) -> None:
+    def __init__(
+        self, listed: Callable[[], Iterable[str]], known: Callable[[str], bool] = lambda _: False
+    ) -> None:
         self.listed, self.known = listed, known
 
     def __iter__(self) -> Iterator[str]:
@@ -34,71 +38,54 @@ class Names:
         return ", ".join(self)
 
 
-def _quantities(*, path: bool) -> Names:
-    """Return the names of the quantities, or of those of the path."""
+def _quantities(*, path: bool) -> Iterable[str]:
+    from comparisons.quantities import names
 
-    def listed() -> Iterable[str]:
-        from comparisons.quantities import names
-
-        return names(path=path)
-
-    return Names(listed, lambda _: False)
+    return names(path=path)
 
 
 MODEL_NAMES = Names(lambda: (*MODELS, *ADAPTERS), known)
 """The models of this package, programs of others, and program files, which are read only when they are used."""
-QUANTITIES = {"--accuracy": _quantities(path=False), "--max-error": _quantities(path=True)}
+QUANTITIES = {
+    f"--{name}": Names(partial(_quantities, path=name == "max-error")) for name in ("accuracy", "max-error")
+}
 """The quantities that an argument names."""
 
 
-def checked(rule: Rule, read: Callable[[str], object] = str) -> Callable[[str], Any]:
-    """Return the type of an argument whose value obeys a rule of the scene."""
+def obeying(rule: Rule, text: str, value: str | None = None) -> Any:
+    """Return the number or word, all of an argument's text or a part, that obeys a rule of the scene."""
+    word: object = text if value is None else value
+    for form in (float, int):
+        with suppress(ValueError):
+            word = form(text if value is None else value)
+    try:
+        return rule(word)
+    except RuleError as error:
+        raise argparse.ArgumentTypeError(f"{text}: {error}") from None
 
-    def value(text: str) -> Any:
-        try:
-            return rule(read(text))
-        except ValueError as error:
-            reason = error if isinstance(error, RuleError) else "must be a number"
-            raise argparse.ArgumentTypeError(f"{text}: {reason}") from None
 
-    return value
-
-
-def bound(names: Names, rule: Rule, default: str = "") -> Callable[[str], tuple[str, float]]:
-    """Return the type of an argument ``QUANTITY=X`` with one of some names; without a name it is `default`."""
-
-    def value(text: str) -> tuple[str, float]:
-        name = text.rpartition("=")[0] or default
-        if name not in names:
-            raise argparse.ArgumentTypeError(f"{text}: must be QUANTITY=X, one of {names}")
-        return name, checked(rule, lambda text: float(text.rpartition("=")[2]))(text)
-
-    return value
+def _bound(argument: str, rule: Rule, default: str, text: str) -> tuple[str, float]:
+    """Return what ``QUANTITY=X`` states, one of the quantities of an argument; without one it is `default`."""
+    name, _, value = text.rpartition("=")
+    if (name or default) not in QUANTITIES[argument]:
+        raise argparse.ArgumentTypeError(f"{text}: must be QUANTITY=X, one of {QUANTITIES[argument]}")
+    return name or default, obeying(rule, text, value)
 
 
 def _workers(text: str) -> int | str:
     """Return a number of processes, or an address, which has letters."""
-    found: int | str = text if any(map(str.isalpha, text)) else checked(rules.whole_number, int)(text)
-    return found
+    return text if any(map(str.isalpha, text)) else int(obeying(rules.whole_number, text))
 
 
 STATED = tomllib.loads(Path(__file__).with_name("commands.toml").read_text(encoding="utf-8"))
 """The commands and their arguments, in words."""
-PART = {"type": checked(rules.fraction, float)}
-READING: dict[str, dict[str, Any]] = {
-    **{name: {"choices": MODEL_NAMES} for name in ("--model", "--with", "--against")},
-    "--elements": {"type": checked(rules.whole_number, int)},
-    "--mesh": {"type": checked(rules.mesh_text)},
-    "--integration-tolerance": PART,
-    "--branch": {"choices": BRANCHES},
-    "--accuracy": {"type": bound(QUANTITIES["--accuracy"], rules.fraction, "force")},
-    "--max-error": {"type": bound(QUANTITIES["--max-error"], rules.positive)},
-    "--allowance": PART,
-    "--scale": {"type": checked(rules.positive, float)},
-    "--out": {"type": Path},
-    "--workers": {"type": _workers},
+TYPES: dict[str, Callable[[str], object]] = {
+    "--accuracy": partial(_bound, "--accuracy", rules.fraction, "force"),
+    "--max-error": partial(_bound, "--max-error", rules.positive, ""),
+    "--workers": _workers,
+    "--out": Path,
 }
-"""How the value of an argument is read."""
+"""How the text of an argument is read that has no rule."""
 
 
 def add_command(commands: Any, name: str, run: Callable[[argparse.Namespace], int], **words: object) -> None:
@@ -107,8 +94,12 @@ def add_command(commands: Any, name: str, run: Callable[[argparse.Namespace], in
     texts = {key: stated.get(key, "") for key in ("help", "description", "epilog")}
     parser = commands.add_parser(name, **texts)
     for argument in stated["arguments"].split():
-        reading = {**STATED["argument"][argument], **READING.get(argument, {})}
+        reading = {**STATED["argument"][argument]}
         reading["help"] = stated.get("own", {}).get(argument, reading.get("help"))
+        if (rule := reading.pop("rule", "")) or argument in TYPES:
+            reading["type"] = TYPES.get(argument) or partial(obeying, getattr(rules, rule))
+        if isinstance(listed := reading.get("choices"), str):
+            reading["choices"] = {"models": MODEL_NAMES, "branches": BRANCHES}[listed]
         action = parser.add_argument(argument.partition("=")[0], **reading)
         models = ", ".join(model.name for model in MODELS.values() if action.dest in model.options)
         vars(action).update(words, models=models, quantities=QUANTITIES.get(argument))

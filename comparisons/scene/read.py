@@ -18,6 +18,7 @@ from comparisons.scene.tables import (
     read_text,
     stated,
 )
+from comparisons.scene.words import meant
 
 Table = dict[str, Any]
 FOLDER = Path(__file__).parent / "scenes"
@@ -49,14 +50,11 @@ def load_scene(scene: str) -> Scene:
     """
     if not scene:
         raise SceneError('""', "must name a scene")
-    names, near = [path.stem for path in FOLDER.glob("*.toml")], ""
+    names = [path.stem for path in FOLDER.glob("*.toml")]
     if scene in names:
         return read_scene((FOLDER / f"{scene}.toml").read_text(encoding="utf-8"), scene)
-    if not os.path.lexists(scene):
-        from comparisons.scene.words import meant
-
-        name = meant(scene, names)
-        near = f" (did you mean {name}?)" if name else ""
+    name = None if os.path.lexists(scene) else meant(scene, names)
+    near = f" (did you mean {name}?)" if name else ""
     absent = f"no such file or built-in scene{near}; crossval scenes lists them"
     return read_scene(read_text(scene, absent, SceneError), scene)
 

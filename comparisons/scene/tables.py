@@ -3,10 +3,12 @@
 import re
 import tomllib
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from itertools import islice
 from typing import Any
 
 from comparisons.files import read_regular
 from comparisons.scene.rules import MISSING, MOST, UNREADABLE, FieldError, RecordError, Rule, RuleError, shown
+from comparisons.scene.words import hint, meant
 
 LARGEST_FILE = 16_000_000
 """Largest size of an input file [byte]."""
@@ -66,12 +68,7 @@ def read_tables(text: str, source: str, kind: type[InputError]) -> dict[str, Any
 
 def misnamed(table: Mapping[str, Any], known: Collection[str]) -> dict[str, str | None]:
     """Return the keys of a table that are not known, each with the known key that is meant by another name or misspelt."""
-    unknown = [key for key in table if key not in known][:MOST]
-    if not unknown:
-        return {}
-    from comparisons.scene.words import meant
-
-    return {key: meant(key, known) for key in unknown}
+    return {key: meant(key, known) for key in islice((key for key in table if key not in known), MOST)}
 
 
 def stated(table: Mapping[str, Any], known: Collection[str]) -> set[str | None]:
@@ -85,11 +82,8 @@ def check_keys(
     """Yield the keys of `table` that are not known, and the keys that are required and not there."""
     others = misnamed(table, known)
     for key in others:
-        from comparisons.scene.words import hint
-
-        yield FieldError(
-            key if key.isprintable() else repr(key), table[key], f"unknown key, {hint(key, known)}"
-        )
+        rule = f"unknown key, {hint(key, known)}"
+        yield FieldError(key if key.isprintable() else repr(key), table[key], rule)
     there = {*table, *others.values()}
     yield from (FieldError(key, MISSING, "must be given") for key in required if key not in there)
 
