@@ -6,7 +6,7 @@ import signal
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager, redirect_stderr, suppress
+from contextlib import ExitStack, contextmanager, redirect_stderr, suppress
 from pathlib import Path
 from typing import NoReturn
 
@@ -42,25 +42,16 @@ def main(arguments: list[str] | None = None) -> int:
     """Run the command and return its exit status: 0 done, 1 a wrong answer, 2 bad input, 3 a solution that stopped."""
     first, *more = (sys.argv[1:] if arguments is None else arguments) or [""]
     words = (first, *(word.partition("=")[0] for word in more if word.startswith("-")))
-    with _open_streams() as there:
+    with ExitStack() as streams:
+        if sys.stderr is None:  # closed: messages are discarded
+            nowhere = streams.enter_context(Path(os.devnull).open("w"))
+            streams.enter_context(redirect_stderr(nowhere))
+        if sys.stdout is None:
+            return _told("output: standard output is closed", BAD_INPUT)
         for word in (word for word in words if word in GONE):
             kind = "an option" if word.startswith("-") else "a command"
             return _told(f"{word}: is no longer {kind}, see {GONE[word]}", BAD_INPUT)
-        if not there:
-            return BAD_INPUT
         return _version() if words == ("--version",) else _run(arguments)
-
-
-@contextmanager
-def _open_streams() -> Iterator[bool]:
-    """Report a closed standard output in one line. Messages to a closed standard error are discarded."""
-    if sys.stderr is not None:
-        if sys.stdout is None:
-            _told("output: standard output is closed", BAD_INPUT)
-        yield sys.stdout is not None
-        return
-    with Path(os.devnull).open("w") as nowhere, redirect_stderr(nowhere):
-        yield sys.stdout is not None
 
 
 def _run(arguments: list[str] | None) -> int:
