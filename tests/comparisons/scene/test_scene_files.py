@@ -15,13 +15,14 @@ from jsonschema import Draft202012Validator
 
 from comparisons.cli import main
 from comparisons.scene import SceneError, built_in_scenes, load_scene, read_scene, to_toml
+from tests.comparisons.scene.test_special_keys import KEYS as ALL
 from tests.comparisons.scene.test_special_keys import SCHEMA
 from tests.fuzz.world import toml_text
 
 TEMPLATE = resources.files("comparisons.scene").joinpath("template.toml").read_text()
 THERE = TEMPLATE.replace('side = "right"', 'side = "below"')
 VALIDATOR = Draft202012Validator(SCHEMA)
-KEYS = {kind: set(table.get("items", table)["properties"]) for kind, table in SCHEMA["properties"].items()}
+KEYS = {kind: {key for table, key in ALL if table == kind} for kind in SCHEMA["properties"]}
 KS = built_in_scenes()["ks-cantilever"]
 Output = pytest.CaptureFixture[str]
 
