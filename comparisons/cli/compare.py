@@ -4,7 +4,7 @@ import argparse
 from functools import partial
 from pathlib import Path
 
-from comparisons.cli.options import argument, chosen, outputs, workers
+from comparisons.cli.options import chosen, outputs, refuse, workers
 from comparisons.cli.screen import (
     DONE,
     STOPPED,
@@ -34,9 +34,7 @@ def run(given: argparse.Namespace) -> int:
     """Compare in one of the three ways."""
     names = list(built_in_scenes()) if given.scenes == ["all"] else given.scenes
     how = "--max-error" if given.max_error else "a single scene" if len(names) == 1 else "several scenes"
-    for option in FOREIGN[how]:
-        if getattr(given, option):
-            raise ModelError(f"{argument(option).replace('others', 'with')}: is no option of {how}")
+    refuse(given, FOREIGN[how], f"is no option of {how}")
     if len(dict(given.max_error)) < len(given.max_error):
         raise ModelError("--max-error: bounds a quantity twice")
     scenes = [load_scene(name) for name in names]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from comparisons.files import OutputError, result_file, write_text
 from comparisons.models import MODELS
-from comparisons.models.options import BRANCHES, Options
+from comparisons.models.options import BRANCHES, ModelError, Options
 from comparisons.models.outside.programs import ADAPTERS, known
 from comparisons.scene import rules
 from comparisons.scene.rules import Rule, RuleError
@@ -106,9 +106,11 @@ def add_command(commands: Any, name: str, run: Callable[[argparse.Namespace], in
     parser.set_defaults(run=run)
 
 
-def argument(name: str) -> str:
-    """Return the argument of a field of `Options`, as ``--integration-tolerance``."""
-    return "--" + name.replace("_", "-")
+def refuse(given: argparse.Namespace, names: Iterable[str], rule: str) -> None:
+    """Raise ModelError for the first of some arguments that is given."""
+    for name in (name for name in names if getattr(given, name)):
+        words = {"others": "--with", "of": "SCENE"}
+        raise ModelError(f"{words.get(name, '--' + name.replace('_', '-'))}: {rule}")
 
 
 def chosen(given: argparse.Namespace) -> Options:

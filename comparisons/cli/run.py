@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from comparisons.claims.paper.figures import FIGURES
 from comparisons.claims.solid.questions import QUESTIONS
-from comparisons.cli.options import argument, workers
+from comparisons.cli.options import refuse, workers
 from comparisons.cli.screen import DONE, STOPPED, WRONG, files_named, report
 from comparisons.files import writable_folder, write_text
 from comparisons.scene import InputError, load_scene
@@ -21,9 +21,8 @@ def run(given: Namespace) -> int:
     suite = STUDY_FILE if name.endswith(".toml") or os.sep in name else SUITES.get(name)
     if suite is None:
         raise InputError(name, f"must be a study file, NAME.toml, or one of {', '.join(SUITES)}")
-    for option in ("of", "quick", "workers"):
-        if getattr(given, option) and option not in suite.options.split():
-            raise InputError("SCENE" if option == "of" else argument(option), f"is no option of {name}")
+    foreign = (option for option in ("of", "quick", "workers") if option not in suite.options.split())
+    refuse(given, foreign, f"is no option of {name}")
     return suite.run(given)
 
 

@@ -5,11 +5,10 @@ from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from comparisons.cli.options import STANDARD, argument, chosen, outputs, write
+from comparisons.cli.options import STANDARD, chosen, outputs, refuse, write
 from comparisons.cli.screen import DONE, STOPPED, exit_status, report, watching
 from comparisons.files import writable_folder
 from comparisons.models import TSM, certified, find, solve
-from comparisons.models.options import ModelError
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
@@ -93,9 +92,8 @@ def _answer(scene: "Scene", given: Namespace) -> "Answer | None":
     """Return the answer to an accuracy, explained unless it is quiet; None where a model was chosen by hand."""
     if given.accuracy is None:
         return None
-    for option in ("elements", "integration_tolerance", "mesh", "branch"):
-        if getattr(given, option) is not None:
-            raise ModelError(f"{argument(option)}: is what --accuracy chooses, give one of the two")
+    chosen_by_it = ("elements", "integration_tolerance", "mesh", "branch")
+    refuse(given, chosen_by_it, "is what --accuracy chooses, give one of the two")
     from comparisons.accuracy import solve_to
 
     quantity, error = given.accuracy
