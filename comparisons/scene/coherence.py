@@ -29,65 +29,67 @@ IN_STAGES = {"pin": ("name", "pin", "name", "name"), "load": PLACED}
 
 def scene_rules(scene: "Scene") -> Mistakes:
     """Yield what is wrong between the records of `scene`."""
-    names = Names(scene)
     for rule in (
-        names.repeated,
-        _contacts(scene, names),
-        *(_named(*one, names) for one in _lists(scene)),
+        scene.names.repeated,
+        _contacts(scene),
+        *(_named(*one, scene.names) for one in _lists(scene)),
         *(_distinct(*one) for one in _lists(scene)),
         *(_moved_supports(scene, stage, f"{key}support") for key, stage in _stages(scene)),
-        joint_rules(scene, names),
+        joint_rules(scene),
         _weight(scene),
-        _idle_pins(scene, names),
+        _idle_pins(scene),
         _cause(scene),
     ):
         with suppress(Unjudged):
             yield from rule
 
 
-class Names(dict[str, str]):
-    """Places of beams and pins, as ``beam[0]``, by their names; a name that nothing has, or that appears twice, raises `Unjudged`.
+class Names:
+    """Beams and pins by their names. They are `complete` unless a name is wrong or appears twice.
 
-    They are `complete` unless a name is wrong or appears twice.
+    A name that nothing has, or that appears twice, raises `Unjudged`, a ``KeyError``.
     """
 
     def __init__(self, scene: "Scene") -> None:
-        self.scene, self.complete = scene, scene.has("beams", "pins")
-        self.repeated: list[FieldError] = []
+        self.complete, self.repeated = scene.has("beams", "pins"), list[FieldError]()
+        self._found: dict[str, tuple[str, Any]] = {}
         for kind in ("beam", "pin"):
             for i, record in enumerate(_listed(scene, f"{kind}s")):
                 place = f"{kind}[{i}]"
                 if not record.has("name"):
                     self.complete = False
-                elif self.setdefault(record.name, place) != place:
+                elif self._found.setdefault(record.name, (place, record))[0] != place:
                     self.repeated.append(FieldError(f"{place}.name", record.name, "must not appear twice"))
         for mistake in self.repeated:
-            self.pop(str(mistake.value), None)
+            self._found.pop(str(mistake.value), None)
             self.complete = False
 
-    def __missing__(self, name: str) -> Any:
-        raise Unjudged(name)
+    def place(self, name: str, kind: str = "") -> str:
+        """Return the place of a beam or pin, as ``beam[0]``."""
+        if name not in self._found or not self._found[name][0].startswith(kind):
+            raise Unjudged(name)
+        return self._found[name][0]
+
+    def record(self, kind: str, name: str) -> Any:
+        """Return the beam or the pin of a name, by its kind."""
+        self.place(name, kind)
+        return self._found[name][1]
 
     def is_a(self, kind: str, name: str) -> bool:
-        """Whether `name` is that of a "beam" or a "pin"; raise `Unjudged` if that is not clear."""
-        found = self.get(name, "").startswith(kind)
+        """Whether `name` is that of a "beam" or a "pin"."""
+        found = name in self._found and self._found[name][0].startswith(kind)
         if not found and not self.complete:
             raise Unjudged(name)
         return found
 
     def is_node(self, node: str) -> bool:
-        """Whether `node` is a pin's name, or a beam's end as ``upper.end``; raise `Unjudged` if that is not clear."""
+        """Whether `node` is a pin's name, or a beam's end as ``upper.end``."""
         name, dot, end = node.partition(".")
         return self.is_a("beam" if dot else "pin", name) and (end in ("start", "end") or not dot)
 
-    def beam(self, name: str) -> BeamSpec:
-        """Return the beam called `name`."""
-        assert self[name]
-        return self.scene.beam(name)
-
     def of(self, kind: str) -> list[str]:
         """Return the names of a kind."""
-        return [name for name, place in self.items() if place.startswith(kind)]
+        return [name for name, (place, _) in self._found.items() if place.startswith(kind)]
 
 
 def _list(names: Iterable[str]) -> str:
@@ -134,12 +136,13 @@ def _distinct(place: str, records: Sequence[Any], how: tuple[str, str, str, str]
             seen |= {value} - {None}
 
 
-def _idle_pins(scene: "Scene", names: Names) -> Mistakes:
+def _idle_pins(scene: "Scene") -> Mistakes:
+    names = scene.names
     touching = {contact.node for contact in scene.contacts}
     if all(names.is_node(one.node) and one.node.partition(".")[0] != one.beam for one in scene.contacts):
         for i, pin in enumerate(scene.pins):
             with suppress(Unjudged):
-                if names[pin.name] and pin.name not in touching:
+                if names.place(pin.name) and pin.name not in touching:
                     yield FieldError(f"pin[{i}].name", pin.name, "must be the node of a contact")
 
 
@@ -163,45 +166,47 @@ def _weight(scene: "Scene") -> Mistakes:
         yield FieldError("scene.gravity", scene.gravity, "must not be zero in every stage")
 
 
-def _contacts(scene: "Scene", names: Names) -> Mistakes:
+def _contacts(scene: "Scene") -> Mistakes:
     for i, contact in enumerate(scene.contacts):
         with suppress(Unjudged):
-            yield from _contact(contact, names, f"contact[{i}]")
+            yield from _contact(contact, scene, f"contact[{i}]")
 
 
-def _contact(contact: ContactSpec, names: Names, key: str) -> Mistakes:
+def _contact(contact: ContactSpec, scene: "Scene", key: str) -> Mistakes:
     """Yield the first mistake of a contact: its node, its surface, and where the node is."""
+    names = scene.names
     if not names.is_node(contact.node):
         ends = (f"{beam}.{end}" for beam in names.of("beam") for end in ("start", "end"))
         rule = f"must name a pin or a beam's end: {_list((*names.of('pin'), *ends))}"
         yield FieldError(f"{key}.node", contact.node, rule)
         return
-    beam = names.beam(contact.beam)
+    beam = scene.beam(contact.beam)
     if contact.node in (f"{beam.name}.start", f"{beam.name}.end"):
         yield FieldError(f"{key}.node", contact.node, "must not be an end of the beam itself")
     elif contact.surface == "face" and beam.height is None:
         yield FieldError(f"{key}.surface", contact.surface, f'needs the height of beam "{beam.name}"')
-    elif "." in contact.node and names.scene.place(contact.node) in (beam.start, beam.end):
+    elif "." in contact.node and scene.place(contact.node) in (beam.start, beam.end):
         yield FieldError(f"{key}.node", contact.node, f'must not be joined to beam "{beam.name}"')
     else:
-        yield from _position(contact, beam, names)
+        yield from _position(contact, beam, scene)
 
 
-def _position(contact: ContactSpec, beam: BeamSpec, names: Names) -> Mistakes:
+def _position(contact: ContactSpec, beam: BeamSpec, scene: "Scene") -> Mistakes:
     """Yield a mistake where the undeformed position of a contact's node is on the wrong side, or else over an end."""
     name, dot, end = contact.node.partition(".")
     if dot:
-        key, position = f"{names[name]}.{end}", names.scene.place(contact.node)
+        key, position = end, scene.place(contact.node)
     else:
-        pin = names.scene.pin(name)
-        key, position = f"{names[name]}.{'start' if pin.path is None else 'path'}", pin.points[0]
+        pin = scene.pin(name)
+        key, position = "start" if pin.path is None else "path", pin.points[0]
+    key = f"{scene.names.place(name)}.{key}"
     left, fraction = beam.projected(position)
-    gap = (left if contact.side == "left" else -left) - names.scene.offset(contact, fraction)
+    gap = (left if contact.side == "left" else -left) - scene.offset(contact, fraction)
     if 0.0 <= fraction <= 1.0 and gap < -1e-12 * beam.length:
         where = f'on the {contact.side} of beam "{beam.name}"'
         yield FieldError(key, position, f"must lie {where} ({contact.surface}), gap {gap:.6g}")
         return
-    for tip in free_ends(names.scene, contact):
+    for tip in free_ends(scene, contact):
         over = -tip.room(position)
         if over > 1e-12 * beam.length:
             where = f'the {tip.name} of beam "{beam.name}"'

@@ -13,7 +13,6 @@ from comparisons.scene.record import Unjudged
 from comparisons.scene.rules import FieldError, Mistakes, Point
 
 if TYPE_CHECKING:
-    from comparisons.scene.coherence import Names
     from comparisons.scene.scene import Scene
 
 NEAR = 1e-6
@@ -22,31 +21,31 @@ LEAST = 1e-9
 """Least pivot of the equations of rigid motions, in coordinates over the longest beam; a smaller one counts as zero."""
 
 
-def joint_rules(scene: "Scene", names: "Names") -> Mistakes:
+def joint_rules(scene: "Scene") -> Mistakes:
     """Yield ends that nearly meet and beams end to end; without any, supports at one joint, hinges and structures that are not held."""
     misplaced = [*_nearly_meeting(scene), *_end_to_end(scene)]
     yield from misplaced
     if not misplaced:
         yield from _one_support(scene)
-        yield from _held(scene, names)
+        yield from _held(scene)
 
 
-def _held(scene: "Scene", names: "Names") -> Mistakes:
+def _held(scene: "Scene") -> Mistakes:
     """Yield the hinges that do nothing, and the structures that are free or, where nothing touches them, can move without strain."""
     for name in (
         *(beam.name for beam in scene.beams),
         *(item.beam for item in (*scene.holding, *scene.hinges)),
     ):
-        names.beam(name)
+        scene.beam(name)
     useless = list(_useless_hinges(scene))
     yield from useless
     touched: set[str] | None = None  # where a name in a contact is wrong
     with suppress(Unjudged):
         nodes = [name for one in scene.contacts for name in (one.node.partition(".")[0], one.beam)]
-        touched = {name for name in nodes if names[name]}
+        touched = {name for name in nodes if scene.names.place(name)}
     for structure in _structures(scene):
         own, first = {beam.name for beam in structure}, structure[0]
-        key, name = f"{names[first.name]}.clamped", first.name
+        key, name = f"{scene.names.place(first.name)}.clamped", first.name
         hinges = [
             (i, one.node) for i, one in enumerate(scene.hinges) if one.beam in own and not one.stiffness
         ]

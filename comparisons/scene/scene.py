@@ -2,23 +2,15 @@
 
 from collections.abc import Iterator
 from functools import cached_property
-from typing import Any
 
 from comparisons.scene import rules
 from comparisons.scene.beam import BeamSpec
-from comparisons.scene.coherence import scene_rules
+from comparisons.scene.coherence import Names, scene_rules
 from comparisons.scene.conditions import HingeSpec, LoadSpec, SpringSpec, SupportSpec
 from comparisons.scene.contact import ContactSpec, PinSpec
 from comparisons.scene.record import Record, Unjudged, copied, key, listed, optional
 from comparisons.scene.rules import Point
 from comparisons.scene.stages import LoadHistory, PinMove, PrescribedMotion, StageSpec, amount
-
-
-class Named(dict[str, Any]):
-    """Records by their names; a name that none has raises `Unjudged`, a ``KeyError``."""
-
-    def __missing__(self, name: str) -> Any:
-        raise Unjudged(name)
 
 
 class Scene(Record):
@@ -59,20 +51,19 @@ class Scene(Record):
             return None
 
     @cached_property
-    def _beams(self) -> dict[str, BeamSpec]:
-        return Named((beam.name, beam) for beam in self.beams if beam.has("name"))
-
-    @cached_property
-    def _pins(self) -> dict[str, PinSpec]:
-        return Named((pin.name, pin) for pin in self.pins if pin.has("name"))
+    def names(self) -> Names:
+        """The beams and pins by their names."""
+        return Names(self)
 
     def beam(self, name: str) -> BeamSpec:
         """Return the beam called `name`."""
-        return self._beams[name]
+        beam: BeamSpec = self.names.record("beam", name)
+        return beam
 
     def pin(self, name: str) -> PinSpec:
         """Return the pin called `name`."""
-        return self._pins[name]
+        pin: PinSpec = self.names.record("pin", name)
+        return pin
 
     def offset(self, contact: ContactSpec, fraction: float = 0.5) -> float:
         """Distance of the contact's node, or of its pin's centre, from the axis where they touch, at a fraction of a beam that tapers."""
@@ -81,8 +72,7 @@ class Scene(Record):
 
     def radius(self, contact: ContactSpec) -> float:
         """Radius of the contact's pin, zero for a point."""
-        pin = self._pins.get(contact.node)
-        return (pin and pin.radius) or 0.0
+        return 0.0 if "." in contact.node else self.pin(contact.node).radius or 0.0
 
     @cached_property
     def all_supports(self) -> tuple[SupportSpec, ...]:
