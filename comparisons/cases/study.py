@@ -144,7 +144,7 @@ def _places(
 
 def _model(value: object, folder: Path) -> str:
     """Accept a model's name, or a program file ``NAME.toml`` in `folder`, as its path."""
-    name = rules.text(value)
+    name: str = rules.text(value)
     try:
         if name.endswith(".toml"):
             name = str((folder / name).resolve())

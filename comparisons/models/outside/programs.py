@@ -126,7 +126,7 @@ def _words(value: object) -> object:
 
 
 def _colour(value: object) -> str:
-    text = rules.text(value)
+    text: str = rules.text(value)
     if not re.fullmatch("#[0-9a-fA-F]{6}", text):
         raise RuleError("must be a colour, as #AA3377")
     return text
