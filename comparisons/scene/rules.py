@@ -103,8 +103,9 @@ TYPES: dict[str, Any] = {
     "boolean": bool,
     "array": list | tuple,
 }
+NUMBERS = ("number", "integer")
 LIMITS = {"minimum": ge, "maximum": le, "exclusiveMinimum": gt, "exclusiveMaximum": lt}
-"""Types and limits of values by their names in JSON Schema."""
+"""Types and limits of values by their names in JSON Schema; a truth value is no number."""
 
 
 def fits(value: Any, schema: Schema) -> bool:
@@ -112,7 +113,7 @@ def fits(value: Any, schema: Schema) -> bool:
     if "anyOf" in schema:
         return any(fits(value, one) for one in schema["anyOf"])
     kind = schema["type"]
-    if not isinstance(value, TYPES.get(kind, object)) or isinstance(value, bool) != (kind == "boolean"):
+    if not isinstance(value, TYPES.get(kind, object)) or (isinstance(value, bool) and kind in NUMBERS):
         return False
     if kind == "array":
         sized = schema["minItems"] <= len(value) <= schema.get("maxItems", math.inf)
@@ -134,11 +135,7 @@ class ValueRule:
     """A rule as a value: what it accepts in words, its JSON Schema, what that cannot say, and its own form of a value if any."""
 
     def __init__(
-        self,
-        accepts: str,
-        schema: Schema,
-        also: Test = lambda _: True,
-        form: Callable[[Any], Any] | None = None,
+        self, accepts: str, schema: Schema, also: Test = lambda _: True, form: Test | None = None
     ) -> None:
         self.accepts, self.schema, self.also = accepts, schema, also
         self.form = form or (lambda value: stored(value, schema))
@@ -186,6 +183,12 @@ def _scaled(*sizes: float) -> bool:
     return all(not size or size >= RANGE[0] for size in sizes)
 
 
+def _dimension(size: Any) -> float | tuple[float, float]:
+    """Return a number, or two where they differ."""
+    start, end = stored(size, PAIR) if isinstance(size, list | tuple) else (float(size), float(size))
+    return start if start == end else (start, end)
+
+
 number = ValueRule("a finite number of at most 1e50 in size", NUMBER)
 positive = ValueRule("a positive number, from 1e-100 to 1e100", SCALED)
 not_negative = ValueRule("zero, or a positive number from 1e-100 to 1e100", ZERO_OR_SCALED, _scaled)
@@ -202,17 +205,13 @@ parts = ValueRule(
     "a list of numbers that rise between 0 and 1, both excluded", several(between(0, 1)), rising
 )
 dimension = ValueRule(
-    "a positive number, or two [at the start, at the end]",
-    {"anyOf": [SCALED, PAIR]},
-    form=lambda size: (
-        float(size) if fits(size, SCALED) else float(size[0]) if size[0] == size[1] else stored(size, PAIR)
-    ),
+    "a positive number, or two [at the start, at the end]", {"anyOf": [SCALED, PAIR]}, form=_dimension
 )
 text = ValueRule("a printable text, not empty", worded(r"\S"))
 name = ValueRule("a name of letters, digits, '-' and '_'", worded(r"^[\w-]+$"))
 units = ValueRule('the units of force and of length, as "N, m"', worded("^[^,]*[^, ][^,]*,[^,]*[^, ][^,]*$"))
 truth = ValueRule("true or false", {"type": "boolean"})
-sequence = ValueRule("a list", several({"type": "object"}))
+sequence = ValueRule("a list", several({"type": "object"}), form=tuple)
 
 
 def whole(largest: int = 100_000) -> ValueRule:
@@ -226,7 +225,7 @@ mesh = ValueRule("[elements along, elements across]", several(whole_number.schem
 
 def mesh_text(value: object) -> tuple[int, int]:
     """Accept the numbers of elements along and across as ``50x2``."""
-    if not re.fullmatch(r"[0-9]+x[0-9]+", str(value)):
+    if not re.fullmatch(r"[0-9]{1,9}x[0-9]{1,9}", str(value)):
         raise RuleError("must be NXxNY, as 50x2")
     found: tuple[int, int] = mesh(tuple(map(int, str(value).split("x"))))
     return found
