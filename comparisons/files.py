@@ -43,7 +43,7 @@ def one_line(text: object) -> str:
 
 
 def read_regular(path: str, most: int) -> bytes:
-    """Return the bytes of a regular file, of `most` at most; raise OSError or ValueError. A pipe is refused at once."""
+    """Return at most `most` bytes of a regular file; raise OSError or ValueError. A pipe is refused at once."""
     # O_NONBLOCK is missing on systems without named pipes, where opening a file never waits
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     with os.fdopen(os.open(path, flags), "rb") as file:
@@ -160,7 +160,7 @@ def interrupts_held() -> Iterator[None]:
 def staging(folder: Path, named: Path | None = None) -> Iterator[Path]:
     """Yield a new hidden folder in `folder`, for files that are moved out when they are finished; it is removed at the end.
 
-    Raises OutputError if the disk is full or the system refuses to write; the message names `named`, else the folder.
+    Raises OutputError, which names `named` or the folder, if the disk is full or the system refuses to write.
     """
     try:
         # an interrupt within its making or its removal would leave it; at any other point its finalizer removes it
@@ -180,7 +180,7 @@ def staging(folder: Path, named: Path | None = None) -> Iterator[Path]:
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Yield a temporary place for a file of this name; move it to `path`, if that is free, once the block has written it."""
+    """Yield a temporary place for a file, which moves to `path`, if that is free, once the block has written it."""
     check_free(path.parent, path.name)
     with staging(path.parent, path) as aside:
         yield aside / path.name

@@ -131,7 +131,7 @@ class BeamSpec(Record):
         return x0 + chord * tx, y0 + chord * ty
 
     def projected(self, point: Point) -> Point:
-        """Return the distance of a point to the left of the undeformed axis, and the fraction of the length at its projection."""
+        """Return the distance of a point to the left of the undeformed axis, and its projection over the length."""
         (tx, ty), (x0, y0) = self.tangent(0.0), self.start
         dx, dy = point[0] - x0, point[1] - y0
         along, left = tx * dx + ty * dy, tx * dy - ty * dx

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 PLACED = ("beam", "beam", "node", "end")
 LISTS = {"contact": ("beam", "beam", "pair", "node"), "support": ("beam", "beam", "", "")}
 LISTS |= {**dict.fromkeys(("load", "hinge", "spring"), PLACED), "stage": ("", "", "name", "name")}
-"""Of each list of records: the key that names something, and what; the attribute that none has twice, and its key."""
+"""Of each list: the key that names something, and what; the attribute that none has twice, and its key."""
 IN_STAGES = {"pin": ("name", "pin", "name", "name"), "load": PLACED}
 """The same of the lists in a stage."""
 
@@ -33,7 +33,6 @@ def scene_rules(scene: "Scene") -> Mistakes:
         scene.names.repeated,
         _contacts(scene),
         *(_named(*one, scene.names) for one in _lists(scene)),
-        *(_distinct(*one) for one in _lists(scene)),
         *(_moved_supports(scene, stage, f"{key}support") for key, stage in _stages(scene)),
         joint_rules(scene),
         _weight(scene),
@@ -115,25 +114,20 @@ def _lists(scene: "Scene") -> Iterator[tuple[str, Sequence[Any], tuple[str, str,
 
 
 def _named(place: str, records: Sequence[Any], how: tuple[str, str, str, str], names: Names) -> Mistakes:
-    """Yield the records that name none of a kind."""
-    key, kind, *_ = how
-    for i, record in enumerate(records if key else ()):
+    """Yield the records that name none of a kind, and those with the same attribute as an earlier one."""
+    (key, kind, attribute, shared), seen = how, set[str]()
+    for i, record in enumerate(records):
         with suppress(Unjudged):
-            if not names.is_a(kind, name := getattr(record, key)):
+            if key and not names.is_a(kind, name := getattr(record, key)):
                 yield FieldError(f"{place}[{i}].{key}", name, f"must name a {kind}: {_list(names.of(kind))}")
-
-
-def _distinct(place: str, records: Sequence[Any], how: tuple[str, str, str, str]) -> Mistakes:
-    """Yield the records with the same attribute as an earlier one, at its key unless the record states one."""
-    (*_, attribute, key), seen = how, set[str]()
-    for i, record in enumerate(records if attribute else ()):
         with suppress(Unjudged):
-            value = getattr(record, attribute)
+            value = getattr(record, attribute) if attribute else None
             if value in seen:
                 yield FieldError(
-                    f"{place}[{i}].{getattr(record, 'key', key)}", value, "must not appear twice"
+                    f"{place}[{i}].{getattr(record, 'key', shared)}", value, "must not appear twice"
                 )
-            seen |= {value} - {None}
+            elif value is not None:
+                seen.add(value)
 
 
 def _idle_pins(scene: "Scene") -> Mistakes:

@@ -15,7 +15,7 @@ STRAIGHT = "A straight path [length]; a displacement of zero leaves the pin at r
 
 
 class Path:
-    """A polyline through two or more points, from load parameter 0 to 1 at constant speed; all are equal where nothing moves [length]."""
+    """A polyline at constant speed from load parameter 0 to 1; its points are equal where nothing moves [length]."""
 
     def __init__(self, points: tuple[Point, ...]) -> None:
         self.points = points
@@ -121,7 +121,7 @@ class ContactSpec(Record):
     )
     penetration: float | None = optional(
         rules.positive,
-        "Largest penetration in the solid model over the beam's length, by augmented Lagrangian steps; else the penalty bounds it.",
+        "Penetration of the solid over the length, by augmented Lagrangian steps; else the penalty bounds it.",
     )
     keep: bool = optional(
         rules.truth, "Whether a release or a slip-off of the closed contact ends the solution.", False

@@ -31,7 +31,7 @@ def joint_rules(scene: "Scene") -> Mistakes:
 
 
 def _held(scene: "Scene") -> Mistakes:
-    """Yield the hinges that do nothing, and the structures that are free or, where nothing touches them, can move without strain."""
+    """Yield the hinges that do nothing, and the structures that are free or, untouched, can move without strain."""
     for name in (
         *(beam.name for beam in scene.beams),
         *(item.beam for item in (*scene.holding, *scene.hinges)),
@@ -146,7 +146,7 @@ def _useless_hinges(scene: "Scene") -> Mistakes:
 
 
 def _moves(scene: "Scene", structure: list[BeamSpec], free: Sequence[str]) -> bool:
-    """Whether beams, each rigid, can move: joints by (ux, uy, turn), and a beam turns by the relative motion of its ends.
+    """Whether rigid beams can move: joints by (ux, uy, turn), and a beam turns by the relative motion of its ends.
 
     The ends `free` do not turn with their joints.
     """

@@ -86,7 +86,7 @@ def read_scene(text: str, source: str) -> Scene:
 
 
 def to_tables(scene: Scene) -> dict[str, Table | list[Table]]:
-    """Return the tables of a scene file that states `scene`, every key written out: ``scene``, and a list for each kind of record."""
+    """Return the tables of a file that states `scene`, every key written out: ``scene``, and lists of records."""
     tables = _table(scene)
     head = {name: tables.pop(name) for name in [*tables] if name in HEAD}
     return {"scene": head, **{name.removesuffix("s"): rows for name, rows in tables.items()}}

@@ -132,7 +132,7 @@ def stored(value: Any, schema: Schema) -> Any:
 
 
 class ValueRule:
-    """A rule as a value: what it accepts in words, its JSON Schema, what that cannot say, and its own form of a value if any."""
+    """A rule as a value: what it accepts in words, its JSON Schema, what that cannot say, and its form of a value."""
 
     def __init__(
         self, accepts: str, schema: Schema, also: Test = lambda _: True, form: Test | None = None

@@ -26,7 +26,7 @@ class Scene(Record):
     load_parameters: int = key(rules.whole_number, "Number n of load parameters.")
     gravity: Point | None = optional(
         rules.point,
-        "Acceleration of gravity at load parameter 1, for beams with a `density` [length/time^2]; their product is a force per volume.",
+        "Acceleration of gravity at load parameter 1; times a `density` it is a force per volume [length/time^2].",
     )
     beams: tuple[BeamSpec, ...] = key(rules.Records("beam", BeamSpec, at_least=1), "The beams.")
     supports: tuple[SupportSpec, ...] = listed("support", SupportSpec, "The supports.")

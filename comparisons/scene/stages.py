@@ -64,12 +64,12 @@ class StageSpec(Record):
     support: tuple[SupportMove, ...] = listed(
         "support",
         SupportMove,
-        'Motions of supports, as ``[{ beam = "strip", end = "end", displacement = [0.0, 0.1] }]``, or a `rotation`.',
+        'Motions of supports: ``[{ beam = "strip", end = "end", displacement = [0.0, 0.1] }]``, or a `rotation`.',
     )
     load: tuple[LoadSpec, ...] = listed(
         "load",
         LoadSpec,
-        'Changes of loads, with the keys of ``[[load]]``: ``[{ beam = "strip", end = "end", force = [0.0, 1.0] }]``.',
+        'Changes of loads: ``[{ beam = "strip", end = "end", force = [0.0, 1.0] }]``, or other keys of ``[[load]]``.',
     )
     gravity: Point = optional(
         rules.point, "Change of the acceleration of gravity [length/time^2].", (0.0, 0.0)

@@ -67,7 +67,7 @@ def read_tables(text: str, source: str, kind: type[InputError]) -> dict[str, Any
 
 
 def misnamed(table: Mapping[str, Any], known: Collection[str]) -> dict[str, str | None]:
-    """Return the keys of a table that are not known, each with the known key that is meant by another name or misspelt."""
+    """Return the unknown keys of a table, each with the known key that it means by another name or misspelt."""
     return {key: meant(key, known) for key in islice((key for key in table if key not in known), MOST)}
 
 
