@@ -115,15 +115,23 @@ def springs(t: float) -> Mapping[str, Any]:
     return {**forces, "tip beam": (np.sqrt(200.0**2 - (65.0 * t) ** 2), -80.0 * t)}
 
 
+def rolled(t: float) -> Mapping[str, Any]:
+    turn = 2.0 * np.pi * t
+    return {"tip cantilever": (100.0 * np.sin(turn) / turn, 100.0 * (1.0 - np.cos(turn)) / turn)}
+
+
 SOURCES: dict[str, Callable[[float], Mapping[str, Any]]] = {
     "beam-on-springs": springs,
     "hinged-truss": truss,
+    "roll-up": rolled,
     "straightened-arc": arc,
 }
 
 
-@pytest.mark.parametrize("element", ELEMENTS)
-@pytest.mark.parametrize("name", SOURCES)
+@pytest.mark.parametrize(
+    ("name", "element"),
+    [(name, element) for name in SOURCES for element in ELEMENTS if name != "roll-up" or element == "exact"],
+)
 def test_a_path_is_that_of_the_closed_form(name, element):
     response = answer(load_scene(name), element)
     for k, t in enumerate(response.load_parameter):
