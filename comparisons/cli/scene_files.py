@@ -37,7 +37,7 @@ def run_new(given: Namespace) -> int:
     path, like, known = Path(f"{given.name}.toml"), given.like, built_in_scenes()
     if path.exists():
         raise OutputError(f"{path.name}: is there already")
-    if like is not None and load_scene(like).name not in known:
+    if like is not None and load_scene(like) and like not in known:
         raise InputError(like, "must be a built-in scene, crossval scenes lists them")
     old, text = (like, known[like]) if like else ("NAME", TEMPLATE.read_text(encoding="utf-8"))
     with path.open("x", encoding="utf-8") as file:

@@ -61,6 +61,12 @@ def test_a_new_scene_is_like_a_built_in_one():
         mine.unlink()
 
 
+def test_a_new_scene_is_not_like_a_file_with_the_name_of_a_built_in_one(capsys):
+    Path("mine.toml").write_text(KS)
+    said = refused(["new", "other", "--like", "mine.toml"], capsys)
+    assert said == "mine.toml: must be a built-in scene, crossval scenes lists them"
+
+
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
