@@ -137,8 +137,8 @@ def outputs(names: Sequence[str], *kinds: str) -> list[tuple[str, Path]]:
     found = []
     for name, path in zip(names, map(Path, names), strict=True):
         kind = ".json" if path == STANDARD else "" if path.is_dir() else path.suffix
-        if kind not in kinds:
-            raise OutputError(f"{name}: must end in {', '.join(filter(None, kinds))}")
+        if kind not in kinds or not name:
+            raise OutputError(f"{name or '--out'}: must end in {', '.join(filter(None, kinds))}")
         found.append((kind, result_file(path) if kind and path != STANDARD else path))
     return found
 

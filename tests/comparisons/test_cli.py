@@ -87,6 +87,7 @@ BAD = {
     "solve nosuch.toml --model tsm": "nosuch.toml",
     "solve my.toml --model tsm --out none/a.json": "none/a.json: cannot be written",
     "solve my.toml --out a.gif": "must end in",
+    "solve my.toml --out=": "--out: must end in .json, .csv",
     "solve my.toml --csv a.csv": "--csv: is no longer an option, see --out FILE.csv",
     "solve my.toml --model tsm --out my.toml": "must end in",
     "compare my.toml --out my.toml": "cannot be written",
