@@ -12,7 +12,7 @@ class Extra(NamedTuple):
 
 EXTRAS = {
     "pyvista": Extra("view", "pictures and windows of stressed bodies"),
-    "distributed": Extra("cluster", "studies on a Dask cluster (--cluster)"),
+    "distributed": Extra("cluster", "studies on a Dask cluster (--workers ADDRESS)"),
     "openseespy": Extra("peers", "--model opensees"),
     "exudyn": Extra("peers", "--model exudyn"),
     "felupe": Extra("peers", "--model felupe"),

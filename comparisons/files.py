@@ -43,11 +43,7 @@ def one_line(text: object) -> str:
 
 
 def read_regular(path: str, most: int) -> bytes:
-    """Return the bytes of a regular file. A pipe is refused at once, and at most `most` bytes are read.
-
-    Raises OSError, ValueError if the file cannot be read, is not a regular file, or has more than `most`
-    bytes.
-    """
+    """Return at most `most` bytes of a regular file; raise OSError or ValueError. A pipe is refused at once."""
     # O_NONBLOCK is missing on systems without named pipes, where opening a file never waits
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     with os.fdopen(os.open(path, flags), "rb") as file:
@@ -87,33 +83,21 @@ def own(folder: Path, names: Iterable[str]) -> set[str]:
 
 
 def check_free(folder: Path, *names: str) -> None:
-    """Raise unless each of `names` is free in `folder`, or a file as this program wrote it.
-
-    Raises
-    ------
-    OutputError
-        Names the first file that this program did not write there, or that was changed since.
-    """
+    """Raise OutputError unless each of `names` is free in `folder`, or a file as this program wrote it."""
     owned = own(folder, names)
-    for name in names:
-        if name not in owned and os.path.lexists(folder / name):
+    for path in (folder / name for name in names if name not in owned):
+        if os.path.lexists(path):
             raise OutputError(
-                f"{folder / name}: is there already, and is not as crossval wrote it: move it, or choose another name"
+                f"{path}: is there already, and is not as crossval wrote it: move it, or choose another name"
             )
 
 
-def _list(folder: Path, entries: Iterable[str]) -> None:
-    """Add lines to the list of a folder. What will be renamed is listed before, so that no file of this program is without a line."""
-    lines = sorted(set(entries) - _listed(folder))
-    if lines:
-        with (folder / WRITTEN).open("a", encoding="utf-8") as file:
-            file.write("".join(f"{line}\n" for line in lines))
-
-
 def move(aside: Path, folder: Path, names: Iterable[str]) -> None:
-    """Move finished files from the folder `aside` to `folder`, in the order of `names`."""
+    """Move finished files from the folder `aside` to `folder`, in the order of `names`; they are listed before."""
     names = list(names)
-    _list(folder, (_entry(aside / name, name) for name in names))
+    if new := {_entry(aside / name, name) for name in names} - _listed(folder):
+        with (folder / WRITTEN).open("a", encoding="utf-8") as file:
+            file.writelines(f"{line}\n" for line in sorted(new))
     for name in names:
         (aside / name).replace(folder / name)
 
@@ -137,8 +121,8 @@ def alone_in(folder: Path) -> Iterator[None]:
         with suppress(OSError):  # a file system without locks
             if file is None:
                 flock(place, LOCK_EX)
-            else:
-                _lock_file(place)
+            while file is not None and not _locked(place):
+                pass
         yield
     finally:
         os.close(place)
@@ -147,17 +131,16 @@ def alone_in(folder: Path) -> Iterator[None]:
                 file.unlink()
 
 
-def _lock_file(place: int) -> None:
-    """Lock a file of Windows, which waits for ten seconds at most."""
+def _locked(place: int) -> bool:
+    """Whether a file of Windows could be locked within ten seconds."""
     windows = import_module("msvcrt")
-    while True:
-        try:
-            windows.locking(place, windows.LK_LOCK, 1)
-        except OSError as error:
-            if error.errno == errno.EDEADLOCK:
-                continue
+    try:
+        windows.locking(place, windows.LK_LOCK, 1)
+    except OSError as error:
+        if error.errno != errno.EDEADLOCK:
             raise
-        return
+        return False
+    return True
 
 
 @contextmanager
@@ -177,10 +160,7 @@ def interrupts_held() -> Iterator[None]:
 def staging(folder: Path, named: Path | None = None) -> Iterator[Path]:
     """Yield a new hidden folder in `folder`, for files that are moved out when they are finished; it is removed at the end.
 
-    Raises
-    ------
-    OutputError
-        If the disk is full or the system refuses to write; the message names `named`, else the folder.
+    Raises OutputError, which names `named` or the folder, if the disk is full or the system refuses to write.
     """
     try:
         # an interrupt within its making or its removal would leave it; at any other point its finalizer removes it
@@ -200,11 +180,7 @@ def staging(folder: Path, named: Path | None = None) -> Iterator[Path]:
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Yield a temporary place for a file of this name; move it to `path` once the block has written it.
-
-    Raises OutputError if a file is there that this program did not write, the disk is full or the system
-    refuses to write the file.
-    """
+    """Yield a temporary place for a file, which moves to `path`, if that is free, once the block has written it."""
     check_free(path.parent, path.name)
     with staging(path.parent, path) as aside:
         yield aside / path.name
@@ -218,13 +194,7 @@ def write_text(path: Path, text: str) -> None:
 
 
 def writable_folder(folder: Path, *names: str) -> Path:
-    """Return `folder` after a trial of writing in it; the folder is created if it does not exist.
-
-    Raises
-    ------
-    OutputError
-        If the folder cannot be created or written in, or one of `names` is there and is not as this program wrote it.
-    """
+    """Return `folder`, made if it is not there, after a trial of writing in it; `names` must be free in it."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
@@ -237,11 +207,7 @@ def writable_folder(folder: Path, *names: str) -> Path:
 
 
 def result_file(path: Path) -> Path:
-    """Return `path` with links followed, after a trial of writing in its folder. The folder must exist.
-
-    Raises OutputError if the folder does not exist or is not writable, or `path` is a folder, a device, or a
-    file that this program did not write.
-    """
+    """Return `path` with links followed, after a trial of writing in its folder, which must exist."""
     if path.exists() and not path.is_file():
         raise OutputError(f"{path}: cannot be written: is not a regular file")
     try:

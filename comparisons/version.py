@@ -1,6 +1,5 @@
 """Provenance of a result: the release, a digest of the sources, the libraries and the machine."""
 
-import hashlib
 import os
 import platform
 import sys
@@ -22,6 +21,8 @@ def release() -> str:
 @cache
 def version() -> str:
     """Return the release and a digest of the sources, as ``0.5.1+1a2b3c4d``; equal versions have equal source files."""
+    import hashlib  # 2 ms that only a study needs
+
     found = hashlib.sha256()
     for package in PACKAGES:
         spec = find_spec(package)

@@ -4,9 +4,8 @@ from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from comparisons.cli.options import STANDARD, Command, outputs, write
-from comparisons.cli.outcome import DONE, STOPPED, WRONG
-from comparisons.cli.progress import watching
+from comparisons.cli.options import STANDARD, outputs, write
+from comparisons.cli.screen import DONE, STOPPED, WRONG, watching
 from comparisons.files import OutputError
 from comparisons.models import TSM, certified, restored, solve
 from comparisons.models.options import ModelError
@@ -15,8 +14,6 @@ from comparisons.scene import load_scene
 if TYPE_CHECKING:
     from comparisons.referee import Judgement
     from comparisons.response import Response
-
-EPILOG = """exit status: 0 certified, 1 a wrong answer (UNSTABLE, INADMISSIBLE, NOT_AN_EQUILIBRIUM), 2 bad input, 3 not judged"""
 
 
 def run(given: Namespace) -> int:
@@ -76,17 +73,3 @@ def _row(item: "Judgement") -> str:
     sizes = ", ".join(f"{name.replace('_', ' ')} {size:.2g}" for name, size in apart.items())
     stable = "stability not judged (friction)" if item.index < 0 else f"index {item.index}"
     return f"{text}off by: {sizes}; {stable}, residual {item.residual:.1g}"
-
-
-COMMANDS = (
-    Command(
-        "certify",
-        "judge an answer by the exact equilibrium next to it",
-        run,
-        "answer --scene --allowance --out=FILE",
-        {"--out=FILE": "write the certificate as JSON; - is standard output"},
-        "The exact equilibrium of the scene's rods next to an answer is found by another discretisation than any model's; the "
-        "answer is certified where it is near, stable and admissible at every load parameter.",
-        EPILOG,
-    ),
-)

@@ -6,46 +6,34 @@ import signal
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager, redirect_stderr, suppress
+from contextlib import ExitStack, contextmanager, redirect_stderr, suppress
 from pathlib import Path
 from typing import NoReturn
 
 from comparisons.cli import certify, compare, run, scene_files, solve, view
-from comparisons.cli.outcome import BAD_INPUT, DONE, EPILOG, INTERRUPTED, STOPPED, WRONG, report
-from comparisons.extras import install
+from comparisons.cli.options import STATED, add_command
+from comparisons.cli.screen import BAD_INPUT, DONE, INTERRUPTED, STOPPED, WRONG, report
+from comparisons.extras import EXTRAS, install
 from comparisons.files import OutputError, printable
 from comparisons.models.options import ModelError
 from comparisons.models.outside.child import ProgramError, ProgramStatus
 from comparisons.scene import InputError
 
-COMMANDS = tuple(
-    command for module in (scene_files, solve, compare, certify, run, view) for command in module.COMMANDS
-)
-"""The commands in the order of the help."""
-GONE = {
-    "doctor": "crossval --version",
-    "completion": "crossval --help",
-    "results": "the CSV file that crossval run FILE.toml writes",
-    "schema": "crossval scenes --schema",
-    "gate": "crossval compare SCENE --max-error QUANTITY=X",
-    "league": "crossval compare SCENE SCENE ..., crossval compare all",
-    "reproduce": "crossval run paper, crossval run fig9",
-    "trade": "crossval run trade SCENE",
-    "study": "crossval run FILE.toml",
-    "manual": "crossval run manual",
-    "extremes": "crossval run extremes",
-    "--json": "--out FILE.json",
-    "--csv": "--out FILE.csv",
-    "--plot": "--out FILE.png",
-    "--vtk": "--out FOLDER",
-    "--times": "wall_seconds in --out FILE.json",
-    "--explain": "--accuracy, which says what it decides",
-    "--quantity": "--accuracy QUANTITY=X",
-    "--few": "crossval solve, which judges as many",
-    "--only": "crossval run manual PROBLEM ...",
-    "--cards": "crossval run cards",
+COMMANDS = {
+    "scenes": scene_files.run_scenes,
+    "new": scene_files.run_new,
+    "check": scene_files.run_check,
+    "solve": solve.run,
+    "compare": compare.run,
+    "certify": certify.run,
+    "run": run.run,
+    "view": view.run,
 }
+"""What runs each command, in the order of the help."""
+GONE: dict[str, str] = STATED["gone"]
 """Commands and options of earlier versions, and what does their work."""
+NEEDED = ("numpy", "scipy", "scikit-fem", "meshio", "matplotlib", "jinja2")
+"""Libraries that no command does without."""
 OWN = ("comparisons", "tsm", "fem_reference")
 """Packages whose absence is a bug and no missing library."""
 
@@ -54,25 +42,16 @@ def main(arguments: list[str] | None = None) -> int:
     """Run the command and return its exit status: 0 done, 1 a wrong answer, 2 bad input, 3 a solution that stopped."""
     first, *more = (sys.argv[1:] if arguments is None else arguments) or [""]
     words = (first, *(word.partition("=")[0] for word in more if word.startswith("-")))
-    with _open_streams() as there:
+    with ExitStack() as streams:
+        if sys.stderr is None:  # closed: messages are discarded
+            nowhere = streams.enter_context(Path(os.devnull).open("w"))
+            streams.enter_context(redirect_stderr(nowhere))
+        if sys.stdout is None:
+            return _told("output: standard output is closed", BAD_INPUT)
         for word in (word for word in words if word in GONE):
             kind = "an option" if word.startswith("-") else "a command"
             return _told(f"{word}: is no longer {kind}, see {GONE[word]}", BAD_INPUT)
-        if not there:
-            return BAD_INPUT
         return _version() if words == ("--version",) else _run(arguments)
-
-
-@contextmanager
-def _open_streams() -> Iterator[bool]:
-    """Report a closed standard output in one line. Messages to a closed standard error are discarded."""
-    if sys.stderr is not None:
-        if sys.stdout is None:
-            _told("output: standard output is closed", BAD_INPUT)
-        yield sys.stdout is not None
-        return
-    with Path(os.devnull).open("w") as nowhere, redirect_stderr(nowhere):
-        yield sys.stdout is not None
 
 
 def _run(arguments: list[str] | None) -> int:
@@ -126,6 +105,37 @@ def _told(reason: object, status: int) -> int:
     return status
 
 
+def _drop_output() -> None:
+    """Spare the interpreter a last flush that fails."""
+    with suppress(OSError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _version() -> int:
+    """Print the version, and the version of every library and program, or how the missing one is had."""
+    import shutil
+    from importlib import metadata
+
+    from comparisons.show.render import renders
+
+    def found(name: str) -> str | None:
+        with suppress(metadata.PackageNotFoundError):
+            return metadata.version(name)
+        return None
+
+    uses = {name: f"missing, extra {extra.name}: {extra.use}" for name, extra in EXTRAS.items()}
+    uses["ccx"] = "missing, Debian's calculix-ccx: --model calculix, crossval run peers"
+    uses["OpenGL"] = "missing: no picture of stressed bodies, by compare and view"
+    states: dict[str, str | None] = {"python": ".".join(map(str, sys.version_info[:3]))}
+    states |= {name: found(name) for name in (*NEEDED, *EXTRAS)}
+    states |= {"ccx": shutil.which("ccx"), "OpenGL": "off-screen rendering works" if renders() else None}
+    print(f"crossval {metadata.version('tsm-crossval')}")
+    for name, state in states.items():
+        mark = "ok" if state else "-" if name in uses else "MISSING"
+        print(f"{mark:8s}{name:14s} {state or uses.get(name, 'missing')}")
+    return DONE if all(states[name] for name in NEEDED) else WRONG
+
+
 class _Parser(argparse.ArgumentParser):
     """A parser whose errors show arguments that a terminal would obey as escapes."""
 
@@ -133,34 +143,17 @@ class _Parser(argparse.ArgumentParser):
         super().error(printable(message))
 
 
-def _version() -> int:
-    """Print the version and what this machine has."""
-    from comparisons.cli.machine import examined
-    from comparisons.version import release
-
-    print(f"crossval {release()}")
-    findings = list(examined())
-    for mark, what, state in findings:
-        print(f"{mark:8s}{what:14s} {state}")
-    return WRONG if any(mark == "MISSING" for mark, *_ in findings) else DONE
-
-
-def _drop_output() -> None:
-    """Spare the interpreter a last flush that fails."""
-    with suppress(OSError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
 def command_parser() -> argparse.ArgumentParser:
     """Return the parser of the whole command."""
     parser = _Parser(
         prog="crossval",
         description="Contact of beams: tangent stiffness method, 2D solid elements and exact answers on one scene.",
-        epilog=EPILOG,
+        epilog=STATED["command"]["solve"]["epilog"],
     )
     looked_up = "print the version, and which libraries and programs are here"
     parser.add_argument("--version", action="store_true", help=looked_up)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for command in COMMANDS:
-        command.add_to(commands)
+    for name, function in COMMANDS.items():
+        add_command(commands, name, function, suites=", ".join(run.SUITES))
+    commands.choices["run"].description = "; ".join(f"{name}: {one.what}" for name, one in run.SUITES.items())
     return parser

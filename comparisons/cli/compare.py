@@ -4,36 +4,37 @@ import argparse
 from functools import partial
 from pathlib import Path
 
-from comparisons.cli.options import Command, argument, chosen, workers
-from comparisons.cli.outcome import DONE, STOPPED, WRONG, exit_status, report
-from comparisons.cli.progress import staging, watching
-from comparisons.files import result_file, writable_folder, write_text
-from comparisons.models import TSM
+from comparisons.cli.options import chosen, outputs, refuse, workers
+from comparisons.cli.screen import (
+    DONE,
+    STOPPED,
+    WRONG,
+    exit_status,
+    files_named,
+    report,
+    staging,
+    watching,
+)
+from comparisons.files import writable_folder, write_text
+from comparisons.models import TSM, find
 from comparisons.models.options import ModelError
 from comparisons.scene import Scene, built_in_scenes, load_scene
 
-EVERY = "all"
-"""The word for all built-in scenes."""
 MODEL = ("model", "element", "elements", "mesh")
 """The options that say which model is meant."""
 FOREIGN = {
-    "a single scene": ("against", "junit", "quick", "workers", "cluster"),
-    "--max-error": ("others", "out", "quick", "workers", "cluster"),
-    "several scenes": (*MODEL, "against", "junit"),
+    "a single scene": ("against", "quick", "workers"),
+    "--max-error": ("others", "quick", "workers"),
+    "several scenes": (*MODEL, "against"),
 }
 """The options that each of the three ways of comparing does not have."""
-EPILOG = """exit status: 0 compared, or every bound holds, 1 an error lies beyond its bound, 2 bad input, 3 the exact rods stopped, an
-answer was refused by its checks or the referee, or a solution that has a bound stopped, 130 interrupted. A model that stops with a named
-status is a row of the table. Of several scenes what is done is kept, and the same command goes on from there."""
 
 
 def run(given: argparse.Namespace) -> int:
     """Compare in one of the three ways."""
-    names = list(built_in_scenes()) if given.scenes == [EVERY] else given.scenes
+    names = list(built_in_scenes()) if given.scenes == ["all"] else given.scenes
     how = "--max-error" if given.max_error else "a single scene" if len(names) == 1 else "several scenes"
-    for option in FOREIGN[how]:
-        if getattr(given, option):
-            raise ModelError(f"{argument(option).replace('others', 'with')}: is no option of {how}")
+    refuse(given, FOREIGN[how], f"is no option of {how}")
     if len(dict(given.max_error)) < len(given.max_error):
         raise ModelError("--max-error: bounds a quantity twice")
     scenes = [load_scene(name) for name in names]
@@ -47,7 +48,6 @@ def run(given: argparse.Namespace) -> int:
 def _compare(scene: Scene, given: argparse.Namespace) -> int:
     """Compare all models, print the table and name the files."""
     from comparisons.compare import ROD, Run, compare, run_of
-    from comparisons.models import find
     from comparisons.show.table import table_text
 
     tell = (lambda _: None) if given.quiet else report
@@ -61,8 +61,9 @@ def _compare(scene: Scene, given: argparse.Namespace) -> int:
     print(table_text(found.rows, ROD.label))
     if found.other_events:
         print("", *found.other_events, sep="\n")
-    print("\nfiles:", *(f"  {path}" for path in found.files), sep="\n")
-    exit_status(scene, [(f"{row.label}: ", row.response) for row in found.rows])
+    print()
+    files_named(*found.files)
+    exit_status(scene, ((f"{row.label}: ", row.response) for row in found.rows))
     for row in found.apart:
         report(f"crossval: {row.label}: OTHER_BRANCH: ends in another equilibrium than the {ROD.label}")
     return STOPPED if found.apart or found.wrong else DONE
@@ -70,19 +71,18 @@ def _compare(scene: Scene, given: argparse.Namespace) -> int:
 
 def _held(scene: Scene, given: argparse.Namespace) -> int:
     """Measure one model, print its bounds and write them."""
-    file = None if given.junit is None else result_file(Path(given.junit))
+    files = outputs([str(given.out)] if given.out else [], ".xml")
     from comparisons.claims.gate import gate
 
     found = gate(scene, given.model or TSM.name, chosen(given), dict(given.max_error), given.against)
-    if file is not None:
+    for _, file in files:
         write_text(file, found.junit())
     what = f"{found.response.model} {found.response.setting}".rstrip()
     print(f"{scene.name}: {what} against {found.reference.model}")
     for item in found.bounds:
         sign = "<=" if item.holds else "> "
-        print(
-            f"  {item.name:8s} {item.error:9.3g}  {sign} {item.allowed:<6g} {found.place(item.name)}".rstrip()
-        )
+        bound = f"  {item.name:8s} {item.error:9.3g}  {sign} {item.allowed:<6g} {found.place(item.name)}"
+        print(bound.rstrip())
     status = exit_status(scene, [("", found.response), ("reference: ", found.reference)])
     if status != DONE or found.held:
         return status
@@ -97,30 +97,11 @@ def _league(scenes: list[Scene], given: argparse.Namespace) -> int:
     from comparisons.output import tabulated
 
     folder = writable_folder(given.out or Path("out/league"), *FILES)
-    where = workers(given, 1)
-    with running(folder / "results", where, quiet=given.quiet, process=True) as run_cases:
+    with running(folder / "results", workers(given, 1), quiet=given.quiet, process=True) as run_cases:
         league = measure_league(scenes, given.others, run_cases, quick=given.quick)
     print(tabulated(summary(league)))
     for name, program, reason in league.left_out:
         print(f"{name}: {program}: left out, {reason}")
-    print("\nfiles:", *(f"  {path}" for path in write_league(league, folder)), sep="\n")
+    print()
+    files_named(*write_league(league, folder))
     return DONE
-
-
-COMMANDS = (
-    Command(
-        "compare",
-        "compare models on a scene, hold errors to bounds, or measure every program on several scenes",
-        run,
-        "scenes --with --model --elements --element --mesh --max-error --against --junit --out --quick --workers --cluster --quiet",
-        {
-            "--model": "a bound's model (tsm), or one more row",
-            "--out": "folder of the results (out/SCENE, out/league)",
-            "--quick": "several scenes: at most two resolutions of every program",
-        },
-        "One scene is solved with every model. With --max-error one model is solved, and its errors, relative and the largest "
-        "over all load parameters, are held to bounds. Several scenes are solved with every program at up to five of its own resolutions: "
-        "errors, spurious friction, processor seconds, and how often a program said success and was wrong.",
-        EPILOG,
-    ),
-)

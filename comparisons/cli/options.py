@@ -1,13 +1,16 @@
-"""The commands and their arguments: each argument is declared once, and a command names those that it has."""
+"""The arguments of the commands: their words are in ``commands.toml``, here is how they are read."""
 
 import argparse
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import tomllib
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from comparisons.files import OutputError, result_file, write_text
-from comparisons.models import MODELS, TSM
+from comparisons.models import MODELS
 from comparisons.models.options import BRANCHES, ModelError, Options
 from comparisons.models.outside.programs import ADAPTERS, known
 from comparisons.scene import rules
@@ -17,159 +20,97 @@ if TYPE_CHECKING:
     from comparisons.cases.workers import Workers
 
 
-class ModelNames:
-    """The values of ``--model``: the models of this package, programs of others, and program files, which are read only when they are used."""
+class Names:
+    """Names that are looked up where they are asked for, and whether a name is one of them."""
+
+    def __init__(
+        self, listed: Callable[[], Iterable[str]], known: Callable[[str], bool] = lambda _: False
+    ) -> None:
+        self.listed, self.known = listed, known
 
     def __iter__(self) -> Iterator[str]:
-        """Iterate over the models and adapters of this package."""
-        return iter((*MODELS, *ADAPTERS))
+        return iter(self.listed())
 
-    def __contains__(self, name: object) -> bool:
-        """Whether a name is known, or is the name of a file that may state a program."""
-        return name in MODELS or known(str(name))
-
-
-class Quantities:
-    """The names of the quantities, which are imported where they are asked for; those of the path with `path`."""
-
-    def __init__(self, *, path: bool) -> None:
-        self.path = path
-
-    def __iter__(self) -> Iterator[str]:
-        """Iterate over the names."""
-        from comparisons.quantities import names
-
-        return iter(names(path=self.path))
+    def __contains__(self, name: str) -> bool:
+        return name in self.listed() or self.known(name)
 
     def __str__(self) -> str:
         return ", ".join(self)
 
 
-QUANTITIES = {"--accuracy": Quantities(path=False), "--max-error": Quantities(path=True)}
+def _quantities(*, path: bool) -> Iterable[str]:
+    from comparisons.quantities import names
+
+    return names(path=path)
+
+
+MODEL_NAMES = Names(lambda: (*MODELS, *ADAPTERS), known)
+"""The models of this package, programs of others, and program files, which are read only when they are used."""
+QUANTITIES = {
+    f"--{name}": Names(partial(_quantities, path=name == "max-error")) for name in ("accuracy", "max-error")
+}
 """The quantities that an argument names."""
 
 
-def checked(rule: Rule, read: Callable[[str], object] = str) -> Callable[[str], Any]:
-    """Return the type of an argument whose value obeys a rule of the scene."""
-
-    def value(text: str) -> Any:
-        try:
-            return rule(read(text))
-        except ValueError as error:
-            reason = error if isinstance(error, RuleError) else "must be a number"
-            raise argparse.ArgumentTypeError(f"{text}: {reason}") from None
-
-    return value
-
-
-def bound(names: Quantities, rule: Rule, default: str = "") -> Callable[[str], tuple[str, float]]:
-    """Return the type of an argument ``QUANTITY=X`` with one of some names; without a name it is `default`."""
-
-    def value(text: str) -> tuple[str, float]:
-        name = text.rpartition("=")[0] or default
-        if name not in names:
-            raise argparse.ArgumentTypeError(f"{text}: must be QUANTITY=X, one of {names}")
-        return name, checked(rule, lambda text: float(text.rpartition("=")[2]))(text)
-
-    return value
+def obeying(rule: Rule, text: str, value: str | None = None) -> Any:
+    """Return the number or word, all of an argument's text or a part, that obeys a rule of the scene."""
+    word: object = text if value is None else value
+    for form in (float, int):
+        with suppress(ValueError):
+            word = form(text if value is None else value)
+    try:
+        return rule(word)
+    except RuleError as error:
+        raise argparse.ArgumentTypeError(f"{text}: {error}") from None
 
 
-def _of(option: str, meaning: str) -> str:
-    """Return the help of a field of `Options`, with the models that have it."""
-    return f"{', '.join(model.name for model in MODELS.values() if option in model.options)}: {meaning}"
+def _bound(argument: str, rule: Rule, default: str, text: str) -> tuple[str, float]:
+    """Return what ``QUANTITY=X`` states, one of the quantities of an argument; without one it is `default`."""
+    name, _, value = text.rpartition("=")
+    if (name or default) not in QUANTITIES[argument]:
+        raise argparse.ArgumentTypeError(f"{text}: must be QUANTITY=X, one of {QUANTITIES[argument]}")
+    return name or default, obeying(rule, text, value)
 
 
-PART = {"type": checked(rules.fraction, float), "metavar": "X"}
-COUNT = {"type": checked(rules.whole_number, int), "metavar": "N"}
-FOLDER = {"type": Path, "metavar": "FOLDER"}
-SWITCH = {"action": "store_true"}
-MANY = {"action": "append", "default": []}
-_REST = "at a critical point stop (the default), turn to the stable branch, or go on along the primary one, unstable"
-_SHARED = (
-    "processes (one for each core; 1 where seconds are measured: cases side by side slow each other down)"
-)
-_HELD = "load parameters to hold against the exact equilibrium: the last of every stage and those beside events (the default), all, none"
-_CHOSEN = "choose model and resolution for this relative error of the force, or of another quantity, in place of elements and meshes: "
-_WITH = "a program of others as well, any number of them: its name, or a program file NAME.toml"
-ARGUMENTS: dict[str, tuple[str, dict[str, Any]]] = {
-    "scene": ("a built-in scene or a TOML file", {"metavar": "SCENE"}),
-    "scenes": ("built-in scenes or TOML files; all: every built-in one", {"nargs": "+", "metavar": "SCENE"}),
-    "answer": ("what solve --out wrote, or a scene that tsm solves", {"metavar": "RESPONSE.json|SCENE"}),
-    "what": ("a scene, or a folder of VTK files of `compare` or `solve --out`", {"metavar": "SCENE|FOLDER"}),
-    "suite": ("a study file, or a suite", {"metavar": "NAME|FILE.toml"}),
-    "of": (
-        "trade: the scene; manual, cards: these problems only",
-        {"nargs": "*", "metavar": "SCENE|PROBLEM"},
-    ),
-    "name": ("of the scene; the file is NAME.toml", {"metavar": "NAME"}),
-    "--like": ("a built-in scene to start from", {"metavar": "SCENE"}),
-    "--schema": ("print the JSON Schema of scene files, for editors", SWITCH),
-    "--scene": ("of a response, where it is not a built-in one", {"metavar": "SCENE"}),
-    "--model": (f"the model that solves ({TSM.name})", {"choices": ModelNames()}),
-    "--with": (_WITH, {**MANY, "dest": "others", "choices": ModelNames(), "metavar": "MODEL"}),
-    "--against": ("bounds: the model to measure against (rod)", {"choices": ModelNames()}),
-    "--elements": (_of("elements", "elements of every beam"), COUNT),
-    "--element": (_of("element", "type of the elements"), {"metavar": "ELEMENT"}),
-    "--integration-tolerance": (
-        _of("integration_tolerance", "error allowed to the integration inside exact elements (1e-9)"),
-        PART,
-    ),
-    "--mesh": (
-        _of("mesh", "elements along and across"),
-        {"type": checked(rules.mesh_text), "metavar": "NXxNY"},
-    ),
-    "--branch": (_of("branch", _REST), {"choices": BRANCHES}),
-    "--accuracy": (
-        _CHOSEN + "%(quantities)s",
-        {"type": bound(QUANTITIES["--accuracy"], rules.fraction, "force"), "metavar": "[QUANTITY=]X"},
-    ),
-    "--max-error": (
-        "a bound, any number of them: %(quantities)s",
-        {**MANY, "type": bound(QUANTITIES["--max-error"], rules.positive), "metavar": "QUANTITY=X"},
-    ),
-    "--certify": (_HELD, {"choices": ("last", "all", "none"), "default": "last"}),
-    "--allowance": ("largest relative distance from the exact equilibrium (.05)", PART),
-    "--scale": (
-        "enlarge the deformation, and say so in the picture (1)",
-        {"type": checked(rules.positive, float), "default": 1.0, "metavar": "FACTOR"},
-    ),
-    "--out=FILE": ("", {**MANY, "metavar": "FILE"}),
-    "--out": ("folder of the results (out/NAME)", FOLDER),
-    "--junit": ("write the bounds, or every answer of the manual, as JUnit XML", {"metavar": "FILE"}),
-    "--quick": ("fewer or coarse settings", SWITCH),
-    "--workers": (_SHARED, COUNT),
-    "--cluster": ("the scheduler of a Dask cluster, instead of --workers", {"metavar": "ADDRESS"}),
-    "--quiet": ("tell of no progress", SWITCH),
+def _workers(text: str) -> int | str:
+    """Return a number of processes, or an address, which has letters."""
+    return text if any(map(str.isalpha, text)) else int(obeying(rules.whole_number, text))
+
+
+STATED = tomllib.loads(Path(__file__).with_name("commands.toml").read_text(encoding="utf-8"))
+"""The commands and their arguments, in words."""
+TYPES: dict[str, Callable[[str], object]] = {
+    "--accuracy": partial(_bound, "--accuracy", rules.fraction, "force"),
+    "--max-error": partial(_bound, "--max-error", rules.positive, ""),
+    "--workers": _workers,
+    "--out": Path,
 }
-"""The help of every argument, and how it is read."""
+"""How the text of an argument is read that has no rule."""
 
 
-class Command(NamedTuple):
-    """A command: what it is for, what runs it, and the names of its arguments, in words; `own` is their help where it is another."""
-
-    name: str
-    help: str
-    run: Callable[[argparse.Namespace], int]
-    arguments: str
-    own: Mapping[str, str] = {}
-    description: str = ""
-    epilog: str = ""
-
-    def add_to(self, commands: Any) -> None:
-        """Add the command to the subparsers of the parser."""
-        parser = commands.add_parser(
-            self.name, help=self.help, description=self.description, epilog=self.epilog
-        )
-        for name in self.arguments.split():
-            meaning, reading = ARGUMENTS[name]
-            action = parser.add_argument(name.partition("=")[0], help=self.own.get(name, meaning), **reading)
-            vars(action)["quantities"] = QUANTITIES.get(name)
-        parser.set_defaults(run=self.run)
+def add_command(commands: Any, name: str, run: Callable[[argparse.Namespace], int], **words: object) -> None:
+    """Add a command to the subparsers of the parser; `words` are those of its help that are not stated."""
+    stated = STATED["command"][name]
+    texts = {key: stated.get(key, "") for key in ("help", "description", "epilog")}
+    parser = commands.add_parser(name, **texts)
+    for argument in stated["arguments"].split():
+        reading = {**STATED["argument"][argument]}
+        reading["help"] = stated.get("own", {}).get(argument, reading.get("help"))
+        if (rule := reading.pop("rule", "")) or argument in TYPES:
+            reading["type"] = TYPES.get(argument) or partial(obeying, getattr(rules, rule))
+        if isinstance(listed := reading.get("choices"), str):
+            reading["choices"] = {"models": MODEL_NAMES, "branches": BRANCHES}[listed]
+        action = parser.add_argument(argument.partition("=")[0], **reading)
+        models = ", ".join(model.name for model in MODELS.values() if action.dest in model.options)
+        vars(action).update(words, models=models, quantities=QUANTITIES.get(argument))
+    parser.set_defaults(run=run)
 
 
-def argument(name: str) -> str:
-    """Return the argument of a field of `Options`, as ``--integration-tolerance``."""
-    return "--" + name.replace("_", "-")
+def refuse(given: argparse.Namespace, names: Iterable[str], rule: str) -> None:
+    """Raise ModelError for the first of some arguments that is given."""
+    for name in (name for name in names if getattr(given, name)):
+        words = {"others": "--with", "of": "SCENE"}
+        raise ModelError(f"{words.get(name, '--' + name.replace('_', '-'))}: {rule}")
 
 
 def chosen(given: argparse.Namespace) -> Options:
@@ -178,12 +119,10 @@ def chosen(given: argparse.Namespace) -> Options:
 
 
 def workers(given: argparse.Namespace, number: int | None = None) -> "Workers":
-    """Return where the cases run: ``--cluster``, or ``--workers`` processes, by default `number` of them or one for each core."""
+    """Return where the cases run, by default `number` processes or one for each core."""
     from comparisons.cases.workers import cluster, local
 
-    if given.workers and given.cluster:
-        raise ModelError("--cluster: is not allowed with argument --workers")
-    return local(given.workers or number) if given.cluster is None else cluster(given.cluster)
+    return cluster(given.workers) if isinstance(given.workers, str) else local(given.workers or number)
 
 
 STANDARD = Path("-")
@@ -196,11 +135,10 @@ def outputs(names: Sequence[str], *kinds: str) -> list[tuple[str, Path]]:
     Raises OutputError for a file of another kind, or one that cannot be written or is not this program's.
     """
     found = []
-    for name in names:
-        path = Path(name)
+    for name, path in zip(names, map(Path, names), strict=True):
         kind = ".json" if path == STANDARD else "" if path.is_dir() else path.suffix
-        if kind not in kinds:
-            raise OutputError(f"{name}: must end in {', '.join(filter(None, kinds))}")
+        if kind not in kinds or not name:
+            raise OutputError(f"{name or '--out'}: must end in {', '.join(filter(None, kinds))}")
         found.append((kind, result_file(path) if kind and path != STANDARD else path))
     return found
 

@@ -1,61 +1,58 @@
 """``crossval run``: a suite of cases by its name, or a study file."""
 
 import os
+from argparse import Namespace
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from comparisons.claims.names import FIGURES, QUESTIONS
-from comparisons.cli.options import Command, workers
-from comparisons.cli.outcome import DONE, STOPPED, WRONG, report
-from comparisons.files import result_file, writable_folder, write_text
+from comparisons.cli.options import refuse, workers
+from comparisons.cli.screen import DONE, STOPPED, WRONG, files_named, report
+from comparisons.files import writable_folder, write_text
 from comparisons.scene import InputError, load_scene
 
-if TYPE_CHECKING:
-    import argparse
 
-
-EPILOG = """exit status: 0 done (a solution that stopped is a result, and is named), 1 an answer of the manual is beyond its tolerance,
-or a cell of the extremes is wrong, 2 bad input or a place that cannot be used, 3 a figure's run stopped, a case has no result, or nothing
-is there to measure errors against, 130 interrupted; what is done of a study, a trade and the extremes is kept, and the same command goes
-on from there"""
-
-
-def run(given: "argparse.Namespace") -> int:
+def run(given: Namespace) -> int:
     """Run what is named, with the options that it has."""
     name: str = given.suite
     suite = STUDY_FILE if name.endswith(".toml") or os.sep in name else SUITES.get(name)
     if suite is None:
         raise InputError(name, f"must be a study file, NAME.toml, or one of {', '.join(SUITES)}")
-    for option in ("of", "quick", "workers", "cluster", "junit"):
-        if getattr(given, option) and option not in suite.options:
-            raise InputError("SCENE" if option == "of" else f"--{option}", f"is no option of {name}")
+    foreign = (option for option in ("of", "quick", "workers") if option not in suite.options.split())
+    refuse(given, foreign, f"is no option of {name}")
     return suite.run(given)
 
 
-def _out(given: "argparse.Namespace", *names: str) -> Path:
+def _out(given: Namespace, *names: str) -> Path:
     """Return the folder of the results, tried out."""
     return writable_folder(given.out or Path("out") / Path(given.suite).stem, *names)
 
 
-def _files(*paths: Path) -> None:
-    print("files:", *(f"  {path}" for path in paths), sep="\n")
+def _told(given: Namespace) -> Callable[[str], None]:
+    return (lambda _: None) if given.quiet else report
 
 
-def _figures(given: "argparse.Namespace") -> int:
+def _ended(files: Iterable[Path], reasons: Iterable[str] = (), status: int = STOPPED) -> int:
+    """Name the files, and what is wrong; return the exit status."""
+    files_named(*files)
+    ended = DONE
+    for reason in reasons:
+        report(f"crossval: {reason}")
+        ended = status
+    return ended
+
+
+def _figures(given: Namespace) -> int:
     folder = _out(given, "report.html")
     from comparisons.claims.paper.reproduce import reproduce
 
     figure = "all" if given.suite == "paper" else given.suite
-    files, stopped = reproduce(figure, folder, quick=given.quick, report=report)
-    _files(*files)
-    for reason in stopped:
-        report(f"crossval: {reason}")
-    return STOPPED if stopped else DONE
+    return _ended(*reproduce(figure, folder, quick=given.quick, report=report))
 
 
-def _cards(given: "argparse.Namespace") -> int:
+def _cards(given: Namespace) -> int:
     from comparisons.claims.manual import problems
     from comparisons.claims.manual.cards import write_cards
 
@@ -65,33 +62,24 @@ def _cards(given: "argparse.Namespace") -> int:
     return DONE
 
 
-def _told(given: "argparse.Namespace") -> Callable[[str], None]:
-    return (lambda _: None) if given.quiet else report
-
-
-def _manual(given: "argparse.Namespace") -> int:
+def _manual(given: Namespace) -> int:
     from comparisons.claims.manual import problems
 
     stated = problems(given.of or None)
-    folder = _out(given, "index.md", "manual.json")
-    file = None if given.junit is None else result_file(Path(given.junit))
+    folder = _out(given, "index.md", "manual.json", "junit.xml")
     from comparisons.claims.finding import junit_text
     from comparisons.claims.manual import write_manual
     from comparisons.claims.manual.write import checks
 
     cases, files = write_manual(folder, _told(given), stated)
-    if file is not None:
-        write_text(file, junit_text("crossval run manual", checks(cases)))
-    answers = [(case, one) for case in cases for one in case.judgements]
-    failed = [(case, one) for case, one in answers if not one.passed]
+    write_text(folder / "junit.xml", junit_text("crossval run manual", checks(cases)))
+    answers = [(case.problem.name, one) for case in cases for one in case.judgements]
+    failed = [f"{name}, {one.trial.label}: {one.failure}" for name, one in answers if not one.passed]
     print(f"{len(cases)} cases, {len(answers)} answers, {len(failed)} beyond their tolerance")
-    _files(*files, *([file] if file else []))
-    for case, one in failed:
-        report(f"crossval: {case.problem.name}, {one.trial.label}: {one.failure}")
-    return WRONG if failed else DONE
+    return _ended([*files, folder / "junit.xml"], failed, WRONG)
 
 
-def _extremes(given: "argparse.Namespace") -> int:
+def _extremes(given: Namespace) -> int:
     folder = _out(given, "extremes.html", "extremes.csv", "extremes.json")
     from comparisons.cases.progress import shown
     from comparisons.claims.extremes.run import counts, extremes
@@ -100,14 +88,10 @@ def _extremes(given: "argparse.Namespace") -> int:
     with shown(quiet=given.quiet) as progress:
         judgements, files = extremes(folder, workers(given), progress, quick=given.quick)
     print(tabulated([{"axis": axis, **number} for axis, number in counts(judgements).items()]))
-    _files(*files)
-    wrong = [item.sentence for item in judgements if item.verdict == "wrong"]
-    for sentence in wrong:
-        report(f"crossval: {sentence}")
-    return WRONG if wrong else DONE
+    return _ended(files, (item.sentence for item in judgements if item.verdict == "wrong"), WRONG)
 
 
-def _trade(given: "argparse.Namespace") -> int:
+def _trade(given: Namespace) -> int:
     if len(given.of) != 1:
         raise InputError("SCENE", "is missing: crossval run trade SCENE")
     scene = load_scene(given.of[0])
@@ -126,22 +110,20 @@ def _trade(given: "argparse.Namespace") -> int:
         return STOPPED
     files = write_trade(trade, folder)
     print(summary(trade), end="\n\n")
-    _files(*files)
-    return DONE
+    return _ended(files)
 
 
-def _question(given: "argparse.Namespace") -> int:
+def _question(given: Namespace) -> int:
     folder = _out(given, f"{given.suite}.csv")
     from comparisons.claims.solid_accuracy import STUDIES
     from comparisons.output import tabulated, write_rows
 
     rows = list(STUDIES[given.suite](report))
     print(tabulated(rows))
-    _files(write_rows(folder / f"{given.suite}.csv", rows))
-    return DONE
+    return _ended([write_rows(folder / f"{given.suite}.csv", rows)])
 
 
-def _study(given: "argparse.Namespace") -> int:
+def _study(given: Namespace) -> int:
     from comparisons.cases.progress import running
     from comparisons.cases.run import UNSETTLED
     from comparisons.cases.study import read_study, result_rows, result_table
@@ -155,54 +137,39 @@ def _study(given: "argparse.Namespace") -> int:
     ends = Counter(row["status"] for row in rows)
     print(result_table(rows))
     print(f"\n{study.name}: {len(rows)} cases: {', '.join(f'{name} {ends[name]}' for name in sorted(ends))}")
-    _files(write_rows(folder / table, rows))
     left = sum(ends[name] for name in UNSETTLED)
-    if left:
-        report(f"crossval: {left} cases have no result; the same command tries them again")
-    return STOPPED if left else DONE
+    again = [f"{left} cases have no result; the same command tries them again"] if left else []
+    return _ended([write_rows(folder / table, rows)], again)
 
 
 class Suite(NamedTuple):
-    """A sentence about a suite, the options it has beside ``--out`` and ``--quiet``, and the function that runs it."""
+    """A sentence about a suite, the options it has beside ``--out``, and the function that runs it."""
 
     what: str
-    options: tuple[str, ...]
-    run: "Callable[[argparse.Namespace], int]"
+    options: str
+    run: Callable[[Namespace], int]
 
 
 SUITES = {
-    "paper": Suite("all figures of the paper, and its claims", ("quick",), _figures),
-    **{name: Suite(what, ("quick",), _figures) for name, what in FIGURES.items()},
+    "paper": Suite("all figures of the paper, and its claims", "quick", _figures),
+    **{name: Suite(what, "quick", _figures) for name, what in FIGURES.items()},
     "manual": Suite(
         "the verification manual, problems with exact answers, put to every model that can state them",
-        ("of", "junit"),
+        "of",
         _manual,
     ),
-    "cards": Suite(
-        "the problems of the manual as JSON files, with scene, values and source", ("of",), _cards
-    ),
+    "cards": Suite("the problems of the manual as JSON files, with scene, values and source", "of", _cards),
     "extremes": Suite(
         "where the models hold and where they stop, over units, slenderness, shear, meshes, contact positions, load steps, penalty, "
         "Poisson's ratio, depth and time",
-        ("quick", "workers", "cluster"),
+        "quick workers",
         _extremes,
     ),
     "trade": Suite(
         "what accuracy costs on SCENE, error against seconds, iterations and unknowns of many settings",
-        ("of", "quick", "workers", "cluster"),
+        "of quick workers",
         _trade,
     ),
-    **{name: Suite(what, (), _question) for name, what in QUESTIONS.items()},
+    **{name: Suite(what, "", _question) for name, what in QUESTIONS.items()},
 }
-STUDY_FILE = Suite("a scene, and what is varied in it", ("workers", "cluster"), _study)
-COMMANDS = (
-    Command(
-        "run",
-        "run a suite: figures of the paper, the manual, the extremes, a trade, a question to the solid, or a study file",
-        run,
-        "suite of --out --quick --workers --cluster --junit --quiet",
-        {"suite": f"a study file, or {', '.join(SUITES)}"},
-        "; ".join(f"{name}: {suite.what}" for name, suite in SUITES.items()),
-        EPILOG,
-    ),
-)
+STUDY_FILE = Suite("a scene, and what is varied in it", "workers", _study)

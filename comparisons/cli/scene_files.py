@@ -6,12 +6,12 @@ import sys
 from argparse import Namespace
 from pathlib import Path
 
-from comparisons.cli.options import STANDARD, Command, outputs, write
-from comparisons.cli.outcome import DONE
+from comparisons.cli.options import STANDARD, outputs, write
+from comparisons.cli.screen import DONE
 from comparisons.files import OutputError
 from comparisons.scene import InputError, built_in_scenes, load_scene
 from comparisons.scene.ends import near_ends
-from comparisons.scene.read import FOLDER
+from comparisons.scene.read import FOLDER, json_schema
 from comparisons.scene.rules import RuleError, name
 
 TEMPLATE = FOLDER.with_name("template.toml")
@@ -19,14 +19,12 @@ TEMPLATE = FOLDER.with_name("template.toml")
 
 def run_scenes(given: Namespace) -> int:
     """Print the names of the built-in scenes and what they are, or the schema."""
-    if not given.schema:
-        for scene, text in built_in_scenes().items():
-            said = re.split(r"(?<!al)[:.]\s", text)[0].replace("\n# ", " ").removeprefix("# ")
-            print(f"{scene:26s} {said}")
+    if given.schema:
+        print(json.dumps(json_schema(), indent=1))
         return DONE
-    from comparisons.scene.toml import json_schema
-
-    sys.stdout.write(json.dumps(json_schema(), indent=1) + "\n")
+    for scene, text in built_in_scenes().items():
+        said = re.split(r"(?<!al)[:.]\s", text)[0].replace("\n# ", " ").removeprefix("# ")
+        print(f"{scene:26s} {said}")
     return DONE
 
 
@@ -36,15 +34,12 @@ def run_new(given: Namespace) -> int:
         name(given.name)
     except RuleError as error:
         raise InputError("NAME", f"{given.name}: {error}") from None
-    path = Path(f"{given.name}.toml")
+    path, like, known = Path(f"{given.name}.toml"), given.like, built_in_scenes()
     if path.exists():
         raise OutputError(f"{path.name}: is there already")
-    if given.like is None:
-        old, text = "NAME", TEMPLATE.read_text(encoding="utf-8")
-    elif load_scene(given.like).name not in built_in_scenes():
-        raise InputError(given.like, "must be a built-in scene, crossval scenes lists them")
-    else:
-        old, text = given.like, built_in_scenes()[given.like]
+    if like is not None and load_scene(like) and like not in known:
+        raise InputError(like, "must be a built-in scene, crossval scenes lists them")
+    old, text = (like, known[like]) if like else ("NAME", TEMPLATE.read_text(encoding="utf-8"))
     with path.open("x", encoding="utf-8") as file:
         file.write(text.replace(f'name = "{old}"', f'name = "{given.name}"', 1))
     print(f"{path.name}: edit it, then: crossval check {path.name}")
@@ -70,17 +65,3 @@ def run_check(given: Namespace) -> int:
         if path != STANDARD:
             print(f"written: {file}", file=sys.stderr if printed else sys.stdout)
     return DONE
-
-
-DRAWN = "draw it, .png or .svg, or write the resolved scene, which programs read, .json; - is standard output"
-COMMANDS = (
-    Command("scenes", "list the built-in scenes", run_scenes, "--schema"),
-    Command("new", "write a commented scene file to start from", run_new, "name --like"),
-    Command(
-        "check",
-        "validate a scene file, ask all models whether they can state it, draw it",
-        run_check,
-        "scene --with --out=FILE",
-        {"--out=FILE": DRAWN},
-    ),
-)

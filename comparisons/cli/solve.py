@@ -5,12 +5,10 @@ from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from comparisons.cli.options import STANDARD, Command, argument, chosen, outputs, write
-from comparisons.cli.outcome import DONE, EPILOG, STOPPED, exit_status, report
-from comparisons.cli.progress import watching
+from comparisons.cli.options import STANDARD, chosen, outputs, refuse, write
+from comparisons.cli.screen import DONE, STOPPED, exit_status, report, watching
 from comparisons.files import writable_folder
 from comparisons.models import TSM, certified, find, solve
-from comparisons.models.options import ModelError
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
@@ -94,9 +92,8 @@ def _answer(scene: "Scene", given: Namespace) -> "Answer | None":
     """Return the answer to an accuracy, explained unless it is quiet; None where a model was chosen by hand."""
     if given.accuracy is None:
         return None
-    for option in ("elements", "integration_tolerance", "mesh", "branch"):
-        if getattr(given, option) is not None:
-            raise ModelError(f"{argument(option)}: is what --accuracy chooses, give one of the two")
+    chosen_by_it = ("elements", "integration_tolerance", "mesh", "branch")
+    refuse(given, chosen_by_it, "is what --accuracy chooses, give one of the two")
     from comparisons.accuracy import solve_to
 
     quantity, error = given.accuracy
@@ -104,19 +101,3 @@ def _answer(scene: "Scene", given: Namespace) -> "Answer | None":
     for line in () if given.quiet else answer.decisions:
         report(line)
     return answer
-
-
-COMMANDS = (
-    Command(
-        "solve",
-        "solve a scene with one model",
-        run,
-        "scene --model --accuracy --elements --element --integration-tolerance --mesh --branch --certify --out=FILE --quiet",
-        {
-            "--model": f"left to the scene with --accuracy, else {TSM.name}",
-            "--out=FILE": "write a file, any number of them: the response .json (- is standard output), the histories with units "
-            f".csv, shape, section forces and forces {', '.join(PICTURES)}, or a folder of VTK files",
-        },
-        epilog=EPILOG,
-    ),
-)

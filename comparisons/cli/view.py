@@ -6,9 +6,7 @@ from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from comparisons.cli.options import Command
-from comparisons.cli.outcome import DONE, EPILOG, exit_status, report
-from comparisons.cli.progress import staging, watching
+from comparisons.cli.screen import DONE, exit_status, files_named, report, staging, watching
 from comparisons.files import writable_folder
 from comparisons.models import SOLID, TSM, solve
 from comparisons.models.options import ModelError, Options
@@ -72,18 +70,5 @@ def _present(series: "list[Series]", factor: float, out: Path | None) -> int:
         return DONE
     with staging(f"drawing {len(shown.frames)} pictures") as count:
         files = write_film(shown, out, count)
-    print("files:", *(f"  {path}" for path in files), sep="\n")
+    files_named(*files)
     return DONE
-
-
-COMMANDS = (
-    Command(
-        "view",
-        "show the motion: beams and solid side by side, with axial stress, supports, and the forces of pins and between beams",
-        run,
-        "what --out --scale",
-        {"--out": "write into this folder (out/SCENE-view)"},
-        "Opens a window with a slider; with --out, or where there is no display, writes view.png and view.gif.",
-        EPILOG,
-    ),
-)

@@ -4,12 +4,11 @@ from comparisons.scene.beam import BeamSpec
 from comparisons.scene.conditions import HingeSpec, LoadSpec, SpringSpec, SupportSpec
 from comparisons.scene.contact import ContactSpec, PinSpec
 from comparisons.scene.keys import SPECIAL, unstated
-from comparisons.scene.read import built_in_scenes, load_scene, read_scene
+from comparisons.scene.read import built_in_scenes, load_scene, read_scene, to_tables, to_toml
 from comparisons.scene.rules import FieldError
 from comparisons.scene.scene import Scene
 from comparisons.scene.stages import PinMove, StageSpec, SupportMove
 from comparisons.scene.tables import InputError, SceneError
-from comparisons.scene.toml import to_tables, to_toml
 
 __all__ = [
     "SPECIAL",

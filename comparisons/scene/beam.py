@@ -4,7 +4,7 @@ import math
 
 from comparisons.scene import rules
 from comparisons.scene.record import Record, key, one_of, optional, refused
-from comparisons.scene.rules import LARGEST, RANGE, FieldError, Mistakes, Point
+from comparisons.scene.rules import LARGEST, RANGE, TURN, FieldError, Mistakes, Point
 
 Dimension = float | tuple[float, float]
 
@@ -27,47 +27,39 @@ class BeamSpec(Record):
     )
     turn: float = optional(
         rules.turn,
-        "Natural curvature: the angle by which the undeformed axis turns left from start to end, an arc of a circle [rad].",
+        "Natural curvature: the angle by which the undeformed axis turns left, an arc of a circle [rad].",
         0.0,
     )
     width: Dimension | None = optional(
-        rules.dimension,
-        "Width of the section, out of plane; two numbers state it at the start and at the end, linear between them [length].",
+        rules.dimension, "Width of the section, out of plane; two numbers where it tapers linearly [length]."
     )
     height: Dimension | None = optional(
         rules.dimension, "Height of the section, in plane; a number or two like `width` [length]."
     )
     area: float | None = optional(
-        rules.positive,
-        "Area of the section, with `second_moment` instead of `width` and `height` [length^2].",
+        rules.positive, "Area, with `second_moment` instead of `width` and `height` [length^2]."
     )
     second_moment: float | None = optional(rules.positive, "Second moment of area, with `area` [length^4].")
     shear_area: float | None = optional(rules.positive, "Effective shear area [length^2].")
     density: float | None = optional(
-        rules.positive,
-        "Mass per undeformed volume, for the weight by the scene's `gravity` [mass/length^3]; "
-        "a mass times a `gravity` is a force.",
+        rules.positive, "Mass per undeformed volume, weighs by the `gravity` of ``[scene]`` [mass/length^3]."
     )
     clamped: tuple[str, ...] = optional(
         rules.subset("start", "end"), "Clamped ends, none by default: the short form of a `SupportSpec`.", ()
     )
     elements: int | None = optional(
-        rules.whole_number,
-        "Number of TSM elements, all of one length; without one, one exact element or twenty others.",
+        rules.whole_number, "Number of equal TSM elements; without one, one exact element or twenty others."
     )
     nodes: tuple[float, ...] = optional(
         rules.parts, "Positions of the inner TSM nodes as parts of the length, instead of `elements`.", ()
     )
     mesh: tuple[int, int] = optional(rules.mesh, "Elements of the solid along and across.", (50, 2))
     solid_clamp: str = optional(
-        rules.choice("rod", "full"),
-        "Clamp of the solid: free to contract, or both displacements of the whole edge held.",
-        "rod",
+        rules.choice("rod", "full"), "Clamp of the solid: free to contract, or the whole edge held.", "rod"
     )
     solid_mesh_file: str | None = optional(
         rules.text,
-        "File with a mesh of the solid in the beam's frame and with named edges, instead of `mesh`: see "
-        "`fem_reference.mesh_file.read_mesh`.",
+        "File with a mesh of the solid and named edges, instead of `mesh`: `fem_reference.mesh_file.read_mesh`.",
     )
     solid_element: str = optional(rules.choice("Q1", "Q2", "Q2-full"), "Elements of the solid.", "Q2")
     material: str = optional(
@@ -138,6 +130,18 @@ class BeamSpec(Record):
         chord = fraction * self.length * (math.sin(half) / half if half else 1.0)
         return x0 + chord * tx, y0 + chord * ty
 
+    def projected(self, point: Point) -> Point:
+        """Return the distance of a point to the left of the undeformed axis, and its projection over the length."""
+        (tx, ty), (x0, y0) = self.tangent(0.0), self.start
+        dx, dy = point[0] - x0, point[1] - y0
+        along, left = tx * dx + ty * dy, tx * dy - ty * dx
+        if not self.turn:
+            return left, along / self.length
+        k = self.curvature
+        far = math.hypot(k * along, k * left - 1.0)
+        turned = math.remainder(math.atan2(k * along, 1.0 - k * left) - self.turn / 2.0, TURN)
+        return (2.0 * left - k * (along * along + left * left)) / (1.0 + far), turned / self.turn + 0.5
+
     @property
     def tapers(self) -> bool:
         """Whether the section changes along the beam."""
@@ -171,9 +175,9 @@ class BeamSpec(Record):
 
     def section(self, fraction: float) -> tuple[float, float, float]:
         """Return area, second moment of area and effective shear area at a fraction of the length."""
-        width, height = _between(self.width, fraction), _between(self.height, fraction)
+        width, height = _between(self.width, fraction), self.height_at(fraction)
         if width and height:
-            A, inertia, kappa = width * height, width * _cube(height) / 12.0, 5.0 / 6.0
+            A, inertia, kappa = width * height, width * height**3 / 12.0, 5.0 / 6.0
         else:
             A, inertia, kappa = self.area or 0.0, self.second_moment or 0.0, 1.0
         return A, inertia, self.shear_area or kappa * A
@@ -199,13 +203,13 @@ class BeamSpec(Record):
 
     def mass_coefficients(self) -> tuple[float, ...]:
         """Return the coefficients of the mass per length as a polynomial in the fraction of the length, the constant one first."""
-        start, middle, end = (self.mass_per_length(fraction) for fraction in (0.0, 0.5, 1.0))
+        start, middle, end = map(self.mass_per_length, (0.0, 0.5, 1.0))
         if not self.tapers:
             return (middle,)
         return start, -3 * start + 4 * middle - end, 2 * start - 4 * middle + 2 * end
 
 
-def _between(dimension: float | tuple[float, float] | None, fraction: float) -> float | None:
+def _between(dimension: Dimension | None, fraction: float) -> float | None:
     """Return a dimension at a fraction of the length."""
     if not isinstance(dimension, tuple):
         return dimension
@@ -216,11 +220,3 @@ def _between(dimension: float | tuple[float, float] | None, fraction: float) -> 
 def _turned(vector: Point, angle: float) -> Point:
     (x, y), c, s = vector, math.cos(angle), math.sin(angle)
     return c * x - s * y, s * x + c * y
-
-
-def _cube(number: float) -> float:
-    """Third power; infinite where Python's power raises OverflowError."""
-    try:
-        return number**3
-    except OverflowError:
-        return math.inf

@@ -3,8 +3,7 @@
 A rule is judged where the values that it reads are right; reading a wrong one raises `comparisons.scene.record.Unjudged`.
 """
 
-import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
@@ -20,27 +19,24 @@ from comparisons.scene.stages import StageSpec
 if TYPE_CHECKING:
     from comparisons.scene.scene import Scene
 
+PLACED = ("beam", "beam", "node", "end")
+LISTS = {"contact": ("beam", "beam", "pair", "node"), "support": ("beam", "beam", "", "")}
+LISTS |= {**dict.fromkeys(("load", "hinge", "spring"), PLACED), "stage": ("", "", "name", "name")}
+"""Of each list: the key that names something, and what; the attribute that none has twice, and its key."""
+IN_STAGES = {"pin": ("name", "pin", "name", "name"), "load": PLACED}
+"""The same of the lists in a stage."""
+
 
 def scene_rules(scene: "Scene") -> Mistakes:
     """Yield what is wrong between the records of `scene`."""
-    names = Names(scene)
-    placed = {kind: _listed(scene, f"{kind}s") for kind in ("load", "hinge", "spring")}
-    stages = [(f"stage[{i}].", stage) for i, stage in enumerate(_listed(scene, "stages"))]
-    placed |= {f"{key}load": _listed(stage, "load") for key, stage in stages}
-    on_beams = {"support": _listed(scene, "supports"), **placed}
     for rule in (
-        names.repeated,
-        _contacts(scene, names),
-        _distinct(_listed(scene, "contacts"), "contact", "pair", "node"),
-        *(_named(records, place, names) for place, records in on_beams.items()),
-        *(_distinct(records, place, "node", "end") for place, records in placed.items()),
-        _distinct(_listed(scene, "stages"), "stage", "name", "name"),
-        *(_named(_listed(stage, "pin"), f"{key}pin", names, "pin", "name") for key, stage in stages),
-        *(_distinct(_listed(stage, "pin"), f"{key}pin", "name", "name") for key, stage in stages),
-        *(_moved_supports(scene, stage, f"{key}support") for key, stage in stages),
-        joint_rules(scene, names),
+        scene.names.repeated,
+        _contacts(scene),
+        *(_named(*one, scene.names) for one in _lists(scene)),
+        *(_moved_supports(scene, stage, f"{key}support") for key, stage in _stages(scene)),
+        joint_rules(scene),
         _weight(scene),
-        _idle_pins(scene, names),
+        _idle_pins(scene),
         _cause(scene),
     ):
         with suppress(Unjudged):
@@ -48,52 +44,51 @@ def scene_rules(scene: "Scene") -> Mistakes:
 
 
 class Names:
-    """Places of beams and pins, as ``beam[0]``, by their names.
+    """Beams and pins by their names. They are `complete` unless a name is wrong or appears twice.
 
-    A name that appears twice cannot be judged. A name that nothing has cannot be judged either, where another name is wrong or
-    appears twice.
+    A name that nothing has, or that appears twice, raises `Unjudged`, a ``KeyError``.
     """
 
     def __init__(self, scene: "Scene") -> None:
-        self.scene = scene
-        self._places: dict[str, str] = {}
-        self._complete = scene.has("beams", "pins")
-        self.repeated: list[FieldError] = []
+        self.complete, self.repeated = scene.has("beams", "pins"), list[FieldError]()
+        self._found: dict[str, tuple[str, Any]] = {}
         for kind in ("beam", "pin"):
             for i, record in enumerate(_listed(scene, f"{kind}s")):
                 place = f"{kind}[{i}]"
                 if not record.has("name"):
-                    self._complete = False
-                elif self._places.setdefault(record.name, place) != place:
+                    self.complete = False
+                elif self._found.setdefault(record.name, (place, record))[0] != place:
                     self.repeated.append(FieldError(f"{place}.name", record.name, "must not appear twice"))
-        self._twice = {mistake.value for mistake in self.repeated}
+        for mistake in self.repeated:
+            self._found.pop(str(mistake.value), None)
+            self.complete = False
 
-    def place(self, name: str) -> str:
-        """Return the place of the beam or pin called `name`; raise `Unjudged` if that is none or not clear."""
-        if name in self._twice or name not in self._places:
+    def place(self, name: str, kind: str = "") -> str:
+        """Return the place of a beam or pin, as ``beam[0]``."""
+        if name not in self._found or not self._found[name][0].startswith(kind):
             raise Unjudged(name)
-        return self._places[name]
+        return self._found[name][0]
 
-    def is_beam(self, name: str, kind: str = "beam") -> bool:
-        """Whether `name` is that of a beam, or of another `kind`; raise `Unjudged` if that is not clear."""
-        found = self._places.get(name, "").startswith(kind)
-        if name in self._twice or not (found or (self._complete and not self._twice)):
+    def record(self, kind: str, name: str) -> Any:
+        """Return the beam or the pin of a name, by its kind."""
+        self.place(name, kind)
+        return self._found[name][1]
+
+    def is_a(self, kind: str, name: str) -> bool:
+        """Whether `name` is that of a "beam" or a "pin"."""
+        found = name in self._found and self._found[name][0].startswith(kind)
+        if not found and not self.complete:
             raise Unjudged(name)
         return found
 
     def is_node(self, node: str) -> bool:
-        """Whether `node` is a pin's name, or a beam's end as ``upper.end``; raise `Unjudged` if that is not clear."""
+        """Whether `node` is a pin's name, or a beam's end as ``upper.end``."""
         name, dot, end = node.partition(".")
-        return self.is_beam(name, "beam" if dot else "pin") and (end in ("start", "end") or not dot)
-
-    def beam(self, name: str) -> BeamSpec:
-        """Return the beam called `name`; raise `Unjudged` if that is none or not clear."""
-        self.place(name)
-        return self.scene.beam(name)
+        return self.is_a("beam" if dot else "pin", name) and (end in ("start", "end") or not dot)
 
     def of(self, kind: str) -> list[str]:
         """Return the names of a kind."""
-        return [name for name, place in self._places.items() if place.startswith(kind)]
+        return [name for name, (place, _) in self._found.items() if place.startswith(kind)]
 
 
 def _list(names: Iterable[str]) -> str:
@@ -107,38 +102,42 @@ def _listed(record: Record, field: str) -> Sequence[Any]:
     return records
 
 
-def _distinct(records: Iterable[Record], place: str, attribute: str, key: str) -> Mistakes:
-    """Yield the records with the same `attribute` as an earlier one; `key` is its key unless the record states one."""
-    seen: set[str] = set()
+def _stages(scene: "Scene") -> Iterator[tuple[str, StageSpec]]:
+    yield from ((f"stage[{i}].", stage) for i, stage in enumerate(_listed(scene, "stages")))
+
+
+def _lists(scene: "Scene") -> Iterator[tuple[str, Sequence[Any], tuple[str, str, str, str]]]:
+    """Yield the place of every list of records, the records, and what `LISTS` says of them."""
+    yield from ((kind, _listed(scene, f"{kind}s"), how) for kind, how in LISTS.items())
+    for key, stage in _stages(scene):
+        yield from ((key + kind, _listed(stage, kind), how) for kind, how in IN_STAGES.items())
+
+
+def _named(place: str, records: Sequence[Any], how: tuple[str, str, str, str], names: Names) -> Mistakes:
+    """Yield the records that name none of a kind, and those with the same attribute as an earlier one."""
+    (key, kind, attribute, shared), seen = how, set[str]()
     for i, record in enumerate(records):
         with suppress(Unjudged):
-            value = getattr(record, attribute)
+            if key and not names.is_a(kind, name := getattr(record, key)):
+                yield FieldError(f"{place}[{i}].{key}", name, f"must name a {kind}: {_list(names.of(kind))}")
+        with suppress(Unjudged):
+            value = getattr(record, attribute) if attribute else None
             if value in seen:
                 yield FieldError(
-                    f"{place}[{i}].{getattr(record, 'key', key)}", value, "must not appear twice"
+                    f"{place}[{i}].{getattr(record, 'key', shared)}", value, "must not appear twice"
                 )
-            seen |= {value} - {None}
+            elif value is not None:
+                seen.add(value)
 
 
-def _named(
-    records: Iterable[Any], place: str, names: Names, kind: str = "beam", key: str = "beam"
-) -> Mistakes:
-    """Yield the records whose `key` names none of a kind."""
-    for i, record in enumerate(records):
-        with suppress(Unjudged):
-            name = getattr(record, key)
-            if not names.is_beam(name, kind):
-                yield FieldError(f"{place}[{i}].{key}", name, f"must name a {kind}: {_list(names.of(kind))}")
-
-
-def _idle_pins(scene: "Scene", names: Names) -> Mistakes:
+def _idle_pins(scene: "Scene") -> Mistakes:
+    names = scene.names
     touching = {contact.node for contact in scene.contacts}
-    if not all(names.is_node(one.node) and one.node.partition(".")[0] != one.beam for one in scene.contacts):
-        return
-    for i, pin in enumerate(scene.pins):
-        with suppress(Unjudged):
-            if names.place(pin.name) and pin.name not in touching:
-                yield FieldError(f"pin[{i}].name", pin.name, "must be the node of a contact")
+    if all(names.is_node(one.node) and one.node.partition(".")[0] != one.beam for one in scene.contacts):
+        for i, pin in enumerate(scene.pins):
+            with suppress(Unjudged):
+                if names.place(pin.name) and pin.name not in touching:
+                    yield FieldError(f"pin[{i}].name", pin.name, "must be the node of a contact")
 
 
 def _cause(scene: "Scene") -> Mistakes:
@@ -150,57 +149,58 @@ def _cause(scene: "Scene") -> Mistakes:
 
 def _weight(scene: "Scene") -> Mistakes:
     heavy = [(f"beam[{i}].density", beam.density) for i, beam in enumerate(scene.beams) if beam.density]
-    pulled = [(f"stage[{i}].gravity", one.gravity) for i, one in enumerate(scene.stages) if any(one.gravity)]
+    pulled = [(f"{key}gravity", stage.gravity) for key, stage in _stages(scene) if any(stage.gravity)]
     if scene.gravity is None:
-        for key, value in (heavy or pulled)[:1]:
-            yield FieldError(key, value, "needs gravity in [scene]")
+        yield from (
+            FieldError(key, value, "needs gravity in [scene]") for key, value in (heavy or pulled)[:1]
+        )
     elif not heavy:
         yield FieldError("scene.gravity", scene.gravity, "needs the density of a beam")
     elif not (any(scene.gravity) or pulled):
         yield FieldError("scene.gravity", scene.gravity, "must not be zero in every stage")
 
 
-def _contacts(scene: "Scene", names: Names) -> Mistakes:
-    yield from _named(scene.contacts, "contact", names)
+def _contacts(scene: "Scene") -> Mistakes:
     for i, contact in enumerate(scene.contacts):
         with suppress(Unjudged):
-            yield from _contact(contact, names, f"contact[{i}]")
+            yield from _contact(contact, scene, f"contact[{i}]")
 
 
-def _contact(contact: ContactSpec, names: Names, key: str) -> Mistakes:
+def _contact(contact: ContactSpec, scene: "Scene", key: str) -> Mistakes:
     """Yield the first mistake of a contact: its node, its surface, and where the node is."""
+    names = scene.names
     if not names.is_node(contact.node):
         ends = (f"{beam}.{end}" for beam in names.of("beam") for end in ("start", "end"))
         rule = f"must name a pin or a beam's end: {_list((*names.of('pin'), *ends))}"
         yield FieldError(f"{key}.node", contact.node, rule)
         return
-    beam = names.beam(contact.beam)
+    beam = scene.beam(contact.beam)
     if contact.node in (f"{beam.name}.start", f"{beam.name}.end"):
         yield FieldError(f"{key}.node", contact.node, "must not be an end of the beam itself")
     elif contact.surface == "face" and beam.height is None:
-        rule = f'needs the height of beam "{beam.name}"'
-        yield FieldError(f"{key}.surface", contact.surface, rule)
-    elif "." in contact.node and names.scene.place(contact.node) in (beam.start, beam.end):
+        yield FieldError(f"{key}.surface", contact.surface, f'needs the height of beam "{beam.name}"')
+    elif "." in contact.node and scene.place(contact.node) in (beam.start, beam.end):
         yield FieldError(f"{key}.node", contact.node, f'must not be joined to beam "{beam.name}"')
     else:
-        yield from _position(contact, beam, names)
+        yield from _position(contact, beam, scene)
 
 
-def _position(contact: ContactSpec, beam: BeamSpec, names: Names) -> Mistakes:
+def _position(contact: ContactSpec, beam: BeamSpec, scene: "Scene") -> Mistakes:
     """Yield a mistake where the undeformed position of a contact's node is on the wrong side, or else over an end."""
     name, dot, end = contact.node.partition(".")
     if dot:
-        key, position = f"{names.place(name)}.{end}", names.scene.place(contact.node)
+        key, position = end, scene.place(contact.node)
     else:
-        pin = names.scene.pin(name)
-        key, position = f"{names.place(name)}.{'start' if pin.path is None else 'path'}", pin.points[0]
-    _, fraction = signed_gap(beam, contact.side, 0.0, position)
-    gap, fraction = signed_gap(beam, contact.side, names.scene.offset(contact, fraction), position)
+        pin = scene.pin(name)
+        key, position = "start" if pin.path is None else "path", pin.points[0]
+    key = f"{scene.names.place(name)}.{key}"
+    left, fraction = beam.projected(position)
+    gap = (left if contact.side == "left" else -left) - scene.offset(contact, fraction)
     if 0.0 <= fraction <= 1.0 and gap < -1e-12 * beam.length:
         where = f'on the {contact.side} of beam "{beam.name}"'
         yield FieldError(key, position, f"must lie {where} ({contact.surface}), gap {gap:.6g}")
         return
-    for tip in free_ends(names.scene, contact):
+    for tip in free_ends(scene, contact):
         over = -tip.room(position)
         if over > 1e-12 * beam.length:
             where = f'the {tip.name} of beam "{beam.name}"'
@@ -209,8 +209,7 @@ def _position(contact: ContactSpec, beam: BeamSpec, names: Names) -> Mistakes:
 
 def _moved_supports(scene: "Scene", stage: StageSpec, key: str) -> Mistakes:
     supports = {scene.place(support.node): support for support in scene.all_supports}
-    beams = {beam.name for beam in scene.beams}
-    seen: set[Point] = set()
+    beams, seen = {beam.name for beam in scene.beams}, set[Point]()
     for j, move in enumerate(stage.support):
         with suppress(Unjudged):
             place = scene.place(move.node) if move.beam in beams else None
@@ -223,25 +222,3 @@ def _moved_supports(scene: "Scene", stage: StageSpec, key: str) -> Mistakes:
             seen.add(place)
             wrong = moved_where_free(move, supports[place].held)
             yield from (mistake.within(f"{key}[{j}].") for mistake in wrong)
-
-
-def signed_gap(beam: BeamSpec, side: str, offset: float, point: Point) -> tuple[float, float]:
-    """Return the gap of `point` to the undeformed beam and the fraction of the axis it projects on.
-
-    ``g = s n.(x_c - x_start) - offset`` with n the left normal and s = -1 for a node from the right.
-    """
-    (tx, ty), (x0, y0) = beam.tangent(0.0), beam.start
-    dx, dy = point[0] - x0, point[1] - y0
-    sign = 1.0 if side == "left" else -1.0
-    if beam.turn:
-        left, fraction = _from_arc(beam, (tx * dx + ty * dy, tx * dy - ty * dx))
-        return sign * left - offset, fraction
-    return sign * (tx * dy - ty * dx) - offset, (tx * dx + ty * dy) / beam.length
-
-
-def _from_arc(beam: BeamSpec, point: Point) -> Point:
-    """Return the distance of a point to the left of an arc and the fraction of its length there; the start is the origin along x."""
-    (x, y), k = point, beam.curvature
-    far = math.hypot(k * x, k * y - 1.0)
-    turned = math.remainder(math.atan2(k * x, 1.0 - k * y) - beam.turn / 2.0, 2.0 * math.pi)
-    return (2.0 * y - k * (x * x + y * y)) / (1.0 + far), turned / beam.turn + 0.5

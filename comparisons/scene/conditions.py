@@ -29,9 +29,7 @@ class AtEnd(Record):
 class SupportSpec(AtEnd):
     """A support of a beam's end. A held component stays at rest, or moves by a prescribed amount times the load parameter."""
 
-    end: str = key(
-        END, "Which end. Beams that share an end are rigidly joined there: one support holds the joint."
-    )
+    end: str = key(END, "Which end. Beams that share an end are joined there: one support holds the joint.")
     kind: str | None = optional(
         rules.choice("clamped", "pinned", "roller"),
         "A clamped end has position and rotation held, a pinned end the position, a roller one component of the position.",
@@ -41,8 +39,7 @@ class SupportSpec(AtEnd):
         rules.subset(*COMPONENTS, at_least=1), "The components held, instead of `kind`."
     )
     displacement: Point | None = optional(
-        rules.point,
-        "Prescribed displacement of the end at load parameter 1 [length]; zero in a free direction.",
+        rules.point, "Prescribed displacement at load parameter 1 [length]; zero in a free direction."
     )
     rotation: float | None = optional(
         rules.number, "Prescribed rotation at load parameter 1, anticlockwise [rad]."
@@ -94,17 +91,16 @@ class LoadSpec(Record):
     end: str | None = optional(END, "The end on which `force` and `moment` act.")
     at: float | None = optional(
         rules.fraction,
-        "The fraction of the undeformed length at which `force` and `moment` act inside the beam, instead of `end`.",
+        "The fraction of the undeformed length at which they act inside the beam, instead of `end`.",
     )
     force: Point = optional(rules.point, "At load parameter 1; it keeps its direction [force].", (0.0, 0.0))
     moment: float = optional(rules.number, "At load parameter 1, anticlockwise [force length].", 0.0)
     force_per_length: Point | None = optional(
         rules.point,
-        "Force per undeformed length at load parameter 1, instead of `end` and `at`; it keeps its direction [force/length].",
+        "Force per undeformed length, instead of `end` and `at`; it keeps its direction [force/length].",
     )
     part: Point | None = optional(
-        rules.span,
-        "The fractions of the undeformed length between which `force_per_length` acts; the whole beam if not given.",
+        rules.span, "The fractions of the length between which `force_per_length` acts; else the whole beam."
     )
 
     obeys = (
@@ -123,9 +119,7 @@ class LoadSpec(Record):
     @property
     def amount(self) -> tuple[float, float, float]:
         """Force x, y and moment, or the force per length and zero."""
-        if self.force_per_length is not None:
-            return (*self.force_per_length, 0.0)
-        return (*self.force, self.moment)
+        return (*self.force, self.moment) if self.force_per_length is None else (*self.force_per_length, 0.0)
 
     @property
     def span(self) -> Point:
@@ -142,9 +136,9 @@ class LoadSpec(Record):
         """Name of the place: ``upper.end``, ``upper at 0.5`` or ``upper from 0 to 1``."""
         if self.end is not None:
             return f"{self.beam}.{self.end}"
-        if self.at is not None:
-            return f"{self.beam} at {self.at!r}"
-        return "{} from {!r} to {!r}".format(self.beam, *self.span)
+        return (
+            f"{self.beam} at {self.at!r}" if self.at else "{} from {!r} to {!r}".format(self.beam, *self.span)
+        )
 
 
 class HingeSpec(AtEnd):
@@ -156,9 +150,7 @@ class HingeSpec(AtEnd):
         "on the joint, not on the beam behind the hinge.",
     )
     stiffness: float = optional(
-        rules.not_negative,
-        "Stiffness of a rotational spring between the joint and the end [force length/rad].",
-        0.0,
+        rules.not_negative, "Stiffness of a rotational spring between joint and end [force length/rad].", 0.0
     )
 
 

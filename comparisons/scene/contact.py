@@ -11,15 +11,11 @@ from comparisons.scene.record import Record, Unjudged, key, one_of, optional
 from comparisons.scene.rules import Point
 from comparisons.scene.stages import PinMove, stage_of
 
+STRAIGHT = "A straight path [length]; a displacement of zero leaves the pin at rest, an obstacle."
+
 
 class Path:
-    """A polyline from load parameter 0 to 1 at constant speed.
-
-    Parameters
-    ----------
-    points : tuple of (float, float)
-        At least two points; all equal where nothing moves [length].
-    """
+    """A polyline at constant speed from load parameter 0 to 1; its points are equal where nothing moves [length]."""
 
     def __init__(self, points: tuple[Point, ...]) -> None:
         self.points = points
@@ -50,18 +46,14 @@ class PinSpec(Record):
     """A point, or a round pin that does not turn, on a prescribed path, traversed at constant speed by the load parameter."""
 
     name: str = key(rules.name, "Letters, digits, ``-`` and ``_``.")
-    start: Point | None = optional(
-        rules.point, "A straight path [length]; a displacement of zero leaves the pin at rest, an obstacle."
-    )
-    displacement: Point | None = optional(
-        rules.point, "A straight path [length]; a displacement of zero leaves the pin at rest, an obstacle."
-    )
+    start: Point | None = optional(rules.point, STRAIGHT)
+    displacement: Point | None = optional(rules.point, STRAIGHT)
     path: tuple[Point, ...] | None = optional(
         rules.polyline(2), "A polyline [length], instead of `start` and `displacement`."
     )
     radius: float | None = optional(
         rules.positive,
-        "Radius of a round pin, whose centre is on the path [length]; without a radius the pin is a point.",
+        "Radius of a round pin, whose centre is on the path [length]; else the pin is a point.",
     )
     moves: ClassVar[tuple[PinMove | None, ...] | None] = ()
     """Motions in the stages after the first one, which the scene states; one is None where the pin rests, all are where one is wrong."""
@@ -71,18 +63,16 @@ class PinSpec(Record):
     @cached_property
     def _paths(self) -> tuple[Path, ...]:
         """The path of every stage."""
+        if self.moves is None:
+            raise Unjudged("moves")
         if self.start is None or self.displacement is None:
             paths = [Path(self.path or ())]
         else:
-            (x, y), (dx, dy) = self.start, self.displacement
-            paths = [Path(((x, y), (x + dx, y + dy)))]
-        if self.moves is None:
-            raise Unjudged("moves")
+            paths = [Path((self.start, _moved(self.start, self.displacement)))]
         for move in self.moves:
-            x, y = paths[-1].points[-1]
-            dx, dy = (0.0, 0.0) if move is None else move.displacement or (0.0, 0.0)
-            onward = (move and move.path) or ((x + dx, y + dy),)
-            paths.append(Path(((x, y), *onward)))
+            here = paths[-1].points[-1]
+            onward = (move and move.path) or (_moved(here, (move and move.displacement) or (0.0, 0.0)),)
+            paths.append(Path((here, *onward)))
         return tuple(paths)
 
     @cached_property
@@ -104,14 +94,17 @@ class PinSpec(Record):
     @cached_property
     def corners(self) -> tuple[float, ...]:
         """The load parameters of the path's inner points, and the ones at which a stage ends and another follows."""
-        first, *others = self._paths
-        onward = (t for k, path in enumerate(others, 1) for t in (float(k), *(k + t for t in path.corners)))
-        return (*first.corners, *onward)
+        stages = ((k, path.corners) for k, path in enumerate(self._paths))
+        return tuple(k + t for k, inner in stages for t in ((0.0, *inner) if k else inner))
 
     def position(self, load_parameter: float) -> Point:
         """Return the point at the fraction of the length of its stage's path that `load_parameter` states."""
         stage = stage_of(load_parameter, len(self._paths))
-        return self._paths[stage].position(load_parameter - stage if stage else load_parameter)
+        return self._paths[stage].position(load_parameter - stage)
+
+
+def _moved(point: Point, displacement: Point) -> Point:
+    return point[0] + displacement[0], point[1] + displacement[1]
 
 
 class ContactSpec(Record):
@@ -119,10 +112,7 @@ class ContactSpec(Record):
 
     node: str = key(rules.text, "A pin's name, or a beam's end as ``upper.end``.")
     beam: str = key(rules.name, "The beam touched.")
-    side: str = key(
-        rules.choice("right", "left"),
-        "Side of the beam's direction, start to end, from which the node comes.",
-    )
+    side: str = key(rules.choice("right", "left"), "Side of the beam's direction from which the node comes.")
     surface: str = optional(
         rules.choice("axis", "face"), "The beam's axis, or its face at half the height.", "axis"
     )
@@ -131,17 +121,14 @@ class ContactSpec(Record):
     )
     penetration: float | None = optional(
         rules.positive,
-        "Largest penetration in the solid model, relative to the beam's length, reached by augmented Lagrangian steps; if not given, "
-        "the penalty alone bounds the penetration.",
+        "Penetration of the solid over the length, by augmented Lagrangian steps; else the penalty bounds it.",
     )
     keep: bool = optional(
-        rules.truth,
-        "Whether the contact, once closed, must persist: a release or a slip-off then ends the solution.",
-        False,
+        rules.truth, "Whether a release or a slip-off of the closed contact ends the solution.", False
     )
     friction: float = optional(
         rules.friction,
-        "Coulomb's coefficient of friction, which acts on the beam's `surface`; the contact is frictionless if not given.",
+        "Coulomb's coefficient of friction, which acts on the beam's `surface`.",
         0.0,
     )
 

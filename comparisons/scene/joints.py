@@ -13,7 +13,6 @@ from comparisons.scene.record import Unjudged
 from comparisons.scene.rules import FieldError, Mistakes, Point
 
 if TYPE_CHECKING:
-    from comparisons.scene.coherence import Names
     from comparisons.scene.scene import Scene
 
 NEAR = 1e-6
@@ -22,35 +21,45 @@ LEAST = 1e-9
 """Least pivot of the equations of rigid motions, in coordinates over the longest beam; a smaller one counts as zero."""
 
 
-def joint_rules(scene: "Scene", names: "Names") -> Mistakes:
+def joint_rules(scene: "Scene") -> Mistakes:
     """Yield ends that nearly meet and beams end to end; without any, supports at one joint, hinges and structures that are not held."""
     misplaced = [*_nearly_meeting(scene), *_end_to_end(scene)]
     yield from misplaced
     if not misplaced:
         yield from _one_support(scene)
-        yield from _held(scene, names)
+        yield from _held(scene)
 
 
-def _held(scene: "Scene", names: "Names") -> Mistakes:
-    """Yield the hinges that do nothing, and the structures that are free or can move without strain."""
-    for name in (beam.name for beam in scene.beams):
-        names.place(name)
-    for item in (*scene.holding, *scene.hinges):
-        names.beam(item.beam)
+def _held(scene: "Scene") -> Mistakes:
+    """Yield the hinges that do nothing, and the structures that are free or, untouched, can move without strain."""
+    for name in (
+        *(beam.name for beam in scene.beams),
+        *(item.beam for item in (*scene.holding, *scene.hinges)),
+    ):
+        scene.beam(name)
     useless = list(_useless_hinges(scene))
     yield from useless
     touched: set[str] | None = None  # where a name in a contact is wrong
     with suppress(Unjudged):
-        nodes = [one.node.partition(".")[0] for one in scene.contacts]
-        touched = {name for name in (*nodes, *(one.beam for one in scene.contacts)) if names.place(name)}
+        nodes = [name for one in scene.contacts for name in (one.node.partition(".")[0], one.beam)]
+        touched = {name for name in nodes if scene.names.place(name)}
     for structure in _structures(scene):
         own, first = {beam.name for beam in structure}, structure[0]
-        key = f"{names.place(first.name)}.clamped"
+        key, name = f"{scene.names.place(first.name)}.clamped", first.name
+        hinges = [
+            (i, one.node) for i, one in enumerate(scene.hinges) if one.beam in own and not one.stiffness
+        ]
         if not any(item.beam in own for item in scene.holding):
-            rule = f'beam "{first.name}" is free: clamp it, give it a [[support]] or a [[spring]] or join it to a beam that has one'
+            rule = f'beam "{name}" is free: clamp it, give it a [[support]] or a [[spring]] or join it to a beam that has one'
             yield FieldError(key, first.clamped, rule)
-        elif not useless and touched is not None and touched.isdisjoint(own):
-            yield from _stiff(scene, structure, own, key)
+        elif useless or touched is None or touched & own:
+            continue
+        elif _moves(scene, structure, ()):
+            rule = f'beam "{name}" can move without strain: its supports must hold x, y and the rotation'
+            yield FieldError(key, first.clamped, rule)
+        elif hinges and _moves(scene, structure, [node for _, node in hinges]):
+            rule = "must not make a mechanism: the beams can move without strain"
+            yield FieldError(f"hinge[{hinges[0][0]}].end", hinges[0][1], rule)
 
 
 def _structures(scene: "Scene") -> Iterator[list[BeamSpec]]:
@@ -118,21 +127,6 @@ def _one_support(scene: "Scene") -> Mistakes:
         held.setdefault(place, support.node)
 
 
-def _stiff(scene: "Scene", structure: list[BeamSpec], names: set[str], key: str) -> Mistakes:
-    """Yield a mistake if a structure that nothing touches can move without strain: all of it, or its beams about hinges."""
-    own = [item for item in scene.holding if item.beam in names]
-    levels = {scene.place(item.node)[1] for item in own if "x" in item.held}
-    columns = {scene.place(item.node)[0] for item in own if "y" in item.held}
-    turning = any("rotation" in item.held for item in own) or len(levels) > 1 or len(columns) > 1
-    hinged = [i for i, hinge in enumerate(scene.hinges) if hinge.beam in names and not hinge.stiffness]
-    if not (levels and columns and turning):
-        rule = f'beam "{structure[0].name}" can move without strain: its supports must hold x, y and the rotation'
-        yield FieldError(key, structure[0].clamped, rule)
-    elif hinged and _moves_about_hinges(scene, structure, names):
-        rule = "must not make a mechanism: the beams can move without strain"
-        yield FieldError(f"hinge[{hinged[0]}].end", scene.hinges[hinged[0]].node, rule)
-
-
 def _useless_hinges(scene: "Scene") -> Mistakes:
     """Yield the hinges at ends that nothing turns, and one hinge of every joint that all its beams leave free to turn."""
     meeting = _meeting(scene.beams)
@@ -140,31 +134,31 @@ def _useless_hinges(scene: "Scene") -> Mistakes:
     stiff = {scene.place(hinge.node) for hinge in scene.hinges if hinge.stiffness}
     hinged = Counter(scene.place(node) for node in {hinge.node for hinge in scene.hinges})
     for i, hinge in enumerate(scene.hinges):
-        place, key = scene.place(hinge.node), f"hinge[{i}].end"
+        place, rule = scene.place(hinge.node), ""
         if place in turned:
             continue
         if len(meeting[place]) == 1:
             rule = "must be joined to another beam, or its rotation held by a support or a spring"
-            yield FieldError(key, hinge.node, rule)
         elif hinged.pop(place, 0) == len(meeting[place]) and place not in stiff:
             rule = "must leave one beam of the joint without a hinge: the joint turns freely"
-            yield FieldError(key, hinge.node, rule)
+        if rule:
+            yield FieldError(f"hinge[{i}].end", hinge.node, rule)
 
 
-def _moves_about_hinges(scene: "Scene", structure: list[BeamSpec], names: set[str]) -> bool:
-    """Whether beams, each rigid, can move: joints move by (ux, uy, turn), and a beam turns by the relative motion of its ends."""
-    free = {hinge.node for hinge in scene.hinges if not hinge.stiffness}
-    size = max(beam.length for beam in structure)
+def _moves(scene: "Scene", structure: list[BeamSpec], free: Sequence[str]) -> bool:
+    """Whether rigid beams can move: joints by (ux, uy, turn), and a beam turns by the relative motion of its ends.
+
+    The ends `free` do not turn with their joints.
+    """
+    size, names = max(beam.length for beam in structure), {beam.name for beam in structure}
     joints = {place: 3 * k for k, place in enumerate(_meeting(structure))}
     rows: list[dict[int, float]] = []
     for turn, beam in enumerate(structure, 3 * len(joints)):
         start, end = joints[beam.start], joints[beam.end]
         dx, dy = ((b - a) / size for a, b in zip(beam.start, beam.end, strict=True))
         rows += [{end: 1.0, start: -1.0, turn: dy}, {end + 1: 1.0, start + 1: -1.0, turn: -dx}]
-        fixed = (
-            joint for joint, node in ((start, "start"), (end, "end")) if f"{beam.name}.{node}" not in free
-        )
-        rows += ({joint + 2: 1.0, turn: -1.0} for joint in fixed)
+        nodes = ((start, f"{beam.name}.start"), (end, f"{beam.name}.end"))
+        rows += ({joint + 2: 1.0, turn: -1.0} for joint, node in nodes if node not in free)
     for item in (item for item in scene.holding if item.beam in names):
         joint = joints[scene.place(item.node)]
         rows += ({joint + COMPONENTS.index(component): 1.0} for component in item.held)

@@ -1,30 +1,20 @@
 """Keys that not every model, check and study knows, and the sentence that refuses a scene which uses one of them."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from typing import Final
 
 from comparisons.scene.scene import Scene
 
-_SPECIAL: Final[dict[str, tuple[str, Callable[[Scene], object]]]] = {
-    "turn": ("a natural curvature (turn)", lambda scene: any(beam.turn for beam in scene.beams)),
-    "taper": (
-        "a section that tapers (height or width of two values)",
-        lambda scene: any(beam.tapers for beam in scene.beams),
-    ),
-    "density": ("a weight (density)", lambda scene: scene.gravity),
-    "force_per_length": (
-        "a load along a beam (force_per_length)",
-        lambda scene: any(item.load.force_per_length for item in scene.load_histories),
-    ),
-    "at": (
-        "a load inside a beam (at)",
-        lambda scene: any(item.load.at for item in scene.load_histories),
-    ),
-    "hinge": ("a hinge ([[hinge]])", lambda scene: scene.hinges),
-    "spring": ("a spring ([[spring]])", lambda scene: scene.springs),
-    "stage": ("a stage after the first one ([[stage]])", lambda scene: scene.stages),
+SPECIAL: Final = {
+    "turn": "a natural curvature (turn)",
+    "taper": "a section that tapers (height or width of two values)",
+    "density": "a weight (density)",
+    "force_per_length": "a load along a beam (force_per_length)",
+    "at": "a load inside a beam (at)",
+    "hinge": "a hinge ([[hinge]])",
+    "spring": "a spring ([[spring]])",
+    "stage": "a stage after the first one ([[stage]])",
 }
-SPECIAL: Final = {key: sentence for key, (sentence, _) in _SPECIAL.items()}
 """The keys and what each states, in the order in which they are refused."""
 BEAMS = STRIPS = REFEREE = RODS = frozenset(SPECIAL)
 """Keys that beams, solids, the referee, and the exact rods state."""
@@ -36,7 +26,11 @@ MATERIAL: Final = frozenset({"turn"})
 
 def special_keys(scene: Scene) -> Iterator[str]:
     """Yield the keys of `SPECIAL` that `scene` uses."""
-    yield from (key for key, (_, used) in _SPECIAL.items() if used(scene))
+    turns, tapers = any(beam.turn for beam in scene.beams), any(beam.tapers for beam in scene.beams)
+    loads = [item.load for item in scene.load_histories]
+    along, inside = any(load.force_per_length for load in loads), any(load.at for load in loads)
+    used = (turns, tapers, scene.gravity, along, inside, scene.hinges, scene.springs, scene.stages)
+    yield from (key for key, uses in zip(SPECIAL, used, strict=True) if uses)
 
 
 def unstated(scene: Scene, who: str, known: Iterable[str] = ()) -> str | None:

@@ -4,40 +4,35 @@ A record collects the mistakes of its values and of its own rules and raises the
 attributes. Where a value is itself wrong, reading it raises `Unjudged`, and the rule is not judged: one mistake gives one line.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import Field, FrozenInstanceError, dataclass, field, fields
-from inspect import cleandoc
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, dataclass_transform
 
-from comparisons.scene.rules import (
-    MISSING,
-    FieldError,
-    Mistakes,
-    RecordError,
-    Records,
-    ValueRule,
-)
-from comparisons.scene.tables import misnamed_keys, table_values
+from comparisons.scene.rules import MISSING, FieldError, Mistakes, RecordError, Records, ValueRule
+from comparisons.scene.tables import stated, table_values
 
 R = TypeVar("R", bound="Record")
-RAISES = "\nRaises\n------\nFieldError\n    With all mistakes, each in one line: field, value and rule."
+RAISES = "Raises\n------\nFieldError\n    With all mistakes, each in one line: field, value and rule."
 
 
 class Unjudged(KeyError):  # noqa: N818 - no error of the user: the value is reported where it stands
     """A rule reads a value that is itself wrong, or a record that is not there, so it cannot be judged."""
 
 
-def key(rule: ValueRule[Any], meaning: str) -> Any:
+def key(rule: ValueRule, meaning: str) -> Any:
     """Declare a key that must be given by its rule and its meaning with the unit."""
     return field(metadata={"rule": rule, "meaning": meaning})
 
 
-def optional(rule: ValueRule[Any], meaning: str, default: Any = None) -> Any:
+def optional(rule: ValueRule, meaning: str, default: Any = None) -> Any:
     """Declare a key that may be left out by its rule, its meaning with the unit, and its default."""
     return field(default=default, metadata={"rule": rule, "meaning": meaning})
+
+
+def listed(name: str, kind: type["Record"], meaning: str) -> Any:
+    """Declare tables ``[[name]]``, each of which states a record of a kind; there may be none."""
+    return optional(Records(name, kind), meaning, ())
 
 
 @dataclass_transform(kw_only_default=True, frozen_default=True, field_specifiers=(key,))
@@ -49,7 +44,7 @@ class Record:
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
     obeys: ClassVar[tuple[Callable[[Any], Mistakes], ...]] = ()
-    _rules: ClassVar[dict[str, ValueRule[Any]]]
+    _rules: ClassVar[dict[str, ValueRule]]
     _free: ClassVar[dict[str, Any]]
 
     def __init_subclass__(cls) -> None:
@@ -61,16 +56,15 @@ class Record:
         rows = (
             f"{item.name} : {rule_of(item).accepts}\n    {item.metadata['meaning']}" for item in fields(cls)
         )
-        cls.__doc__ = "\n".join([cleandoc(cls.__doc__ or ""), "\nParameters\n----------", *rows, RAISES])
+        said = (cls.__doc__ or "").replace("\n    ", "\n").rstrip()
+        cls.__doc__ = "\n".join([said, "\nParameters\n----------", *rows, f"\n{RAISES}"])
 
     def __init__(self, /, **given: Any) -> None:
         free, rules = self._free, self._rules
-        given = {
-            name: value for name, value in given.items() if value is not None or free.get(name, 0) is not None
-        }
+        given = {k: value for k, value in given.items() if value is not None or free.get(k, 0) is not None}
         values, mistakes = table_values(given, rules, [name for name in rules if name not in free])
-        stated = given.keys() | misnamed_keys(given, rules)
-        vars(self).update({name: value for name, value in free.items() if name not in stated}, **values)
+        there = stated(given, rules)
+        vars(self).update({name: value for name, value in free.items() if name not in there}, **values)
         self._settle()
         for own in self.obeys:
             with suppress(Unjudged):
@@ -99,27 +93,27 @@ class Record:
         raise FrozenInstanceError(f"cannot assign to field {name!r}")
 
     def __delattr__(self, name: str) -> None:
-        raise FrozenInstanceError(f"cannot delete field {name!r}")
+        self.__setattr__(name, None)
 
-    def _values(self) -> tuple[Any, ...]:
-        return tuple(vars(self)[name] for name in self._rules)
+    def _values(self) -> list[Any]:
+        return [vars(self).get(name) for name in self._rules]
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Record) or type(self) is not type(other):
-            return NotImplemented
-        return self._values() == other._values()
+        return (
+            isinstance(other, type(self)) and type(other) is type(self) and self._values() == other._values()
+        )
 
     def __hash__(self) -> int:
-        return hash(self._values())
+        return hash(tuple(self._values()))
 
     def __repr__(self) -> str:
-        values = ", ".join(f"{name}={vars(self).get(name)!r}" for name in self._rules)
-        return f"{type(self).__name__}({values})"
+        values = (f"{name}={value!r}" for name, value in zip(self._rules, self._values(), strict=True))
+        return f"{type(self).__name__}({', '.join(values)})"
 
 
-def rule_of(item: Field[Any]) -> ValueRule[Any]:
+def rule_of(item: Field[Any]) -> ValueRule:
     """Return the rule of a field."""
-    rule: ValueRule[Any] = item.metadata["rule"]
+    rule: ValueRule = item.metadata["rule"]
     return rule
 
 
@@ -132,8 +126,8 @@ def lists_of(kind: type[Record]) -> dict[str, type[Record]]:
 def copied(record: R, **attributes: object) -> R:
     """Return a copy of a record, wrong values included, with further attributes that are no keys."""
     copy = object.__new__(type(record))
-    vars(copy).update({name: value for name, value in vars(record).items() if name in record._rules})  # noqa: SLF001
-    vars(copy).update(attributes)
+    own = {name: value for name, value in vars(record).items() if name in record._rules}  # noqa: SLF001
+    vars(copy).update(own, **attributes)
     return copy
 
 
@@ -142,8 +136,7 @@ def refused(key: str, sentence: str, when: Callable[[Any], object]) -> Callable[
 
     def judged(record: Record) -> Mistakes:
         if when(record):
-            value = getattr(record, key)
-            yield FieldError(key, MISSING if value in (None, ()) else value, sentence)
+            yield FieldError(key, getattr(record, key) or MISSING, sentence)
 
     return judged
 
@@ -153,15 +146,16 @@ def one_of(*groups: tuple[str, ...]) -> Callable[[Record], Mistakes]:
     wanted = " or ".join(" and ".join(group) for group in groups)
 
     def judged(record: Record) -> Mistakes:
-        missing = [[item for item in group if vars(record).get(item, MISSING) is None] for group in groups]
-        present = [k for k, group in enumerate(groups) if len(missing[k]) < len(group)]
+        given = [[item for item in group if vars(record).get(item, MISSING) is not None] for group in groups]
+        present = [k for k, some in enumerate(given) if some]
         if not present:
             yield FieldError(groups[0][0], MISSING, f"give {wanted}")
         elif len(present) > 1:
-            extra = next(item for item in groups[present[1]] if item not in missing[present[1]])
+            extra = given[present[1]][0]
             yield FieldError(extra, getattr(record, extra), f"give either {wanted}, not both")
         else:
-            rule = f"must be given, {' and '.join(groups[present[0]])} belong together"
-            yield from (FieldError(item, MISSING, rule) for item in missing[present[0]])
+            group = groups[present[0]]
+            rule = f"must be given, {' and '.join(group)} belong together"
+            yield from (FieldError(item, MISSING, rule) for item in group if item not in given[present[0]])
 
     return judged

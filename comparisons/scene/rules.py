@@ -5,16 +5,16 @@ A rule is a value: called, it returns the stored form of a value, or raises its 
 
 import dataclasses
 import math
-import operator
+import re
 from collections.abc import Callable, Collection, Iterator, Sequence
 from itertools import pairwise
-from typing import Any, Generic, TypeVar
-
-from comparisons.scene.values import toml_value
+from operator import ge, gt, le, lt
+from typing import Any
 
 Point = tuple[float, float]
 Rule = Callable[[object], object]
-T_co = TypeVar("T_co", covariant=True)
+Test = Callable[[Any], object]
+Schema = dict[str, Any]
 
 LARGEST = 1e50
 """Largest magnitude of a number: squares, products and quotients of such numbers stay in floating-point range."""
@@ -60,7 +60,7 @@ class RecordError(FieldError):
     """Several mistakes, each in one line, the first one's key, value and rule; `found` has the values that are right."""
 
     def __init__(self, mistakes: Collection[FieldError], found: Any = None) -> None:
-        first = next(iter(mistakes))
+        first, *_ = mistakes
         super().__init__(first.key, first.value, first.rule)
         self.args = ("\n".join(map(str, mistakes)),)
         self.mistakes, self.found = tuple(mistakes), found
@@ -73,6 +73,20 @@ class RecordError(FieldError):
 Mistakes = Iterator[FieldError]
 
 
+def toml_value(value: object) -> str:
+    """Return `value` as TOML writes it in one line."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        escaped = value.replace("\\", "\\\\").replace('"', '\\"')
+        return '"' + "".join(c if c.isprintable() else f"\\U{ord(c):08x}" for c in escaped) + '"'
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(toml_value, value))}]"
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key} = {toml_value(item)}" for key, item in value.items()) + "}"
+    return str(value)
+
+
 def shown(value: object) -> str:
     """Return `value` as it would stand in a TOML file, in one line of at most 60 characters."""
     try:
@@ -82,210 +96,173 @@ def shown(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-class ValueRule(Generic[T_co]):
-    """A rule as a value: what it accepts in words, whether a value is right, the form in which it is stored, and the JSON Schema."""
+TYPES: dict[str, Any] = {
+    "number": int | float,
+    "integer": int,
+    "string": str,
+    "boolean": bool,
+    "array": list | tuple,
+}
+NUMBERS = ("number", "integer")
+LIMITS = {"minimum": ge, "maximum": le, "exclusiveMinimum": gt, "exclusiveMaximum": lt}
+"""Types and limits of values by their names in JSON Schema; a truth value is no number."""
+
+
+def fits(value: Any, schema: Schema) -> bool:
+    """Whether a value obeys a JSON Schema, of the words that stand in this module; a text is printable."""
+    if "anyOf" in schema:
+        return any(fits(value, one) for one in schema["anyOf"])
+    kind = schema["type"]
+    if not isinstance(value, TYPES.get(kind, object)) or (isinstance(value, bool) and kind in NUMBERS):
+        return False
+    if kind == "array":
+        sized = schema["minItems"] <= len(value) <= schema.get("maxItems", math.inf)
+        return sized and all(fits(item, schema["items"]) for item in value)
+    if kind == "string":
+        found = re.search(schema.get("pattern", ""), value)
+        return value.isprintable() and bool(found) and value in schema.get("enum", (value,))
+    return all(LIMITS[word](value, limit) for word, limit in schema.items() if word in LIMITS)
+
+
+def stored(value: Any, schema: Schema) -> Any:
+    """Return a value in the form in which a record has it: a list as a tuple, a number as a float."""
+    if isinstance(value, list | tuple):
+        return tuple(stored(item, schema["items"]) for item in value)
+    return float(value) or 0.0 if schema["type"] == "number" else value
+
+
+class ValueRule:
+    """A rule as a value: what it accepts in words, its JSON Schema, what that cannot say, and its form of a value."""
 
     def __init__(
-        self, accepts: str, right: Callable[[Any], object], stored: Callable[[Any], T_co], **schema: Any
+        self, accepts: str, schema: Schema, also: Test = lambda _: True, form: Test | None = None
     ) -> None:
-        self.accepts, self.right, self.stored, self.schema = accepts, right, stored, schema
+        self.accepts, self.schema, self.also = accepts, schema, also
+        self.form = form or (lambda value: stored(value, schema))
 
-    def __call__(self, value: object) -> T_co:
+    def __call__(self, value: object) -> Any:
         """Return the stored form of `value`, or raise `RuleError`."""
-        if not self.right(value):
+        if not (fits(value, self.schema) and self.also(value)):
             raise RuleError(f"must be {self.accepts}")
-        return self.stored(value)
+        return self.form(value)
 
 
-COMPARED: dict[str, Callable[[float, float], bool]] = {
-    "minimum": operator.ge,
-    "maximum": operator.le,
-    "exclusiveMinimum": operator.gt,
-    "exclusiveMaximum": operator.lt,
-}
-"""Limits of a number by their names in JSON Schema."""
+def within(least: float, most: float, kind: str = "number") -> Schema:
+    """Return the schema of numbers from `least` to `most`."""
+    return {"type": kind, "minimum": least, "maximum": most}
 
 
-def limited(accepts: str, *, scaled: bool = False, **limits: float) -> ValueRule[float]:
-    """Return the rule: a finite number within `limits`; `scaled`, it is zero or within `RANGE`."""
-    least, most = RANGE if scaled else (0.0, LARGEST)
-
-    def right(value: Any) -> bool:
-        is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        if not is_number or not all(COMPARED[name](value, limit) for name, limit in limits.items()):
-            return False
-        return not value or least <= abs(value) <= most
-
-    return ValueRule(
-        accepts, right, lambda value: abs(float(value)) if scaled else float(value), type="number", **limits
-    )
+def between(least: float, most: float) -> Schema:
+    """Return the schema of numbers larger than `least` and smaller than `most`."""
+    return {"type": "number", "exclusiveMinimum": least, "exclusiveMaximum": most}
 
 
-number = limited("a finite number of at most 1e50 in size")
-positive = limited("a positive number, from 1e-100 to 1e100", scaled=True, exclusiveMinimum=0)
-not_negative = limited("zero, or a positive number from 1e-100 to 1e100", scaled=True, minimum=0)
+def several(item: Schema, least: int = 0, most: int | None = None) -> Schema:
+    """Return the schema of lists with `least` to `most` items."""
+    sizes = {"minItems": least} if most is None else {"minItems": least, "maxItems": most}
+    return {"type": "array", "items": item, **sizes}
+
+
+def worded(pattern: str) -> Schema:
+    """Return the schema of texts with a regular expression in them."""
+    return {"type": "string", "pattern": pattern}
+
+
+def rising(values: Sequence[float]) -> bool:
+    """Whether each number is larger than the one before it."""
+    return all(a < b for a, b in pairwise(values))
+
+
 TURN = 2.0 * math.pi
-turn = limited("an angle in rad of less than 2 pi in size", exclusiveMinimum=-TURN, exclusiveMaximum=TURN)
-friction = limited("a coefficient between 0 and 100", minimum=0, maximum=100.0)
-fraction = limited("a number between 0 and 1", exclusiveMinimum=0, exclusiveMaximum=1)
-poissons_ratio = limited(
-    "a number between -1 and 0.5, both excluded", exclusiveMinimum=-1, exclusiveMaximum=0.5
-)
+NUMBER, SCALED, ZERO_OR_SCALED = within(-LARGEST, LARGEST), within(*RANGE), within(0, RANGE[1])
+POINT, PAIR = several(NUMBER, 2, 2), several(SCALED, 2, 2)
 
 
-def whole(largest: int = 100_000) -> ValueRule[int]:
-    """Return the rule: a whole number from 1 to `largest`."""
-
-    def right(value: Any) -> bool:
-        return isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= largest
-
-    return ValueRule(
-        f"a whole number from 1 to {largest}", right, int, type="integer", minimum=1, maximum=largest
-    )
+def _scaled(*sizes: float) -> bool:
+    """Whether each size is zero or large enough."""
+    return all(not size or size >= RANGE[0] for size in sizes)
 
 
-whole_number = whole()
-
-
-def several(
-    accepts: str, item: ValueRule[Any], right: Callable[[Sequence[Any]], object], **schema: Any
-) -> ValueRule[Any]:
-    """Return the rule: a list of items that are `right` together."""
-    return ValueRule(
-        accepts,
-        lambda value: isinstance(value, list | tuple) and all(map(item.right, value)) and right(value),
-        lambda value: tuple(map(item.stored, value)),
-        **{"type": "array", "items": item.schema, **schema},
-    )
-
-
-def two(
-    accepts: str,
-    item: ValueRule[Any],
-    right: Callable[[Any, Any], object] = lambda a, b: True,  # noqa: ARG005
-    **schema: Any,
-) -> ValueRule[Any]:
-    """Return the rule: a list of two items that are `right` together."""
-    return several(
-        accepts, item, lambda pair: len(pair) == 2 and right(*pair), minItems=2, maxItems=2, **schema
-    )
-
-
-def polyline(at_least: int) -> ValueRule[Any]:
-    """Return the rule: points, no two consecutive ones equal."""
-    return several(
-        f"a list of {at_least} or more points [x, y], no two consecutive ones equal",
-        point,
-        lambda points: len(points) >= at_least and all(a != b for a, b in pairwise(map(tuple, points))),
-        minItems=at_least,
-    )
-
-
-sequence = ValueRule("a list", lambda value: isinstance(value, list | tuple), tuple[object, ...])
-point = two("two numbers [x, y], a third dimension is not modelled", number)
-stiffnesses = two("two numbers [x, y], neither negative", not_negative)
-span = two(
-    "two fractions of the length that rise from 0 to 1",
-    number,
-    lambda a, b: 0.0 <= a < b <= 1.0,
-    items={"type": "number", "minimum": 0, "maximum": 1},
-)
-mesh = two("[elements along, elements across]", whole_number)
-parts = several(
-    "a list of numbers that rise between 0 and 1, both excluded",
-    number,
-    lambda parts: all(a < b for a, b in pairwise((0.0, *parts, 1.0))),
-    items=fraction.schema,
-)
-_ends = two("", positive)
-
-
-def _dimension(value: Any) -> float | tuple[float, float]:
+def _dimension(size: Any) -> float | tuple[float, float]:
     """Return a number, or two where they differ."""
-    if not _ends.right(value):
-        return positive.stored(value)
-    start, end = _ends.stored(value)
+    start, end = stored(size, PAIR) if isinstance(size, list | tuple) else (float(size), float(size))
     return start if start == end else (start, end)
 
 
-dimension = ValueRule(
-    "a positive number, or two [at the start, at the end]",
-    lambda value: positive.right(value) or _ends.right(value),
-    _dimension,
-    anyOf=[positive.schema, _ends.schema],
+number = ValueRule("a finite number of at most 1e50 in size", NUMBER)
+positive = ValueRule("a positive number, from 1e-100 to 1e100", SCALED)
+not_negative = ValueRule("zero, or a positive number from 1e-100 to 1e100", ZERO_OR_SCALED, _scaled)
+turn = ValueRule("an angle in rad of less than 2 pi in size", between(-TURN, TURN))
+friction = ValueRule("a coefficient between 0 and 100", within(0, 100.0))
+fraction = ValueRule("a number between 0 and 1", between(0, 1))
+poissons_ratio = ValueRule("a number between -1 and 0.5, both excluded", between(-1, 0.5))
+point = ValueRule("two numbers [x, y], a third dimension is not modelled", POINT)
+stiffnesses = ValueRule(
+    "two numbers [x, y], neither negative", several(ZERO_OR_SCALED, 2, 2), lambda pair: _scaled(*pair)
 )
+span = ValueRule("two fractions of the length that rise from 0 to 1", several(within(0, 1), 2, 2), rising)
+parts = ValueRule(
+    "a list of numbers that rise between 0 and 1, both excluded", several(between(0, 1)), rising
+)
+dimension = ValueRule(
+    "a positive number, or two [at the start, at the end]", {"anyOf": [SCALED, PAIR]}, form=_dimension
+)
+text = ValueRule("a printable text, not empty", worded(r"\S"))
+name = ValueRule("a name of letters, digits, '-' and '_'", worded(r"^[\w-]+$"))
+units = ValueRule('the units of force and of length, as "N, m"', worded("^[^,]*[^, ][^,]*,[^,]*[^, ][^,]*$"))
+truth = ValueRule("true or false", {"type": "boolean"})
+sequence = ValueRule("a list", several({"type": "object"}), form=tuple)
+
+
+def whole(largest: int = 100_000) -> ValueRule:
+    """Return the rule: a whole number from 1 to `largest`."""
+    return ValueRule(f"a whole number from 1 to {largest}", within(1, largest, "integer"))
+
+
+whole_number = whole()
+mesh = ValueRule("[elements along, elements across]", several(whole_number.schema, 2, 2))
 
 
 def mesh_text(value: object) -> tuple[int, int]:
     """Accept the numbers of elements along and across as ``50x2``."""
-    along, separator, across = value.partition("x") if isinstance(value, str) else ("", "", "")
-    if not separator or not (along + across).isdecimal():
+    if not re.fullmatch(r"[0-9]{1,9}x[0-9]{1,9}", str(value)):
         raise RuleError("must be NXxNY, as 50x2")
-    found: tuple[int, int] = mesh((int(along), int(across)))
+    found: tuple[int, int] = mesh(tuple(map(int, str(value).split("x"))))
     return found
 
 
-text = ValueRule(
-    "a printable text, not empty",
-    lambda value: isinstance(value, str) and value.strip() and value.isprintable(),
-    str,
-    type="string",
-    minLength=1,
-)
-name = ValueRule(
-    "a name of letters, digits, '-' and '_'",
-    lambda value: text.right(value) and all(c.isalnum() or c in "-_" for c in value),
-    str,
-    type="string",
-    pattern=r"^[\w-]+$",
-)
-units = ValueRule(
-    'the units of force and of length, as "N, m"',
-    lambda value: text.right(value) and [bool(part.strip()) for part in value.split(",")] == [True, True],
-    str,
-    type="string",
-    pattern="^[^,]*[^, ][^,]*,[^,]*[^, ][^,]*$",
-)
-truth = ValueRule("true or false", lambda value: isinstance(value, bool), bool, type="boolean")
-
-
-def choice(*options: str) -> ValueRule[str]:
-    """Return the rule: one of `options`."""
-    listed = ", ".join(map(shown, options))
+def polyline(at_least: int) -> ValueRule:
+    """Return the rule: points, no two consecutive ones equal."""
     return ValueRule(
-        f"one of {listed}",
-        lambda value: isinstance(value, str) and value in options,
-        str,
-        enum=list(options),
+        f"a list of {at_least} or more points [x, y], no two consecutive ones equal",
+        several(POINT, at_least),
+        lambda points: all(a != b for a, b in pairwise(map(tuple, points))),
     )
 
 
-def subset(*options: str, at_least: int = 0) -> ValueRule[Any]:
+def choice(*options: str) -> ValueRule:
+    """Return the rule: one of `options`."""
+    schema = {"type": "string", "enum": list(options)}
+    return ValueRule(f"one of {', '.join(map(shown, options))}", schema)
+
+
+def subset(*options: str, at_least: int = 0) -> ValueRule:
     """Return the rule: some of `options`, each once."""
-    return several(
-        f"a list of some of {', '.join(map(shown, options))}, each once",
-        choice(*options),
-        lambda items: at_least <= len(items) == len(set(items)),
-        uniqueItems=True,
-        minItems=at_least,
-    )
+    schema = {**several(choice(*options).schema, at_least), "uniqueItems": True}
+    accepts = f"a list of some of {', '.join(map(shown, options))}, each once"
+    return ValueRule(accepts, schema, lambda items: len(items) == len(set(items)))
 
 
-class Records(ValueRule[tuple[Any, ...]]):
+class Records(ValueRule):
     """The rule: a list of tables ``[[name]]``, each of which states a record of one kind, or of such records."""
 
     def __init__(self, name: str, kind: type, at_least: int = 0) -> None:
         self.name, self.kind = name, kind
         super().__init__(
             f"a list of tables, [[{name}]]",
-            lambda value: (
-                isinstance(value, list | tuple)
-                and len(value) >= at_least
-                and all(isinstance(item, (kind, dict)) for item in value)
-            ),
+            several({"type": "object"}, at_least),
+            lambda value: all(isinstance(item, (kind, dict)) for item in value),
             self._read,
-            type="array",
-            minItems=at_least,
         )
 
     def _read(self, value: Sequence[Any]) -> tuple[Any, ...]:

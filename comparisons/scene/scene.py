@@ -1,27 +1,16 @@
 """The record of a whole scene, which checks the rules between its records at construction."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from functools import cached_property
-from typing import Any
 
 from comparisons.scene import rules
 from comparisons.scene.beam import BeamSpec
-from comparisons.scene.coherence import scene_rules
+from comparisons.scene.coherence import Names, scene_rules
 from comparisons.scene.conditions import HingeSpec, LoadSpec, SpringSpec, SupportSpec
 from comparisons.scene.contact import ContactSpec, PinSpec
-from comparisons.scene.record import Record, Unjudged, copied, key, optional
+from comparisons.scene.record import Record, Unjudged, copied, key, listed, optional
 from comparisons.scene.rules import Point
 from comparisons.scene.stages import LoadHistory, PinMove, PrescribedMotion, StageSpec, amount
-
-
-class Named(dict[str, Any]):
-    """Records by their names, without those whose name is wrong; a name that none has raises `Unjudged`, a ``KeyError``."""
-
-    def __init__(self, records: Iterable[Any]) -> None:
-        super().__init__((record.name, record) for record in records if record.has("name"))
-
-    def __missing__(self, name: str) -> Any:
-        raise Unjudged(name)
 
 
 class Scene(Record):
@@ -37,27 +26,22 @@ class Scene(Record):
     load_parameters: int = key(rules.whole_number, "Number n of load parameters.")
     gravity: Point | None = optional(
         rules.point,
-        "Acceleration of gravity at load parameter 1, for beams with a `density`, in the units of the scene [length/time^2]; the unit of "
-        "time is free, the product with the density is a force per volume.",
+        "Acceleration of gravity at load parameter 1; times a `density` it is a force per volume [length/time^2].",
     )
     beams: tuple[BeamSpec, ...] = key(rules.Records("beam", BeamSpec, at_least=1), "The beams.")
-    supports: tuple[SupportSpec, ...] = optional(rules.Records("support", SupportSpec), "The supports.", ())
-    loads: tuple[LoadSpec, ...] = optional(
-        rules.Records("load", LoadSpec), "The loads of the first stage.", ()
-    )
-    pins: tuple[PinSpec, ...] = optional(rules.Records("pin", PinSpec), "The pins.", ())
-    contacts: tuple[ContactSpec, ...] = optional(rules.Records("contact", ContactSpec), "The contacts.", ())
-    hinges: tuple[HingeSpec, ...] = optional(rules.Records("hinge", HingeSpec), "The hinges.", ())
-    springs: tuple[SpringSpec, ...] = optional(rules.Records("spring", SpringSpec), "The springs.", ())
-    stages: tuple[StageSpec, ...] = optional(
-        rules.Records("stage", StageSpec), "Stages after the first one.", ()
-    )
+    supports: tuple[SupportSpec, ...] = listed("support", SupportSpec, "The supports.")
+    loads: tuple[LoadSpec, ...] = listed("load", LoadSpec, "The loads of the first stage.")
+    pins: tuple[PinSpec, ...] = listed("pin", PinSpec, "The pins.")
+    contacts: tuple[ContactSpec, ...] = listed("contact", ContactSpec, "The contacts.")
+    hinges: tuple[HingeSpec, ...] = listed("hinge", HingeSpec, "The hinges.")
+    springs: tuple[SpringSpec, ...] = listed("spring", SpringSpec, "The springs.")
+    stages: tuple[StageSpec, ...] = listed("stage", StageSpec, "Stages after the first one.")
+
+    obeys = (scene_rules,)
 
     def _settle(self) -> None:
         if self.has("pins"):
             vars(self)["pins"] = tuple(copied(pin, moves=self._moves(pin)) for pin in self.pins)
-
-    obeys = (scene_rules,)
 
     def _moves(self, pin: PinSpec) -> tuple[PinMove | None, ...] | None:
         """Return the motions of a pin in the stages; None where one is wrong."""
@@ -67,20 +51,19 @@ class Scene(Record):
             return None
 
     @cached_property
-    def _beams(self) -> dict[str, BeamSpec]:
-        return Named(self.beams)
-
-    @cached_property
-    def _pins(self) -> dict[str, PinSpec]:
-        return Named(self.pins)
+    def names(self) -> Names:
+        """The beams and pins by their names."""
+        return Names(self)
 
     def beam(self, name: str) -> BeamSpec:
         """Return the beam called `name`."""
-        return self._beams[name]
+        beam: BeamSpec = self.names.record("beam", name)
+        return beam
 
     def pin(self, name: str) -> PinSpec:
         """Return the pin called `name`."""
-        return self._pins[name]
+        pin: PinSpec = self.names.record("pin", name)
+        return pin
 
     def offset(self, contact: ContactSpec, fraction: float = 0.5) -> float:
         """Distance of the contact's node, or of its pin's centre, from the axis where they touch, at a fraction of a beam that tapers."""
@@ -89,18 +72,13 @@ class Scene(Record):
 
     def radius(self, contact: ContactSpec) -> float:
         """Radius of the contact's pin, zero for a point."""
-        pin = self._pins.get(contact.node)
-        return (pin and pin.radius) or 0.0
+        return 0.0 if "." in contact.node else self.pin(contact.node).radius or 0.0
 
     @cached_property
     def all_supports(self) -> tuple[SupportSpec, ...]:
         """The clamped ends of the beams, then `supports`."""
-        clamps = (
-            SupportSpec(beam=beam.name, end=end, kind="clamped")
-            for beam in self.beams
-            for end in beam.clamped
-        )
-        return (*clamps, *self.supports)
+        ends = ((beam.name, end) for beam in self.beams for end in beam.clamped)
+        return (*(SupportSpec(beam=name, end=end, kind="clamped") for name, end in ends), *self.supports)
 
     @property
     def holding(self) -> tuple[SupportSpec | SpringSpec, ...]:
@@ -119,36 +97,29 @@ class Scene(Record):
         return motions
 
     @property
-    def stage_loads(self) -> tuple[tuple[LoadSpec, ...], ...]:
-        """The loads that are added in every stage."""
-        return (self.loads, *(stage.load for stage in self.stages))
-
-    @property
     def stage_gravities(self) -> tuple[Point, ...]:
         """The change of the acceleration of gravity in every stage."""
         return (self.gravity or (0.0, 0.0), *(stage.gravity for stage in self.stages))
-
-    def numbered_loads(self) -> Iterator[tuple[int, LoadSpec]]:
-        """Yield the number of the stage, from 0, of every load, and the load."""
-        yield from ((number, load) for number, loads in enumerate(self.stage_loads) for load in loads)
-
-    @cached_property
-    def load_histories(self) -> tuple[LoadHistory, ...]:
-        """The dead loads through all stages, place by place in the order of the file."""
-        stages = [{load.node: load for load in loads} for loads in self.stage_loads]
-        first = {node: load for loads in reversed(stages) for node, load in loads.items()}
-        return tuple(
-            LoadHistory(
-                first[node],
-                tuple(loads[node].amount if node in loads else (0.0, 0.0, 0.0) for loads in stages),
-            )
-            for node in dict.fromkeys(node for loads in stages for node in loads)
-        )
 
     def gravity_at(self, load_parameter: float) -> Point:
         """Return the acceleration of gravity at `load_parameter`."""
         x, y = amount(self.stage_gravities, load_parameter)
         return x, y
+
+    def numbered_loads(self) -> Iterator[tuple[int, LoadSpec]]:
+        """Yield the number of the stage, from 0, of every load, and the load."""
+        stages = enumerate((self.loads, *(stage.load for stage in self.stages)))
+        yield from ((number, load) for number, loads in stages for load in loads)
+
+    @cached_property
+    def load_histories(self) -> tuple[LoadHistory, ...]:
+        """The dead loads through all stages, place by place in the order of the file."""
+        found: dict[str, LoadHistory] = {}
+        for number, load in self.numbered_loads():
+            rest = ((0.0, 0.0, 0.0),) * (len(self.stages) + 1)
+            first, amounts = found.setdefault(load.node, LoadHistory(load, rest))
+            found[load.node] = LoadHistory(first, (*amounts[:number], load.amount, *amounts[number + 1 :]))
+        return tuple(found.values())
 
     def place(self, node: str) -> Point:
         """Return the undeformed position of a beam's end, ``upper.end``."""
@@ -171,6 +142,4 @@ class Scene(Record):
     def times(self) -> tuple[float, ...]:
         """The load parameters: ``j + k/n``, k = 1..n, of the stage j = 0, 1, ... with n load parameters."""
         counts = (self.load_parameters, *(stage.load_parameters for stage in self.stages))
-        return tuple(
-            before + k / n if before else k / n for before, n in enumerate(counts) for k in range(1, n + 1)
-        )
+        return tuple(before + k / n for before, n in enumerate(counts) for k in range(1, n + 1))

@@ -5,9 +5,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from comparisons.scene import rules
-from comparisons.scene.conditions import COMPONENTS, AtEnd, LoadSpec, SupportSpec
-from comparisons.scene.record import Record, key, one_of, optional, refused
+from comparisons.scene.conditions import COMPONENTS, END, AtEnd, LoadSpec, SupportSpec
+from comparisons.scene.record import Record, key, listed, one_of, optional, refused
 from comparisons.scene.rules import Point
+
+AT_REST = "must not be zero: the pin does not move"
+IDLE = "give pin, support, load or gravity: nothing happens in the stage"
 
 
 class PinMove(Record):
@@ -16,24 +19,19 @@ class PinMove(Record):
     name: str = key(rules.name, "Name of the pin.")
     displacement: Point | None = optional(rules.point, "A straight motion from where the pin is [length].")
     path: tuple[Point, ...] | None = optional(
-        rules.polyline(1),
-        "The points that the pin moves to, one after another, instead of `displacement` [length].",
+        rules.polyline(1), "The points that the pin moves to in turn, instead of `displacement` [length]."
     )
 
     obeys = (
         one_of(("displacement",), ("path",)),
-        refused(
-            "displacement",
-            "must not be zero: the pin does not move",
-            lambda it: it.displacement == (0.0, 0.0),
-        ),
+        refused("displacement", AT_REST, lambda it: it.displacement == (0.0, 0.0)),
     )
 
 
 class SupportMove(AtEnd):
     """A support's motion during a stage, in proportion to the load parameter."""
 
-    end: str = key(rules.choice("start", "end"), "Which end; it has a support.")
+    end: str = key(END, "Which end; it has a support.")
     displacement: Point = optional(
         rules.point, "Displacement during the stage [length]; zero in a free direction.", (0.0, 0.0)
     )
@@ -58,32 +56,26 @@ class StageSpec(Record):
 
     name: str | None = optional(rules.name, "Letters, digits, ``-`` and ``_``.")
     load_parameters: int = key(rules.whole_number, "Number of load parameters of the stage, equally spaced.")
-    pin: tuple[PinMove, ...] = optional(
-        rules.Records("pin", PinMove),
-        'Motions of pins, as ``[{ name = "pin", displacement = [0.0, -0.1] }]``; `path` is possible instead of `displacement`.',
-        (),
+    pin: tuple[PinMove, ...] = listed(
+        "pin",
+        PinMove,
+        'Motions of pins, as ``[{ name = "pin", displacement = [0.0, -0.1] }]``, or with a `path`.',
     )
-    support: tuple[SupportMove, ...] = optional(
-        rules.Records("support", SupportMove),
-        'Motions of supports, as ``[{ beam = "strip", end = "end", displacement = [0.0, 0.1], rotation = 0.0 }]``.',
-        (),
+    support: tuple[SupportMove, ...] = listed(
+        "support",
+        SupportMove,
+        'Motions of supports: ``[{ beam = "strip", end = "end", displacement = [0.0, 0.1] }]``, or a `rotation`.',
     )
-    load: tuple[LoadSpec, ...] = optional(
-        rules.Records("load", LoadSpec),
-        'Changes of loads, as ``[{ beam = "strip", end = "end", force = [0.0, 1.0] }]``, with the keys of ``[[load]]``.',
-        (),
+    load: tuple[LoadSpec, ...] = listed(
+        "load",
+        LoadSpec,
+        'Changes of loads: ``[{ beam = "strip", end = "end", force = [0.0, 1.0] }]``, or other keys of ``[[load]]``.',
     )
     gravity: Point = optional(
         rules.point, "Change of the acceleration of gravity [length/time^2].", (0.0, 0.0)
     )
 
-    obeys = (
-        refused(
-            "pin",
-            "give pin, support, load or gravity: nothing happens in the stage",
-            lambda it: not (it.pin or it.support or it.load or any(it.gravity)),
-        ),
-    )
+    obeys = (refused("pin", IDLE, lambda it: not (it.pin or it.support or it.load or any(it.gravity))),)
 
 
 def stage_of(load_parameter: float, stages: int) -> int:

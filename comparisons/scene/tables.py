@@ -3,10 +3,12 @@
 import re
 import tomllib
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from itertools import islice
 from typing import Any
 
 from comparisons.files import read_regular
 from comparisons.scene.rules import MISSING, MOST, UNREADABLE, FieldError, RecordError, Rule, RuleError, shown
+from comparisons.scene.words import hint, meant
 
 LARGEST_FILE = 16_000_000
 """Largest size of an input file [byte]."""
@@ -64,32 +66,26 @@ def read_tables(text: str, source: str, kind: type[InputError]) -> dict[str, Any
         raise kind(source, f"must be valid TOML: {error}") from None
 
 
+def misnamed(table: Mapping[str, Any], known: Collection[str]) -> dict[str, str | None]:
+    """Return the unknown keys of a table, each with the known key that it means by another name or misspelt."""
+    return {key: meant(key, known) for key in islice((key for key in table if key not in known), MOST)}
+
+
+def stated(table: Mapping[str, Any], known: Collection[str]) -> set[str | None]:
+    """Return the keys of a table, and the known ones that are there by another name."""
+    return {*table, *misnamed(table, known).values()}
+
+
 def check_keys(
-    table: dict[str, Any], known: Collection[str], required: Iterable[str] = ()
+    table: Mapping[str, Any], known: Collection[str], required: Iterable[str] = ()
 ) -> Iterator[FieldError]:
     """Yield the keys of `table` that are not known, and the keys that are required and not there."""
-    for key in _unknown(table, known):
-        from comparisons.scene.words import hint
-
+    others = misnamed(table, known)
+    for key in others:
         rule = f"unknown key, {hint(key, known)}"
         yield FieldError(key if key.isprintable() else repr(key), table[key], rule)
-    missing = [key for key in required if key not in table]
-    for key in missing and sorted(set(missing) - misnamed_keys(table, known), key=missing.index):
-        yield FieldError(key, MISSING, "must be given")
-
-
-def _unknown(table: dict[str, Any], known: Collection[str]) -> list[str]:
-    return [key for key in table if key not in known][:MOST]
-
-
-def misnamed_keys(table: dict[str, Any], known: Collection[str]) -> set[str]:
-    """Return the known keys that are not in `table`, but there by another name or misspelt."""
-    found = set()
-    for key in _unknown(table, known):
-        from comparisons.scene.words import meant
-
-        found.add(meant(key, known))
-    return {key for key in found if key is not None and key not in table}
+    there = {*table, *others.values()}
+    yield from (FieldError(key, MISSING, "must be given") for key in required if key not in there)
 
 
 def check_table(tables: dict[str, Any], name: str) -> Iterator[FieldError]:
@@ -117,7 +113,7 @@ def head_values(
 
 
 def table_values(
-    table: dict[str, Any], rules: Mapping[str, Rule], required: Iterable[str]
+    table: Mapping[str, Any], rules: Mapping[str, Rule], required: Iterable[str]
 ) -> tuple[dict[str, Any], list[FieldError]]:
     """Return the right values of a table in their stored form, and its mistakes."""
     mistakes = list(check_keys(table, rules, required))

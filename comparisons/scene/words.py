@@ -5,7 +5,7 @@
 
 import difflib
 import tomllib
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -17,36 +17,25 @@ class Topic(NamedTuple):
 
     title: str
     answer: str
-    words: tuple[str, ...]
+    words: list[str]
 
 
-def _by_word(table: Mapping[str, str]) -> dict[str, str]:
-    return {word: text for words, text in table.items() for word in words.split()}
-
-
-NOT_MODELLED: Final = tuple(
-    Topic(item["title"], item["answer"], tuple(item["words"].split())) for item in _DATA["not_modelled"]
-)
+NOT_MODELLED: Final = [Topic(**{**item, "words": item["words"].split()}) for item in _DATA["not_modelled"]]
 """What is not modelled, topic by topic."""
-OTHER_NAMES: Final[dict[str, tuple[str, ...]]] = {
-    key: tuple(names.split()) for key, names in _DATA["other_names"].items()
-}
+OTHER_NAMES: Final[dict[str, list[str]]] = {key: names.split() for key, names in _DATA["other_names"].items()}
 """Other names of keys and tables, by key. A name that several have means the first that its table knows."""
-ELSEWHERE: Final = _by_word(_DATA["elsewhere"])
+ELSEWHERE: Final = {word: text for words, text in _DATA["elsewhere"].items() for word in words.split()}
 """Where a known key or another name of it belongs, for tables that do not know it."""
-CONVERTED: Final = _by_word(_DATA["converted"])
+CONVERTED: Final = {word: text for words, text in _DATA["converted"].items() for word in words.split()}
 """What a key is where the value of its other name is another."""
+_ANSWERS = {word: topic.answer for topic in NOT_MODELLED for word in topic.words}
 
 
 def meant(key: str, known: Collection[str]) -> str | None:
     """Return the known key that `key` is another name or a misspelling of; None if there is none."""
     word = key.lower().replace("-", "_")
-    for name, others in OTHER_NAMES.items():
-        if name in known and word in others:
-            return name
-    if word in ELSEWHERE or _topic(word) is not None:
-        return None
-    return _near(word, sorted(known), 0.7)
+    named = (name for name, others in OTHER_NAMES.items() if name in known and word in others)
+    return next(named, None if word in ELSEWHERE or word in _ANSWERS else _near(word, sorted(known), 0.7))
 
 
 def hint(key: str, known: Collection[str]) -> str:
@@ -59,21 +48,13 @@ def hint(key: str, known: Collection[str]) -> str:
     >>> hint("yield_stress", ["width", "height"]).partition(":")[0]
     'plasticity, damage and fracture are not modelled'
     """
-    word = key.lower().replace("-", "_")
-    near = meant(key, known)
+    word, near = key.lower().replace("-", "_"), meant(key, known)
     if near is not None:
         return f"did you mean {near}, {CONVERTED[word]}?" if word in CONVERTED else f"did you mean {near}?"
-    if word in ELSEWHERE:
-        return ELSEWHERE[word]
-    topic = _topic(word, *word.split("_"))
-    topic = topic or _topic(_near(word, [item for topic in NOT_MODELLED for item in topic.words], 0.85))
-    return topic.answer if topic else "known are " + ", ".join(sorted(known))
+    asked = next((part for part in (word, *word.split("_")) if part in _ANSWERS), None)
+    asked = asked or _near(word, _ANSWERS, 0.85)
+    return ELSEWHERE.get(word) or (_ANSWERS[asked] if asked else f"known are {', '.join(sorted(known))}")
 
 
-def _near(word: str, known: Collection[str], alike: float) -> str | None:
-    found: list[str] = difflib.get_close_matches(word, known, n=1, cutoff=alike)
-    return found[0] if found else None
-
-
-def _topic(*words: str | None) -> Topic | None:
-    return next((topic for word in words for topic in NOT_MODELLED if word in topic.words), None)
+def _near(word: str, known: Iterable[str], alike: float) -> str | None:
+    return next(iter(difflib.get_close_matches(word, known, n=1, cutoff=alike)), None)

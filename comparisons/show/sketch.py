@@ -218,7 +218,7 @@ def draw(scene: Scene, path: Path) -> None:
         _side(sketch, contact)
     sketch.symbols()
     _motions(sketch)
-    for stage, loads in enumerate(scene.stage_loads):
+    for stage, loads in enumerate((scene.loads, *(one.load for one in scene.stages))):
         amounts = [(load, load.amount) for load in loads]
         sketch.loads(amounts, scene.stage_gravities[stage], _after(stage + 1))
     for pin in scene.pins:

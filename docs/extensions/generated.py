@@ -19,8 +19,8 @@ from comparisons.response.file import SCHEMA
 from comparisons.scene import Scene, load_scene, read_scene
 from comparisons.scene.read import LISTS
 from comparisons.scene.record import Record, lists_of, rule_of
+from comparisons.scene.rules import toml_value
 from comparisons.scene.stages import StageSpec
-from comparisons.scene.values import toml_value
 from comparisons.scene.words import NOT_MODELLED
 from docs.extensions.messages import REFERENCE, changed, groups
 

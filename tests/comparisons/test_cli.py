@@ -12,6 +12,10 @@ from pathlib import Path
 import pytest
 
 from comparisons.cli import main
+
+# the table of the commands: that it is whole is the contract
+from comparisons.cli.command import COMMANDS
+from comparisons.cli.options import STATED
 from comparisons.scene import built_in_scenes
 
 KS = built_in_scenes()["ks-cantilever"].replace("load_parameters = 50", "load_parameters = 4")
@@ -39,6 +43,19 @@ def test_scenes_are_listed(capsys):
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == sorted(built_in_scenes())
     assert all(len(line.split()) > 2 for line in lines)
+
+
+def test_the_table_of_commands_is_whole_and_its_old_names_are_gone():
+    commands = {name: stated["arguments"].split() for name, stated in STATED["command"].items()}
+    named = [argument for arguments in commands.values() for argument in arguments]
+    options = [argument.partition("=")[0] for argument in named if argument.startswith("-")]
+    assert list(commands) == list(COMMANDS)
+    assert set(named) == STATED["argument"].keys()
+    assert len(["--version", *options]) <= 35
+    assert not STATED["gone"].keys() & {*commands, *options}
+    for line in STATED["gone"].values():
+        assert {*re.findall(r"--[a-z-]+", line)} <= {"--version", "--help", *options}
+        assert {*re.findall(r"crossval ([a-z]+)", line)} <= commands.keys()
 
 
 def test_solve_prints_a_summary_and_writes_json_and_vtk(scene, capsys):
@@ -70,6 +87,7 @@ BAD = {
     "solve nosuch.toml --model tsm": "nosuch.toml",
     "solve my.toml --model tsm --out none/a.json": "none/a.json: cannot be written",
     "solve my.toml --out a.gif": "must end in",
+    "solve my.toml --out=": "--out: must end in .json, .csv",
     "solve my.toml --csv a.csv": "--csv: is no longer an option, see --out FILE.csv",
     "solve my.toml --model tsm --out my.toml": "must end in",
     "compare my.toml --out my.toml": "cannot be written",

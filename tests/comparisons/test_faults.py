@@ -193,7 +193,7 @@ def test_closed_streams(closed, end, tmp_path):
     assert (tmp_path / "a.json").exists() is (end[0] == 0)
 
 
-NO_CLUSTER = ["run", "s.toml", "--out", "out", "--cluster", "tcp://127.0.0.1:1"]
+NO_CLUSTER = ["run", "s.toml", "--out", "out", "--workers", "tcp://127.0.0.1:1"]
 
 
 @pytest.mark.slow_at("skfem")

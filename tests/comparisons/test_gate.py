@@ -50,7 +50,7 @@ def scene(tmp_path):
 )
 def test_bounds(scene, bounds, status, tmp_path, capsys):
     file = tmp_path / "gate.xml"
-    assert gate(scene, *bounds, elements=20, junit=file) == status
+    assert gate(scene, *bounds, elements=20, out=file) == status
     out, error = capsys.readouterr()
     assert out.startswith("ks-cantilever: tsm mixed 20 against rod\n")
     assert out.count("<=") == len(bounds) - status
@@ -119,7 +119,7 @@ BAD = {
     "ks-cantilever --max-error tip=1 --quick": "--quick: is no option of --max-error",
     "ks-cantilever two-pins --max-error tip=1": "--max-error: takes a single scene",
     "ks-cantilever two-pins --element mixed": "--element: is no option of several scenes",
-    "ks-cantilever --junit a.xml": "--junit: is no option of a single scene",
+    "ks-cantilever --max-error tip=1 --out a.txt": "a.txt: must end in .xml",
     "tip-load --max-error arc=1": "arc: the scene has none",
     "two-pins --max-error friction=1": "friction: no touched beam is held by one clamp alone",
 }

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from comparisons.cli import progress as shown  # its clock: a command draws what its own speed lets it
+from comparisons.cli import screen as shown  # its clock: a command draws what its own speed lets it
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.models.progress import Reached

@@ -2,7 +2,7 @@
 
 import ast
 import re
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterator
 from dataclasses import fields
 from pathlib import Path
@@ -24,8 +24,8 @@ ERRORS = {"RuleError", "FieldError", "InputError", "SceneError", "kind"}
 """Names by which the reader calls its errors; `kind` is the class of error that a caller hands down."""
 HANDED = {"read_text", "refused"}
 """Functions that are given a sentence as their second argument."""
-NAMES = {"rule", "absent", "reason", "APART", "ROLLS", "sentence"}
-"""Variables that hold a sentence."""
+PASSED = {"rule", "absent", "reason", "sentence", "str(error)", "self.rule"}
+"""What holds the sentence of a caller."""
 RULE = "must be {}"
 """The sentence of a rule for a single value: what the rule accepts."""
 
@@ -35,24 +35,24 @@ def sentences(source: str) -> set[str]:
 
     Raises ValueError for a sentence that is made in a way that is not understood here.
     """
-    said = []
+    said, kept = list[ast.expr](), defaultdict[str, list[ast.expr]](list)
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
             said += node.args[-1:] if node.func.id in ERRORS else []
             said += node.args[1:2] if node.func.id in HANDED else []
-        elif isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
-            said += [node.value] if node.targets[0].id in {"rule", "absent", "APART", "ROLLS"} else []
-    return {words for value in said for words in _template(value)}
+        elif isinstance(node, ast.Assign):
+            kept[ast.unparse(node.targets[0])].append(node.value)
+    return {
+        words for value in said for one in kept[ast.unparse(value)] or [value] for words in _template(one)
+    }
 
 
 def _template(value: ast.expr) -> Iterator[str]:
-    if isinstance(value, ast.Constant):
-        yield value.value
-    elif isinstance(value, ast.JoinedStr):
+    if isinstance(value, ast.JoinedStr):
         yield "".join(part.value if isinstance(part, ast.Constant) else "{}" for part in value.values)
-    elif not (
-        ast.unparse(value) in NAMES | {"str(error)", "self.rule"} or "RecordError(" in ast.unparse(value)
-    ):
+    elif isinstance(value, ast.Constant):
+        yield value.value
+    elif not (ast.unparse(value) in PASSED or "RecordError(" in ast.unparse(value)):
         raise ValueError(f"line {value.lineno}: {ast.unparse(value)} is no sentence")
 
 

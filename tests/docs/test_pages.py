@@ -15,19 +15,17 @@ from tests.docs.snippets import ROOT, SLOW, TARGETS, blocks, pages, run_line, ru
 
 TEXTS = pages()
 README, HOW_TO = TEXTS["README.md"], "docs/how-to/"
+ONE_BY_ONE = ("README.md", f"{HOW_TO}commands.md")
+"""Pages whose commands are run one by one."""
 RUN = {
     name: text
     for name, text in TEXTS.items()
-    if any(kind for kind, _ in blocks(text)) and name not in ("README.md", f"{HOW_TO}commands.md")
+    if any(kind for kind, _ in blocks(text)) and name not in ONE_BY_ONE
 }
-"""Pages that are run as a whole; the commands of the other two are run one by one."""
+"""Pages that are run as a whole."""
 LONG = {name for name, text in RUN.items() if any(f"\n{command}" in text for command in SLOW)}
-SECONDS = set(
-    re.findall(
-        r"\S+/(?:accuracy|cards|ci-gate|element|material|paraview|program|python|scene|study|tutorial)\.md",
-        " ".join(RUN),
-    )
-)
+LENGTHY = r"/(?:accuracy|cards|ci-gate|element|material|paraview|program|python|scene|study|tutorial)\.md"
+SECONDS = {name for name in RUN if re.search(LENGTHY, name)}
 """Pages that take more than a second without the commands of `SLOW`."""
 
 
@@ -47,7 +45,7 @@ def test_snippets_run_and_print_what_the_page_says(page, slow, tmp_path, monkeyp
 
 LINES = dict.fromkeys(
     shlex.join(shlex.split(line, comments=True))
-    for page in ("README.md", f"{HOW_TO}commands.md")
+    for page in ONE_BY_ONE
     for kind, text in blocks(TEXTS[page])
     if kind == "sh"
     for line in text.splitlines()
@@ -96,7 +94,7 @@ def test_commands_run_and_print_what_they_are_for(line, tmp_path, monkeypatch, c
     else:
         said = max((key for key in SAID if line[9:].startswith(key.replace("_", " "))), key=len)
         assert [word for word in SAID[said].split() if word.replace("_", " ") not in out] == []
-    for written in re.findall(r" (?:--out|--junit) (\S\S+)", line):
+    for written in re.findall(r" --out (\S\S+)", line):
         assert Path(written).is_file() or any(Path(written).iterdir())
 
 

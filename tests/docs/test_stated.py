@@ -1,6 +1,5 @@
 """Every measured number of the results has a mark, and every mark has a test that measures its numbers."""
 
-import ast
 import re
 from collections.abc import Iterator
 from functools import cache
@@ -17,18 +16,11 @@ RESULTS = [ROOT / "README.md", *sorted((ROOT / "docs" / "results").glob("*.md"))
 def names_in_tests() -> frozenset[str]:
     """Return the first argument of every call of ``stated``, and the mark of every `Gate`, with {} for what is computed."""
     found = set()
-    texts = [path.read_text() for path in (ROOT / "tests").rglob("*.py")]
-    for call in (
-        node for text in texts if "stated(" in text or "Gate(" in text for node in ast.walk(ast.parse(text))
-    ):
-        if isinstance(call, ast.Call) and getattr(call.func, "id", "") in ("stated", "Gate"):
-            if not isinstance(call.args[0], ast.Constant | ast.JoinedStr):
-                continue
-            parts = getattr(call.args[0], "values", [call.args[0]])
-            words = [str(part.value) if isinstance(part, ast.Constant) else "{}" for part in parts]
-            if call.func.id == "Gate":
-                words = ["bench.", *(word if word == "{}" else slug(word) for word in words)]
-            found.add("".join(words).strip("-"))
+    for path in (ROOT / "tests").rglob("*.py"):
+        for call, words in re.findall(r'\b(stated|Gate)\(\s*f?"([^"]*)"', path.read_text()):
+            parts = re.split(r"\{[^}]*\}", words)
+            named = "{}".join(parts) if call == "stated" else "bench." + "{}".join(map(slug, parts))
+            found.add(named.strip("-"))
     return frozenset(found)
 
 

@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 from comparisons.scene import Scene, SceneError, read_scene
 
 # how a scene file writes a value, however broken: no reader of TOML writes
-from comparisons.scene.values import toml_value
+from comparisons.scene.rules import toml_value
 
 Tables = dict[str, Any]
 """A scene as its TOML file holds it."""

@@ -10,7 +10,7 @@ from comparisons.claims.manual.problem import Problem, Quantity, read_problem
 from comparisons.files import writable_folder, write_text
 from comparisons.output import Report, json_text
 from comparisons.scene import to_tables
-from comparisons.scene.toml import json_schema
+from comparisons.scene.read import json_schema
 
 SYMBOLS = {
     "t": "load parameter, 0 to 1; loads and prescribed motions grow with it, a pin is at the fraction t of its path's length",

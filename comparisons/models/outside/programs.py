@@ -6,10 +6,9 @@ A program gets the resolved scene as JSON text and returns a response as JSON te
 from __future__ import annotations
 
 import json
-import re
 import sys
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Container
+from collections.abc import Container
 from contextlib import redirect_stdout
 from dataclasses import dataclass
 from functools import cache, lru_cache
@@ -284,21 +283,19 @@ def read_program(path: Path) -> Program:
     return Program(Command(folder=path.resolve().parent, **given))
 
 
-def _list(items: str, item: Any, right: Callable[[Any], object] = lambda _: True) -> Rule:
-    return rules.several(f"a list of {items}", item, right)
+def _list(items: str, rule: ValueRule, least: int = 0) -> ValueRule:
+    return ValueRule(f"a list of {items}", rules.several(rule.schema, least))
 
 
 RULES: dict[str, Rule] = {
     "name": rules.name,
-    "command": _list("texts, the program first", rules.text, bool),
+    "command": _list("texts, the program first", rules.text, 1),
     "label": rules.text,
     "seconds": rules.positive,
     "memory": rules.positive,
     "environment": _list("texts", rules.text),
     "elements": _list("whole numbers", rules.whole_number),
-    "colour": ValueRule(
-        "a colour, as #AA3377", lambda value: re.fullmatch("#[0-9a-fA-F]{6}", str(value)), str
-    ),
+    "colour": ValueRule("a colour, as #AA3377", rules.worded("^#[0-9a-fA-F]{6}$")),
     "continuum": rules.truth,
 }
 """The keys of a program file with the rules of their values."""

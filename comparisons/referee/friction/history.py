@@ -20,7 +20,6 @@ from comparisons.referee.rod import face_of
 from comparisons.referee.state import Equilibrium
 from comparisons.response import Response
 from comparisons.scene import ContactSpec, Scene
-from comparisons.scene.coherence import signed_gap
 
 _ITERATIONS = 60
 """Largest number of steps of a root."""
@@ -281,7 +280,7 @@ def at_rest(scene: Scene, spec: ContactSpec) -> Hold:
     there = scene.place(spec.node) if "." in spec.node else scene.pin(spec.node).position(0.0)
     face = face_of(scene, spec)
     steep = face.slope
-    arc = min(max(signed_gap(beam, "left", 0.0, there)[1], 0.0), 1.0) * beam.length
+    arc = min(max(beam.projected(there)[1], 0.0), 1.0) * beam.length
     for _ in range(_FEET if steep else 0):
         apart = np.array(there) - np.array(beam.place(arc / beam.length))
         ahead = float(apart @ beam.tangent(arc / beam.length)) + steep * face.reach(arc)

@@ -33,7 +33,7 @@ def test_a_cluster_that_loses_a_worker(cluster, whole, tiny, tmp_path):
 
     killer = Thread(target=kill)
     killer.start()
-    status = crossval("run", tiny, "--out", tmp_path, "--cluster", cluster.scheduler_address)
+    status = crossval("run", tiny, "--out", tmp_path, "--workers", cluster.scheduler_address)
     killer.join()
     assert status == 0
     assert 3 <= killed[0] < CASES
@@ -43,7 +43,7 @@ def test_a_cluster_that_loses_a_worker(cluster, whole, tiny, tmp_path):
 @pytest.mark.slow_at("tcp://127.0.0.1:9")
 @pytest.mark.parametrize("address", ["nonsense", "tcp://127.0.0.1:9"])
 def test_no_cluster_there(address, tiny, tmp_path, capsys):
-    assert crossval("run", tiny, "--out", tmp_path, "--cluster", address) == 2
+    assert crossval("run", tiny, "--out", tmp_path, "--workers", address) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"crossval: cluster {address}: ")
 
@@ -82,7 +82,7 @@ def test_a_scheduler_that_dies_is_one_line_and_keeps_what_is_done(tiny, tmp_path
         with dask("worker", address, "--nthreads", "1", "--no-nanny"):
             killer = Thread(target=kill)
             killer.start()
-            status = crossval("run", tiny, "--out", tmp_path, "--cluster", address)
+            status = crossval("run", tiny, "--out", tmp_path, "--workers", address)
             killer.join()
     assert status == 2
     assert 3 <= recorded(file) < CASES

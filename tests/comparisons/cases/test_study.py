@@ -192,7 +192,7 @@ ARGUMENTS = {
     "nosuch: must be a study file, NAME.toml, or one of paper, fig7a": ["run", "nosuch"],
     "nosuch.toml: no such file": ["run", "nosuch.toml"],
     "argument --workers: 0: must be a whole number": ["run", "STUDY", "--workers", "0"],
-    "not allowed with argument --workers": ["run", "STUDY", "--workers", "2", "--cluster", "tcp://a:1"],
+    "--cluster: is no longer an option, see --workers ADDRESS": ["run", "STUDY", "--cluster", "tcp://a:1"],
     "results: is no longer a command, see": ["results", "a.sqlite"],
     "STUDY: cannot be written": ["run", "STUDY", "--out", "STUDY"],
     "--workers: is no option of locking": ["run", "locking", "--workers", "2"],

@@ -12,7 +12,7 @@ from comparisons.scene import BeamSpec, FieldError, SceneError, built_in_scenes,
 # the registry of words that are no keys: that each leads to a key is the contract
 from comparisons.scene.words import CONVERTED, ELSEWHERE, NOT_MODELLED, OTHER_NAMES, hint
 from docs.extensions.messages import SCENES, Message, messages
-from tests.comparisons.scene.test_special_keys import SCHEMA
+from tests.comparisons.scene.test_special_keys import KEYS
 
 Output = pytest.CaptureFixture[str]
 TWELVE = Path(__file__).with_name("twelve.toml").read_text(encoding="utf-8")
@@ -159,27 +159,15 @@ def test_what_needs_too_much_memory_is_refused(tmp_path, capsys):
     assert capsys.readouterr().err.startswith(f"crossval: {said}")
 
 
-def known(table: str) -> set[str]:
-    """The keys of a table, of the file itself under the empty name."""
-    schema = {"items": SCHEMA} if not table else SCHEMA
-    for name in table.split("."):
-        schema = schema.get("items", schema)
-        schema = schema["properties"].get(name, {}) if name else schema
-    return set(schema.get("items", schema)["properties"])
-
-
-TABLES = {
-    name: known(name) for name in ("", *SCHEMA["properties"], "stage.pin", "stage.load", "stage.support")
-}
-KEYS = set().union(*TABLES.values())
+TABLES = {table: {key for there, key in KEYS if there == table} for table, _ in KEYS}
 OTHERS = {name for names in OTHER_NAMES.values() for name in names}
 
 
 def test_words_that_are_no_keys_lead_to_keys_or_to_what_is_not_modelled():
-    words = [word for topic in NOT_MODELLED for word in topic.words]
+    words, keys = [word for topic in NOT_MODELLED for word in topic.words], {key for _, key in KEYS}
     assert len(set(words)) == len(words)
-    assert not set(words) & {*KEYS, *ELSEWHERE, *OTHERS}
-    assert set(OTHER_NAMES) <= KEYS
+    assert not set(words) & {*keys, *ELSEWHERE, *OTHERS}
+    assert set(OTHER_NAMES) <= keys
     for key, names in OTHER_NAMES.items():
         assert len(set(names)) == len(names)
         assert key not in names

@@ -15,13 +15,14 @@ from jsonschema import Draft202012Validator
 
 from comparisons.cli import main
 from comparisons.scene import SceneError, built_in_scenes, load_scene, read_scene, to_toml
+from tests.comparisons.scene.test_special_keys import KEYS as ALL
 from tests.comparisons.scene.test_special_keys import SCHEMA
 from tests.fuzz.world import toml_text
 
 TEMPLATE = resources.files("comparisons.scene").joinpath("template.toml").read_text()
 THERE = TEMPLATE.replace('side = "right"', 'side = "below"')
 VALIDATOR = Draft202012Validator(SCHEMA)
-KEYS = {kind: set(table.get("items", table)["properties"]) for kind, table in SCHEMA["properties"].items()}
+KEYS = {kind: {key for table, key in ALL if table == kind} for kind in SCHEMA["properties"]}
 KS = built_in_scenes()["ks-cantilever"]
 Output = pytest.CaptureFixture[str]
 
@@ -58,6 +59,12 @@ def test_a_new_scene_is_like_a_built_in_one():
         assert to_toml(load_scene("mine.toml")) == to_toml(load_scene(name)).replace(f'"{name}"', '"mine"', 1)
         assert mine.read_text().count("#") == text.count("#")
         mine.unlink()
+
+
+def test_a_new_scene_is_not_like_a_file_with_the_name_of_a_built_in_one(capsys):
+    Path("mine.toml").write_text(KS)
+    said = refused(["new", "other", "--like", "mine.toml"], capsys)
+    assert said == "mine.toml: must be a built-in scene, crossval scenes lists them"
 
 
 @pytest.mark.parametrize(

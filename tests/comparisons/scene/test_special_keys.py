@@ -25,9 +25,8 @@ from comparisons.scene import (
 )
 
 # where a key is declared, and what follows from it
-from comparisons.scene.read import LISTS
+from comparisons.scene.read import LISTS, json_schema
 from comparisons.scene.record import optional, rule_of
-from comparisons.scene.toml import json_schema
 from docs.extensions.generated import scene_file
 
 SCHEMA = json_schema()
@@ -88,21 +87,25 @@ def test_a_scene_is_written_and_read(name):
     assert scene.name == ("s" if name in USES else name)
 
 
-def written(value: Any, path: str = "") -> Iterator[str]:
-    """Yield the keys of tables, as ``stage.pin.path``."""
+def written(value: Any, table: str = "") -> Iterator[tuple[str, str]]:
+    """Yield the tables of a file, as ``stage.pin``, with each of their keys; the file itself has the empty name."""
     for one in value if isinstance(value, list) else [value]:
         for key, inner in one.items() if isinstance(one, dict) else ():
-            yield from (f"{path}{key}", *written(inner, f"{path}{key}."))
+            yield from ((table, key), *written(inner, f"{table}.{key}".lstrip(".")))
 
 
-def listed(schema: dict[str, Any], path: str = "") -> Iterator[str]:
+def listed(schema: dict[str, Any], table: str = "") -> Iterator[tuple[str, str]]:
     for key, rule in schema.get("items", schema).get("properties", {}).items():
-        yield from (f"{path}{key}", *listed(rule, f"{path}{key}."))
+        yield from ((table, key), *listed(rule, f"{table}.{key}".lstrip(".")))
+
+
+KEYS = set(listed(SCHEMA))
+"""Every key of a scene file, with its table."""
 
 
 def test_every_key_of_the_schema_is_written_and_read_by_a_scene_above():
     texts = [to_toml(read_scene(text, "s")) for text in WRITTEN.values()]
-    assert {key for text in texts for key in written(tomllib.loads(text))} == set(listed(SCHEMA))
+    assert {key for text in texts for key in written(tomllib.loads(text))} == KEYS
 
 
 class Worn(ContactSpec):

@@ -139,8 +139,9 @@ def test_errors_are_relative_and_the_worst_is_named_on_every_way_out(tmp_path, m
     monkeypatch.setitem(MEASURES, "told", telling(*(answer for answer, *_ in JUDGED)))
     files = [made_up(tmp_path, len(JUDGED)), PROBLEMS["roll-up"]]
     monkeypatch.setattr("comparisons.claims.manual.problems", lambda _: files)
-    junit, folder = tmp_path / "junit.xml", tmp_path / "m"
-    assert main(["run", "manual", "--out", str(folder), "--junit", str(junit), "--quiet"]) == 1
+    folder = tmp_path / "m"
+    junit = folder / "junit.xml"
+    assert main(["run", "manual", "--out", str(folder), "--quiet"]) == 1
     out, err = capsys.readouterr()
     failures = [failure for *_, failure in JUDGED]
     assert "2 cases, 10 answers, 5 beyond their tolerance" in out

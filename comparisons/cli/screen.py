@@ -1,16 +1,41 @@
-"""Lines and bars: what is being done, and how far it is."""
+"""What a command says: lines and bars on standard error, the solutions that stopped, and its exit status."""
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from shutil import get_terminal_size
 from time import monotonic
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
 
+from comparisons.files import printable
 from comparisons.models.progress import REDRAW, Count, Reached, Watch, bar
 
+if TYPE_CHECKING:
+    from comparisons.response import Response
+    from comparisons.scene import Scene
+
+DONE, WRONG, BAD_INPUT, STOPPED, INTERRUPTED = 0, 1, 2, 3, 130
 PATIENCE = 2.0
 """Seconds that a work takes without a bar."""
+
+
+def report(line: str) -> None:
+    """Report a line on standard error."""
+    print(printable(line), file=sys.stderr, flush=True)
+
+
+def files_named(*files: object) -> None:
+    """Print the names of the files that were written."""
+    print("files:", *(f"  {path}" for path in files), sep="\n")
+
+
+def exit_status(scene: "Scene", responses: "Iterable[tuple[str, Response]]") -> int:
+    """Name every solution that stopped, by its label, and what was reached; return the exit status."""
+    stopped = [(label, response) for label, response in responses if not response.completed]
+    for label, response in stopped:
+        reached = f"{len(response.load_parameter)} of {len(scene.times)} load parameters reached"
+        report(f"crossval: {label}{response.status}: {response.message}; {reached}")
+    return STOPPED if stopped else DONE
 
 
 @contextmanager
@@ -22,15 +47,13 @@ def _line(*, quiet: bool, stream: TextIO) -> Iterator[Callable[[str], None]]:
         nonlocal drawn
         if shown and monotonic() - drawn >= REDRAW:
             drawn = monotonic()
-            stream.write(f"\r{text[: get_terminal_size().columns - 1]}\x1b[K")
-            stream.flush()
+            print(f"\r{text[: get_terminal_size().columns - 1]}\x1b[K", end="", file=stream, flush=True)
 
     try:
         yield draw
     finally:
         if shown:
-            stream.write("\r\x1b[K")
-            stream.flush()
+            print("\r\x1b[K", end="", file=stream, flush=True)
 
 
 @contextmanager
@@ -51,10 +74,9 @@ def watching(label: str, *, quiet: bool = False, stream: TextIO | None = None) -
 @contextmanager
 def staging(label: str, *, quiet: bool = False, stream: TextIO | None = None) -> Iterator[Count]:
     """Write the line of a stage of the work, and yield a `Count`, which draws a bar below after `PATIENCE` seconds."""
-    stream = stream or sys.stderr
+    stream, began = stream or sys.stderr, monotonic()
     if not quiet:
         print(label, file=stream, flush=True)
-    began = monotonic()
 
     def show(done: int, parts: int) -> None:
         if monotonic() - began >= PATIENCE:
