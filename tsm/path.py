@@ -170,7 +170,7 @@ class Track:
                 break
             step = point.t - state.load_parameter
             near = (one for one in ahead if one.load_parameter - state.load_parameter <= _NEAR * step)
-            kept += [(state, *near)] * (step > 0)
+            kept += [(state, *near)] if step > 0 else []
         return kept[::-1]
 
     def predicted(self, t: float) -> State:
