@@ -136,7 +136,7 @@ GOOD = "[program]\nname = 'a'\ncommand = ['c']\n"
     ("text", "message"),
     [
         ("", "program = (missing): must be given"),
-        (GOOD.replace("'a'", "'rod'"), "must not be the name of a model"),
+        *((GOOD.replace("'a'", name), "must not be the name of a model") for name in ("'rod'", "'opensees'")),
         (GOOD.replace("['c']", "'c'"), 'program.command = "c": must be a list'),
         (GOOD + "seconds = 0", "program.seconds = 0: must be a positive number"),
         (GOOD + "colour = 'red'", "must be a colour, as #AA3377"),
