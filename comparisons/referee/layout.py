@@ -181,10 +181,6 @@ class Layout:
         """How friction holds the contacts, by pair; none without friction."""
         return {touch.spec.pair: touch.grip for touch in self.touches if touch.grip is not None}
 
-    def rod(self, beam: int) -> Rod:
-        """Return the rod of a beam."""
-        return next(part.rod for part in self.parts if part.beam == beam)
-
     def touch(self, pair: str) -> Touch:
         """Return the closed contact of a pair."""
         return next(item for item in self.touches if item.spec.pair == pair)
