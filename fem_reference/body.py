@@ -58,8 +58,12 @@ class Body:
         entries = element_entries(self.mesh, self.law.tangent, u)
         if not np.all(np.isfinite(entries)):
             return None
-        band = self.stiffness.band(entries)
-        return factorise(band if self.anchor is None else band + self.anchor)
+
+        def band() -> Floats:
+            K = self.stiffness.band(entries)
+            return K if self.anchor is None else K + self.anchor
+
+        return factorise(band)
 
     def least_volume(self, u: Floats) -> float:
         """Least determinant of the deformation gradient."""

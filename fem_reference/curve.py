@@ -46,12 +46,12 @@ class ContactCurve:
     kernel: Floats  # weights ``(q,)`` of these points
 
     def basis(self, zeta: float) -> Floats:
-        """Averaged cardinal splines and their first two derivatives at ``zeta``, ``(3, m)``."""
+        """Averaged cardinal splines and their derivatives at ``zeta``, ``(2, m)``."""
         k, factors = self.pieces(zeta)
-        first, both = int(k.min()), np.zeros((2, 3, self.stations.size))
+        first, both = int(k.min()), np.zeros((2, 2, self.stations.size))
         hot = np.eye(int(np.ptp(k)) + 2)[[k - first, k - first + 1]]
         part = slice(first, first + hot.shape[2])
-        both[..., part] = np.tensordot(factors.reshape(3, 2, 2, -1), hot, ((2, 3), (0, 1))).swapaxes(0, 1)
+        both[..., part] = np.tensordot(factors[:2].reshape(2, 2, 2, -1), hot, ((2, 3), (0, 1))).swapaxes(0, 1)
         return np.asarray(both[0] + (self.spread @ both[1].T).T)
 
     @cached_property

@@ -31,11 +31,11 @@ class Factor:
     negatives: Callable[[], int]  # the number of negative eigenvalues
 
 
-def factorise(band: Floats) -> Factor | None:
-    """Factorise a symmetric matrix in lower band storage ``(width + 1, m)``; None if it is singular."""
-    lower, failed = dpbtrf(band, lower=1)
+def factorise(band: Callable[[], Floats]) -> Factor | None:
+    """Factorise a symmetric matrix; None if it is singular. ``band`` makes its lower band storage ``(width + 1, m)`` anew."""
+    lower, failed = dpbtrf(band(), lower=1, overwrite_ab=1)
     if failed:
-        return _indefinite(band)
+        return _indefinite(band())
 
     def triangular(right: Floats, trans: str) -> Floats:
         return np.asarray(dtbtrs(lower, right, uplo="L", trans=trans)[0]).reshape(right.shape)

@@ -148,7 +148,7 @@ def from_basis(
 def _points(element: Any, X: Floats, positions: Floats) -> tuple[Points, Floats]:
     """The points X ``(2, q)`` in elements whose nodes are at ``positions`` ``(e, k, 2)``, and the determinants ``(e, q)`` there."""
     slopes = shape_slopes(element, X)
-    inverse, volumes = inverted(np.einsum("eaj,Kqa->jKeq", positions, slopes))
+    inverse, volumes = inverted(np.einsum("eaj,Kqa->jKeq", positions, slopes, order="C"))
     inverse = np.where(np.abs(inverse) > 1e-13 * np.abs(inverse).max(), inverse, 0.0)
     aligned = not (inverse[0, 1].any() or inverse[1, 0].any())
     return Points(slopes=slopes, inverse=inverse, aligned=aligned), volumes

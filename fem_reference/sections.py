@@ -59,33 +59,37 @@ def section_forces(result: Result, strip: str, k: int, stations: Floats | None =
     """
     body = result.model.body(strip)
     X = gauss_stations(body) if stations is None else np.asarray(stations, dtype=float)
-    points, shares, heights = section_points(body.strip, body.mesh.places, body.mesh.edges, X)
-    weights = (body.strip.width_at(X) * heights)[:, None] * shares
+    own = body.strip
+    points, shares, heights = section_points(own, body.mesh.places, body.mesh.edges, X)
+    weights = (own.width_at(X) * heights)[:, None] * shares
+
+    def integral(values: Floats) -> Floats:
+        """Integrals ``(m, ...)`` over the sections of values ``(p, ...)``."""
+        return np.asarray(
+            np.einsum("mq,mq...->m...", weights, values.reshape(*weights.shape, *values.shape[1:]))
+        )
+
+    def from_mean(values: Floats) -> Floats:
+        """Values ``(p, ...)`` less their means over the sections."""
+        means = (integral(values).T / weights.sum(axis=1)).T
+        return np.asarray(values - np.repeat(means, weights.shape[1], axis=0))
+
     u = result.states[k].u[body.part]
     F = gradient_at(body.mesh, u, points)
-    P = body.law.stress(F)
-    N, _ = body.strip.directions(points[:, 0])
-    traction = P[:, 0] * N[0] + P[:, 1] * N[1]
-    eshelby = (traction * (F[:, 0] * N[0] + F[:, 1] * N[1])).sum(axis=0) - body.law.energy(F)
-    x = body.strip.placed(points) + body.mesh.basis.probes(points.T) @ u
-    shape = (X.size, -1)
-    p = traction.T.reshape(*shape, 2)
-    mean = (weights[:, :, None] * x.reshape(*shape, 2)).sum(axis=1) / weights.sum(axis=1)[:, None]
-    arm = x.reshape(*shape, 2) - mean[:, None]
-    height = points[:, 1].reshape(shape)
-    height = height - (weights * height).sum(axis=1, keepdims=True) / weights.sum(axis=1, keepdims=True)
-    up = ((weights * height)[:, :, None] * arm).sum(axis=1)
-    rotation = np.arctan2(-up[:, 0], up[:, 1])
-    f = (weights[:, :, None] * p).sum(axis=1)
-    c, s = np.cos(rotation), np.sin(rotation)
+    N, _ = own.directions(points[:, 0])
+    p, along = (np.einsum("ijp,jp->pi", A, N) for A in (body.law.stress(F), F))
+    arm = from_mean(own.placed(points) + body.mesh.basis.probes(points.T) @ u)
+    up = integral(from_mean(points[:, 1])[:, None] * arm)
+    rotation, f = np.arctan2(-up[:, 0], up[:, 1]), integral(p)
+    turned = f @ (1, 1j) * np.exp(-1j * rotation)
     return SectionForces(
         stations=X,
-        N=c * f[:, 0] + s * f[:, 1],
-        V=-s * f[:, 0] + c * f[:, 1],
-        M=(weights * (arm[:, :, 0] * p[:, :, 1] - arm[:, :, 1] * p[:, :, 0])).sum(axis=1),
-        rotation=rotation + np.arctan2(*body.strip.frame[::-1, 0]),
-        force=f @ body.strip.frame.T,
-        material_force=(weights * eshelby.reshape(shape)).sum(axis=1),
+        N=np.asarray(turned.real, dtype=float),
+        V=np.asarray(turned.imag, dtype=float),
+        M=integral(arm[:, 0] * p[:, 1] - arm[:, 1] * p[:, 0]),
+        rotation=rotation + np.arctan2(*own.frame[::-1, 0]),
+        force=f @ own.frame.T,
+        material_force=integral((p * along).sum(axis=1) - body.law.energy(F)),
     )
 
 
