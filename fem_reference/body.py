@@ -20,9 +20,6 @@ from fem_reference.material import Law, elastic_law
 from fem_reference.mesh import Discretisation, structured_mesh
 from fem_reference.strip import Strip
 
-ANCHORED = "start"
-"""End of a strip without a clamp at which its anchor is."""
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Body:
@@ -88,7 +85,7 @@ def build_body(strip: Strip, before: Sequence[Body] = ()) -> Body:
     """Discretise a strip and its clamps; its nodes and unknowns follow those of the bodies ``before``."""
     mesh = discretise(strip)
     expansion = clamp(strip, mesh)
-    springs = None if strip.clamped else anchor(strip, mesh, expansion, ANCHORED)
+    springs = None if strip.clamped else anchor(strip, mesh, expansion)
     stiffness = pattern(mesh, expansion, springs)
     law = elastic_law(strip.material, strip.youngs_modulus, strip.poissons_ratio, strip.plane)
     first = before[0].strip if before else strip

@@ -173,19 +173,13 @@ def project(curve: ContactCurve, X: Floats, point: Floats) -> Projection:
 
 
 def closest(curve: ContactCurve, Y: Floats, D: Floats) -> tuple[float, bool]:
-    """Coordinate of the point closest to the origin by Newton's method from the closest station, and whether it is stationary.
-
-    The curve is continued by one spacing beyond its ends, so that a point beyond an end still has a projection. Near a
-    centre of curvature the root is searched between the neighbouring stations.
-    """
+    """Coordinate of the point closest to the origin by Newton's method from the closest station, and whether it is stationary."""
     s = curve.stations
+    # the curve goes on by one spacing beyond its ends, so that a point beyond an end still has a projection
     low, high = 2 * s[0] - s[1], 2 * s[-1] - s[-2]
     k = int(np.argmin((Y**2).sum(axis=1)))
-    zeta, around, size = (
-        float(s[k]),
-        (s[k - 1] if k else low, s[k + 1] if k + 1 < s.size else high),
-        s[-1] - s[0],
-    )
+    around = (s[k - 1] if k else low, s[k + 1] if k + 1 < s.size else high)
+    zeta, size = float(s[k]), s[-1] - s[0]
 
     def slope(zeta: float) -> float:
         r, r1, _ = curve.at(zeta, Y, D)

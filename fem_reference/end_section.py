@@ -125,9 +125,9 @@ def inner_rows(strip: Strip, mesh: Discretisation, at: float) -> tuple[csr_matri
     return csr_matrix(np.stack([shares, moments]) @ mesh.basis.probes(points.T)), float(heights[0])
 
 
-def anchor(strip: Strip, mesh: Discretisation, expansion: csr_matrix, end: str) -> csr_matrix:
-    """Stiffness ``(m, m)`` of springs `anchor_stiffness` on mean displacement and first moment of an end."""
-    columns = expansion.T @ kron(end_rows(strip, mesh, end)[0], np.eye(2)).T
+def anchor(strip: Strip, mesh: Discretisation, expansion: csr_matrix) -> csr_matrix:
+    """Stiffness ``(m, m)`` of springs `anchor_stiffness` on mean displacement and first moment of the start."""
+    columns = expansion.T @ kron(end_rows(strip, mesh, "start")[0], np.eye(2)).T
     return csr_matrix(anchor_stiffness(strip) * columns @ columns.T)
 
 

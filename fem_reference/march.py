@@ -137,16 +137,19 @@ class _March:
         end = next((turn for turn in self.model.problem.turns if t + slack < turn < target - slack), target)
         return end if self.trial >= (end - t) * (1 - 1e-6) else t + self.trial
 
-    def end(self, status: Status, at: Accepted | None = None, pair: int | None = None) -> Status:
-        """End the path at a state, for a contact."""
-        self.track = (*self.track, at or self.last)
-        self.step.cause, self.step.pair, self.step.load_parameter = status, pair, self.last.t
-        return status
-
-    def end_critical(self, status: Status, point: CriticalPoint) -> Status:
-        """End the path at a critical point."""
-        self.step.critical.append(point)
-        self.step.cause, self.step.pair, self.step.load_parameter = status, None, point.load_parameter
+    def end(
+        self,
+        status: Status,
+        at: Accepted | None = None,
+        pair: int | None = None,
+        point: CriticalPoint | None = None,
+    ) -> Status:
+        """End the path at a state, for a contact, or at a critical point."""
+        step, self.track = self.step, (*self.track, at or self.last)
+        step.cause, step.pair, step.load_parameter = status, pair, self.last.t
+        if point is not None:
+            step.critical.append(point)
+            step.load_parameter = point.load_parameter
         return status
 
     def judge(self, candidate: Accepted, h: float) -> Status | None:
@@ -191,7 +194,7 @@ class _March:
             else None
         )
         if following is None:
-            return self.end_critical(Status.BIFURCATION, point)
+            return self.end(Status.BIFURCATION, point=point)
         self.step.critical.append(point)
         self.accept(following, restart=following is not candidate)
         if following is not candidate:
@@ -246,7 +249,7 @@ class _March:
             return None
         found = limit_point(last, max(self.trial, min_step))
         if found is not None and last.t <= found.load_parameter <= target:
-            return self.end_critical(Status.LIMIT_POINT, found)
+            return self.end(Status.LIMIT_POINT, point=found)
         return self.at_smallest_step(attempt, goal) if at_floor else None
 
     def approaches_fold(self) -> bool:
@@ -262,7 +265,7 @@ class _March:
         last, step = self.last, self.step
         limit = opening_limit(last)
         if limit is not None:
-            return self.end_critical(Status.LIMIT_POINT, limit)
+            return self.end(Status.LIMIT_POINT, point=limit)
         lost = slipped_off(last.state, attempt)
         if lost is None:
             return Status.CUTBACK_FLOOR

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.sparse import block_diag, csr_matrix, identity, kron
 
 from fem_reference.arrays import Floats
-from fem_reference.body import ANCHORED, Body, build_body
+from fem_reference.body import Body, build_body
 from fem_reference.conditions import ENDS
 from fem_reference.contact import Carrier, Pair
 from fem_reference.curve import contact_curve
@@ -134,7 +134,7 @@ class _Discrete:
         for body in self.bodies:
             strip, mesh = body.strip, body.mesh
             ends = {f"{strip.name}.{end}": end for end in ENDS}
-            anchored = "" if strip.clamped else f"{strip.name}.{ANCHORED}"
+            anchored = "" if strip.clamped else f"{strip.name}.start"
             found = {
                 node: end_rows(strip, mesh, end) for node, end in ends.items() if node in needed | {anchored}
             }

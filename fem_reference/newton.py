@@ -62,7 +62,7 @@ def iterate(state: State, control: Control | None = None) -> Attempt:
     its length (natural monotonicity test, Deuflhard, Newton Methods for Nonlinear Problems, 2004, section 3.3).
     """
     most = state.model.settings.max_iterations
-    base, last, damping = state, Correction(u=np.full((1, 2), np.inf), forces=np.zeros(0)), 1.0
+    base, last, size, damping = state, Correction(u=0 * state.u, forces=0 * state.forces), np.inf, 1.0
     for iteration in range(most + 1):
         attempt = converged(state)
         done = control is None or abs(control.missing(state)) <= displacement_tolerance(state)
@@ -77,10 +77,11 @@ def iterate(state: State, control: Control | None = None) -> Attempt:
         if correction is None:
             attempt = replace(attempt, status=Status.SINGULAR)
             break
-        if correction.size > _LARGEST_GROWTH * last.size and damping > _SMALLEST_DAMPING:
+        following = float(np.abs(correction.u).max())
+        if following > _LARGEST_GROWTH * size and damping > _SMALLEST_DAMPING:
             damping /= 2
         else:
-            base, last, damping = state, correction, 1.0
+            base, last, size, damping = state, correction, following, 1.0
         state = corrected(base, last, damping)
     return replace(attempt, iterations=iteration)
 
@@ -130,10 +131,8 @@ def round_off(state: State) -> tuple[float, float]:
 def equilibrium(guess: State, *, keep_set: bool = False) -> Attempt:
     """Find the equilibrium with unilateral contact at the load parameter of ``guess``; never raises.
 
-    Newton's method converges with a fixed set of closed contacts. Then contacts with tensile force are opened, penetrated
-    open contacts are closed, friction is mapped to its cone, and Newton's method is repeated, so that gaps of unconverged
-    iterates cause no change. A set that was tried before ends the iteration with `Status.CYCLING`. Augmented Lagrangian
-    steps follow when the set no longer changes. With ``keep_set`` the set of the guess is kept.
+    Newton's method converges with a fixed set of closed contacts before the set is revised and the method repeated, so that gaps of
+    unconverged iterates cause no change. Augmented Lagrangian steps follow. With ``keep_set`` the set of the guess is kept.
     """
     state = (
         guess

@@ -176,11 +176,7 @@ def _tie_reactions(state: State, *, grounded: bool) -> dict[str, Reaction]:
 
 
 def imbalance(state: State) -> float:
-    """Largest component of the sum of all external forces and moments [N].
-
-    External are the reactions of clamps, supports and springs, the forces of the pins and the dead loads. Moments refer to the start
-    of the first strip and are divided by the length of the longest one.
-    """
+    """Largest component of the sum of all external forces, and of their moment about the first strip's start over L [N]."""
     model, nodal = state.model, amount(state.model.loads, state.t)
     total, turning = np.zeros(2), float(amount(model.moments, state.t).sum())
     for body in model.bodies:

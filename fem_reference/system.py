@@ -40,11 +40,6 @@ class Correction:
     forces: Floats  # change of the forces of the constraints ``(c,)``, see `State.forces`
     t: float = 0.0  # change of the load parameter
 
-    @property
-    def size(self) -> float:
-        """Largest component of the displacements [m]."""
-        return float(np.abs(self.u).max())
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Border:
