@@ -46,10 +46,8 @@ def pattern(mesh: Discretisation, expansion: csr_matrix, added: csr_matrix | Non
     unknown, factor = np.full(expansion.shape[0], -1), np.zeros(expansion.shape[0])
     unknown[given.row], factor[given.row] = given.col, given.data
     dofs = (2 * mesh.cells[:, :, None] + np.arange(2)).reshape(len(mesh.cells), -1)
-    rows, columns = (
-        np.concatenate([dofs[:, local].ravel() for local in entries])
-        for entries in zip(*_entries(mesh.cells.shape[1]), strict=True)
-    )
+    pairs = _entries(mesh.cells.shape[1])
+    rows, columns = (np.concatenate([dofs[:, pair[side]].ravel() for pair in pairs]) for side in (0, 1))
     kept = np.flatnonzero((unknown[rows] >= 0) & (unknown[columns] >= 0))
     i, j, factors = unknown[rows[kept]], unknown[columns[kept]], factor[rows[kept]] * factor[columns[kept]]
     factors[(rows[kept] != columns[kept]) & (i == j)] *= 2  # the entry and the transposed one

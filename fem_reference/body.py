@@ -7,13 +7,7 @@ import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix
 
 from fem_reference.arrays import Floats
-from fem_reference.assembly import (
-    Pattern,
-    deformation_gradient,
-    element_entries,
-    internal_force,
-    pattern,
-)
+from fem_reference.assembly import Pattern, deformation_gradient, element_entries, internal_force, pattern
 from fem_reference.end_section import anchor
 from fem_reference.factor import Factor, factorise, full
 from fem_reference.material import Law, elastic_law
@@ -144,9 +138,7 @@ def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:
             above = [2 * edge[k], 2 * edge[k] + 1]
             master[above] = 2 * edge[k - 1] + 1
             factor[above] *= y[k] / y[k - 1]
-    order = np.lexsort(
-        (np.round(mesh.places[:, 1] / strip.height, 9), np.round(mesh.places[:, 0] / strip.height, 9))
-    )
+    order = np.lexsort(np.round(mesh.places / strip.height, 9).T[::-1])
     along = (2 * order[:, None] + np.arange(2)).ravel()
     unknowns = along[(factor[along] != 0) & (master[along] == along)]
     column = np.full(2 * n, -1)

@@ -96,11 +96,8 @@ def limit_point(a: Accepted, step: float) -> CriticalPoint | None:
     def evaluate(delta: float, near: State) -> tuple[float, State] | None:
         state = displacement_controlled(near, Control(origin=a.state.u, c=c, delta=delta))
         tangent = None if state is None else linearise(state)
-        rate = (
-            None
-            if tangent is None
-            else tangent.rate(tangent.state.t, tangent.state.t + model.settings.min_step)
-        )
+        t = 0.0 if state is None else state.t
+        rate = None if tangent is None else tangent.rate(t, t + model.settings.min_step)
         speed = 0.0 if rate is None else float(np.sum(c * rate.u))
         return None if state is None or not speed else (1 / speed, state)
 
@@ -222,7 +219,5 @@ def potential(state: State, near: State) -> float:
         np.remainder(pose.motion[2] - other.motion[2] + np.pi, 2 * np.pi) - np.pi for pose, other in poses
     ]
     work = np.sum(amount(model.loads, state.t) * state.u) + amount(model.moments, state.t) @ np.array(turns)
-    springs = sum(
-        tie.flexibility * force**2 / 2 for tie, force in zip(model.ties, state.tie_forces, strict=True)
-    )
+    springs = np.array([tie.flexibility for tie in model.ties]) @ state.tie_forces**2 / 2
     return float(sum(stored_energy(state)) + springs - work)

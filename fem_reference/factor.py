@@ -69,10 +69,8 @@ def _indefinite(band: Floats) -> Factor | None:
 
 def full(band: Floats) -> csc_matrix:
     """Symmetric matrix ``(m, m)`` from its lower band storage."""
-    lower = [entries[: band.shape[1] - k] for k, entries in enumerate(band)]
-    return csc_matrix(
-        diags([*lower[:0:-1], *lower], [*range(len(lower) - 1, 0, -1), *range(0, -len(lower), -1)])
-    )
+    below = diags([row[: band.shape[1] - k] for k, row in enumerate(band)], range(0, -len(band), -1))
+    return csc_matrix(below + below.T - diags(band[0]))
 
 
 def _superlu(matrix: csc_matrix, **options: object) -> SuperLU | None:

@@ -100,11 +100,8 @@ def settled(touch: Touch) -> Touch:
     """Return the contact after its state was accepted: slip counts from there."""
     if touch.begin is None:
         return touch
-    return replace(
-        touch,
-        begin=touch.at,
-        slipped=touch.slipped + (slip(touch) if touch.closed and touch.direction else 0.0),
-    )
+    added = slip(touch) if touch.closed and touch.direction else 0.0
+    return replace(touch, begin=touch.at, slipped=touch.slipped + added)
 
 
 def force_before_slip(direction: int, force: float, last: float) -> float:

@@ -84,9 +84,7 @@ class _March:
 
     def __init__(self, model: Model) -> None:
         start = accept(_start(model))
-        assert start is not None, (
-            "the undeformed stiffness is regular, since no strip can move without strain"
-        )
+        assert start is not None, "the undeformed stiffness is regular: no strip can move without strain"
         self.model, self.settings = model, model.settings
         self.track: tuple[Accepted, ...] = (start,)
         self.trial, self.order, self.failures = _FIRST_STEP, ORDER, 0
@@ -157,9 +155,8 @@ class _March:
         last, allowed = self.last, LARGEST_DEPARTURE
         distance = departure(last, candidate, displacement_tolerance(last.state))
         if not distance <= allowed:
-            return self.shorten(
-                h, Status.ANOTHER_BRANCH, reduction=max(0.1, min(0.5, 0.7 * allowed / distance))
-            )
+            reduction = max(0.1, min(0.5, 0.7 * allowed / distance))
+            return self.shorten(h, Status.ANOTHER_BRANCH, reduction=reduction)
         event = first_event(last, candidate)
         if event is not None:
             candidate, other = event
@@ -186,13 +183,9 @@ class _March:
         if near is None:
             return self.shorten(h, Status.ANOTHER_BRANCH)
         point, branch = critical_point(near, BIFURCATION), self.settings.branch
-        following = (
-            candidate
-            if branch == "primary"
-            else stable_branch(near, candidate.t)
-            if branch == "stable"
-            else None
-        )
+        following = candidate if branch == "primary" else None
+        if branch == "stable":
+            following = stable_branch(near, candidate.t)
         if following is None:
             return self.end(Status.BIFURCATION, point=point)
         self.step.critical.append(point)
@@ -214,11 +207,9 @@ class _March:
     ) -> Status | None:
         """Reject an attempt over a step ``h``; the path goes on. A high-order extrapolation may be the reason of the failure."""
         step = self.step
-        step.cause, step.pair, step.cutbacks = (
-            cause or step.cause,
-            step.pair if pair is None else pair,
-            step.cutbacks + 1,
-        )
+        step.cutbacks += 1
+        if cause is not None:
+            step.cause, step.pair = cause, pair
         self.failures += 1
         self.trial, self.order = reduction * h, max(self.order - 2, 1)
         return None
@@ -340,9 +331,8 @@ def _slid_without_friction(guess: State) -> State:
     """Return the equilibrium without friction, with slip in the directions that lead there; the guess without friction."""
     if not guess.rubbing:
         return guess
-    smooth = equilibrium(
-        guess.touching([replace(one, begin=None, direction=0, tangential=0.0) for one in guess.touches])
-    )
+    touches = [replace(one, begin=None, direction=0, tangential=0.0) for one in guess.touches]
+    smooth = equilibrium(guess.touching(touches))
     if smooth.status is not Status.CONVERGED:
         return guess
     pairs = zip(smooth.state.touches, guess.touches, strict=True)

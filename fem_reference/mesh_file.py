@@ -82,9 +82,8 @@ def _read(path: Path) -> Any:
 def _contents(mesh: Any) -> tuple[Floats, Ints, dict[str, Ints]]:
     """Corners ``(n, 2)``, quadrilaterals ``(e, 4)`` and the lines ``(l, 2)`` of each named edge."""
     points, used = mesh.points, np.zeros(len(mesh.points), dtype=bool)
-    _require(
-        points.ndim != 2 or points.shape[-1] not in (2, 3), "must hold nodes with two or three coordinates"
-    )
+    flat = points.ndim == 2 and points.shape[-1] in (2, 3)
+    _require(not flat, "must hold nodes with two or three coordinates")
     _require(~np.isfinite(points).all(axis=1), "node # must have finite coordinates")
     off = np.abs(points[:, 2:]).sum(axis=1) > _ROUND_OFF * np.ptp(points[:, :2], axis=0).max(initial=0.0)
     _require(off, f"node # must have z = 0, it has {points[np.argmax(off), -1]:g}" if off.any() else "")
@@ -94,10 +93,8 @@ def _contents(mesh: Any) -> tuple[Floats, Ints, dict[str, Ints]]:
         nodes, kind = np.asarray(block.data), block.type
         if not nodes.size:
             continue
-        _require(
-            nodes.min() < 0 or nodes.max() >= len(points),
-            f'cells of type "{kind}" must have nodes below {len(points)}',
-        )
+        rule = f'cells of type "{kind}" must have nodes below {len(points)}'
+        _require(nodes.min() < 0 or nodes.max() >= len(points), rule)
         if kind.startswith("quad"):
             used[nodes] = True
             _check_straight(points[:, :2], nodes)

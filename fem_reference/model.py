@@ -128,30 +128,25 @@ class _Discrete:
     def sections(self) -> Iterator[EndSection]:
         """End sections that are supported, joined, anchored or loaded by a moment, and sections inside that are loaded by one."""
         bent = {load.node: load for load in self.problem.loads if isinstance(load, PointLoad) and load.moment}
-        needed = (
-            {item.node for item in (*self.problem.supports, *self.problem.springs)} | self.joined | set(bent)
-        )
+        held = {item.node for item in (*self.problem.supports, *self.problem.springs)}
+        needed = held | self.joined | set(bent)
         for body in self.bodies:
             strip, mesh = body.strip, body.mesh
             ends = {f"{strip.name}.{end}": end for end in ENDS}
             anchored = "" if strip.clamped else f"{strip.name}.start"
-            found = {
-                node: end_rows(strip, mesh, end) for node, end in ends.items() if node in needed | {anchored}
-            }
+            here = [node for node in ends if node == anchored or node in needed]
+            found = {node: end_rows(strip, mesh, ends[node]) for node in here}
             for node, load in bent.items():
                 if load.strip == strip.name and node not in ends:
                     found[node] = inner_rows(strip, mesh, load.at)
             for node, (rows, height) in found.items():
-                stiffness = anchor_stiffness(strip) if node == anchored else 0.0
-                carrier = self.carrier(body, rows)
-                arc = bent[node].at * strip.length if node in bent else np.nan
                 yield EndSection(
                     node=node,
                     strip=strip.name,
-                    arc=arc,
-                    carrier=carrier,
+                    arc=bent[node].at * strip.length if node in bent else np.nan,
+                    carrier=self.carrier(body, rows),
                     height=height,
-                    anchor_stiffness=stiffness,
+                    anchor_stiffness=anchor_stiffness(strip) if node == anchored else 0.0,
                 )
 
     def pair(self, contact: Contact) -> Pair:

@@ -134,11 +134,9 @@ def equilibrium(guess: State, *, keep_set: bool = False) -> Attempt:
     Newton's method converges with a fixed set of closed contacts before the set is revised and the method repeated, so that gaps of
     unconverged iterates cause no change. Augmented Lagrangian steps follow. With ``keep_set`` the set of the guess is kept.
     """
-    state = (
-        guess
-        if keep_set
-        else guess.touching([_closed_if_penetrated(guess, touch) for touch in guess.touches])
-    )
+    state = guess
+    if not keep_set:
+        state = guess.touching([_closed_if_penetrated(guess, touch) for touch in guess.touches])
     tried, iterations, augmentations = [state.contact_set], 0, 0
     while True:
         attempt = iterate(state)
