@@ -56,11 +56,6 @@ class Body:
 
         return factorise(band)
 
-    def least_volume(self, u: Floats) -> float:
-        """Least determinant of the deformation gradient."""
-        F = deformation_gradient(self.mesh, u)
-        return float((F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0]).min())
-
     def strain_energy(self, u: Floats) -> float:
         """Strain energy [J]."""
         return float((self.law.energy(deformation_gradient(self.mesh, u)) * self.mesh.weights).sum())

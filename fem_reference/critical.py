@@ -81,16 +81,13 @@ def _between(a: Accepted, b: Accepted, t: float) -> Accepted | None:
 
 
 def limit_point(a: Accepted, step: float) -> CriticalPoint | None:
-    """Search for a maximum of the load parameter beyond a state, starting with ``step``; None without one nearby.
-
-    The path is continued by displacement control: the displacement along the last rate is prescribed,
-    ``c . (u - u_a) = delta``, and the load parameter is an unknown. ``dt/ddelta = 1 / (c . v)`` vanishes at the limit.
-    """
+    """Maximum of the load parameter beyond a state, searched from ``step`` along its rate; None without one nearby."""
     model = a.state.model
     rate = a.rate(a.t, a.t + model.settings.min_step).u
     size = float(np.linalg.norm(rate))
     if not (np.isfinite(size) and size > 0):
         return None
+    # c . (u - u_a) = delta is prescribed, and dt/ddelta = 1 / (c . v) vanishes at the limit
     c = rate / size
 
     def evaluate(delta: float, near: State) -> tuple[float, State] | None:
@@ -172,12 +169,7 @@ def critical_point(near: Accepted, kind: str) -> CriticalPoint:
 
 
 def stable_branch(near: Accepted, limit: float) -> Accepted | None:
-    """State on a stable branch from a bifurcation, at a load parameter below ``limit``; None without one.
-
-    Equilibrium is sought at prescribed amplitudes of the mode, with both signs and successively halved. Of two stable
-    branches the one with lower energy at a common load parameter is returned; with equal energies, the one on which the strips
-    turn to the left.
-    """
+    """Stable branch of lower energy from a bifurcation, before ``limit``; of equal ones, that to the left; None without."""
     entries, vector, state = list[Accepted](), smallest_eigenpair(near)[1], near.state
     unit = _side(state, vector) * vector / np.sqrt(np.mean(vector**2))
     for sign in (1.0, -1.0):

@@ -68,11 +68,7 @@ Event = tuple[int, Callable[[Accepted], float], int | None]
 
 
 def first_event(last: Accepted, candidate: Accepted) -> tuple[Accepted, int | None] | None:
-    """State at the first event between an accepted state and the next one, in a scene with friction; None without one.
-
-    If other contacts change before, the second is the contact of the event, which is not the first one. Within a step shorter than
-    `_COINCIDENT` such changes count as simultaneous, and the event is not located.
-    """
+    """State at the first event between two accepted states, and a contact that changes before; None without one."""
     found = list[tuple[Accepted, int]]()
     for pair, margin, direction in _expected(last, candidate):
         at = located(last, candidate.t, margin)
@@ -88,6 +84,7 @@ def first_event(last: Accepted, candidate: Accepted) -> tuple[Accepted, int | No
     now = revised(at.state).contact_set
     if all(a == b for k, (a, b) in enumerate(zip(at.state.contact_set, now, strict=True)) if k != pair):
         return at, None
+    # in a short step such changes count as simultaneous, and are not located
     return None if candidate.t - last.t < _COINCIDENT else (at, pair)
 
 

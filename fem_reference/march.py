@@ -298,11 +298,7 @@ def slipped_off(before: State, attempt: Attempt) -> int | None:
 
 
 def after_slip(before: State, goal: float, number: int) -> Attempt | None:
-    """Equilibrium after a slip-off without the contact ``number``; None if the contact must be kept.
-
-    A clamped strip without another closed contact, support or joint springs back to rest, and all its contacts open. Every
-    other contact whose gap is smaller than the strip's height is closed in the initial guess.
-    """
+    """Equilibrium without a contact that slipped off; a strip that nothing holds springs back. None if it is kept."""
     model, lost = before.model, before.touches[number]
     if lost.pair.contact.keep or not lost.closed:
         return None
@@ -316,6 +312,7 @@ def after_slip(before: State, goal: float, number: int) -> Attempt | None:
     touches = list[Touch]()
     for touch in before.touches:
         high = model.problem.strips[touch.pair.strips[0]].largest_height
+        # the guess closes every other contact with a gap below the height
         near = touch.armed and touch.at.inside and abs(touch.gap) < high
         if touch is lost:
             touches.append(touch.opened(armed=False))

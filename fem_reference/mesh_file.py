@@ -11,8 +11,7 @@ from scipy.sparse import coo_matrix, csr_matrix, kron
 from scipy.sparse.csgraph import connected_components
 
 from fem_reference.arrays import Floats, Ints
-from fem_reference.mesh import EDGES, Discretisation, edge_weights, from_basis, scalar_basis
-from fem_reference.sampling import section_points
+from fem_reference.mesh import EDGES, Discretisation, edge_weights, from_basis, scalar_basis, section_points
 from fem_reference.strip import Strip
 
 _ROUND_OFF = 1e-9

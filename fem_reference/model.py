@@ -73,7 +73,7 @@ def build(problem: SolidProblem, settings: Settings | None = None) -> Model:
     bodies = list[Body]()
     for strip in problem.strips:
         bodies.append(build_body(strip, bodies))
-    discrete = _Discrete(problem, bodies)
+    discrete, length = _Discrete(problem, bodies), max(strip.length for strip in problem.strips)
     sections = tuple(discrete.sections())
     numbers = {section.node: number for number, section in enumerate(sections)}
     loads = np.zeros((problem.stages, bodies[-1].part.stop, 2))
@@ -84,7 +84,7 @@ def build(problem: SolidProblem, settings: Settings | None = None) -> Model:
         loads[load.stage, body.part] += body.mesh.sections.T @ forces @ body.strip.frame
         if isinstance(load, PointLoad) and load.moment:
             moments[load.stage, numbers[load.node]] += load.moment
-        size = max(float(np.hypot(*forces.sum(axis=0))), abs(load.moment) / problem.length)
+        size = max(float(np.hypot(*forces.sum(axis=0))), abs(load.moment) / length)
         largest[load.stage] = max(largest[load.stage], size)
     columns = [section.columns for section in sections]
     distances = [float(np.hypot(*point)) for strip in problem.strips for point in (strip.start, strip.end)]
@@ -100,11 +100,11 @@ def build(problem: SolidProblem, settings: Settings | None = None) -> Model:
         ties=tuple(_ties(problem, numbers)),
         moments=moments,
         largest_loads=largest,
-        length=problem.length,
+        length=length,
         force_scale=max(strip.bending_stiffness / strip.length**2 for strip in problem.strips),
         axial_stiffness=max(strip.axial_stiffness for strip in problem.strips),
         round_off=max(body.round_off for body in bodies),
-        length_round_off=8 * float(np.finfo(float).eps) * max(*distances, problem.length),
+        length_round_off=8 * float(np.finfo(float).eps) * max(*distances, length),
     )
 
 

@@ -208,11 +208,6 @@ class SolidProblem:
         """Return the pin called ``name``; None for a strip's end."""
         return next((pin for pin in self.pins if pin.name == name), None)
 
-    @property
-    def length(self) -> float:
-        """Length of the longest strip [m]."""
-        return max(strip.length for strip in self.strips)
-
     @cached_property
     def turns(self) -> tuple[float, ...]:
         """Load parameters at which a load step must end because a stage ends or the path of a pin turns, see `Pin.turns`."""

@@ -6,6 +6,7 @@ from time import perf_counter
 import numpy as np
 
 from fem_reference.arrays import Floats, Ints
+from fem_reference.assembly import deformation_gradient
 from fem_reference.ends import nearest_end
 from fem_reference.events import SLIP_OFF
 from fem_reference.march import Step, march
@@ -120,7 +121,8 @@ def _outcome(model: Model, last: Step) -> tuple[Status, str]:
             end, contact = nearest_end(touched, last.state), touched.contact
             pair, comma = f": {contact.node} meets the {end} of {contact.strip}", ""
     cause = "" if last.cause is status else f" because {last.cause.value}"
-    squeezed = min(body.least_volume(last.state.u[body.part]) for body in model.bodies)
+    gradients = [deformation_gradient(body.mesh, last.state.u[body.part]) for body in model.bodies]
+    squeezed = min(float(np.linalg.det(F.T).min()) for F in gradients)
     if status is Status.LIMIT_POINT and squeezed < _SMALL_STRAIN:
         cause += f"; an element is compressed to {squeezed:.2g} of its area: refine the mesh, or the strain is beyond the comparison"
     preposition = "at" if status in EVENTS else "after"
