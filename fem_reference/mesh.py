@@ -67,7 +67,7 @@ class Discretisation:
     edges: dict[str, Ints]
     stations: Floats  # undeformed axial coordinates of the sections, increasing, ``(m,)`` [m]
     sections: csr_matrix  # weights ``(m, n)`` of the nodes in the section means; rows sum to one
-    basis: Any  # scikit-fem's scalar basis over the places, for `fem_reference.sampling`
+    basis: Any  # scikit-fem's scalar basis over the places
 
     @cached_property
     def products(self) -> tuple[Floats, Floats]:

@@ -203,7 +203,9 @@ def _verified(attempt: Attempt) -> Attempt:
     state, model, touches = attempt.state, attempt.state.model, list[Touch]()
     for number, touch in enumerate(state.touches):
         behind, inside = touch.gap < -model.length_round_off, touch.at.inside
-        if not inside and (touch.closed or (touch.armed and behind and touch.pair.contact.keep)):
+        # a node that goes round the end of an axis has left it; the ends of a thick strip are met
+        round_it = touch.armed and behind and touch.pair.contact.keep and not touch.pair.ends
+        if not inside and (touch.closed or round_it):
             return replace(attempt, status=Status.LOST_CONTACT, pair=number)
         if touch.closed and -touch.gap > _MAX_PENETRATION * touch.pair.length:
             return replace(attempt, status=Status.TOO_DEEP, pair=number)
