@@ -97,9 +97,8 @@ def internal_force(mesh: Discretisation, P: Array) -> Array:
 def element_entries(mesh: Discretisation, moduli: Callable[[Array], Array], u: Array) -> Array:
     """Entries of all element stiffnesses, the integral of ``dN/dX . A . dN/dX``, in one array.
 
-    ``moduli`` returns ``A = dP/dF`` ``(2, 2, 2, 2, e, q)`` for ``F`` ``(2, 2, e, q)``. A has major symmetry. The array has three
-    parts: the block of the first component of the shape functions a <= b, ``(e, k (k + 1) / 2)``; the same block of the second
-    component; the block of both components for all shape functions, ``(e, k k)``.
+    ``moduli`` returns the symmetric ``A = dP/dF`` for ``F`` ``(2, 2, e, q)``. The three parts are the blocks of the first and of the
+    second component for the shape functions a <= b, ``(e, k (k + 1) / 2)``, and that of both components for all, ``(e, k k)``.
     """
     elements, shapes = mesh.cells.shape
     half = shapes * (shapes + 1) // 2

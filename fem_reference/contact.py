@@ -106,9 +106,7 @@ class Touch:
     multiplier: float = 0.0  # multiplier lam_0 of the augmented Lagrangian; zero for the penalty method [N]
     direction: int = 0  # 1 or -1 where the node slips along the tangent or against it; 0 where it sticks
     tangential: float = 0.0  # tangential force T on the strip along t; zero if open [N]
-    begin: Projection | None = (
-        None  # that of the last accepted state, where slip begins; None without friction
-    )
+    begin: Projection | None = None  # that of the last accepted state; None without friction
     slipped: float = 0.0  # sum of the slips up to there [m]
     dissipated: float = 0.0  # energy dissipated up to there [J]
 

@@ -207,9 +207,7 @@ def _side(state: State, vector: Floats) -> float:
 def potential(state: State, near: State) -> float:
     """Total potential energy; dead moments work on the turn from the state ``near``, less than half a turn away [J]."""
     model, poses = state.model, zip(state.poses, near.poses, strict=True)
-    turns = [
-        np.remainder(pose.motion[2] - other.motion[2] + np.pi, 2 * np.pi) - np.pi for pose, other in poses
-    ]
+    turns = [np.angle(np.exp(1j * (pose.motion[2] - other.motion[2]))) for pose, other in poses]
     work = np.sum(amount(model.loads, state.t) * state.u) + amount(model.moments, state.t) @ np.array(turns)
     springs = np.array([tie.flexibility for tie in model.ties]) @ state.tie_forces**2 / 2
     return float(sum(stored_energy(state)) + springs - work)

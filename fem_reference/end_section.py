@@ -42,11 +42,6 @@ class EndSection:
     height: float  # height of the section [m]
     anchor_stiffness: float  # stiffness of the anchor's springs at this end; zero without an anchor [N/m]
 
-    @property
-    def columns(self) -> Floats:
-        """Derivatives ``(2 n, 4)`` of mean displacement and first moment with respect to the nodal displacements."""
-        return np.asarray(self.carrier.transposed.toarray())
-
     def pose(self, u: Floats) -> "Pose":
         """Motion of the section at the nodal displacements ``u`` ``(n, 2)``."""
         rest, (position, m) = self.carrier.reference, self.carrier.points(u)
@@ -89,11 +84,6 @@ class Tie:
     other: int | None = None  # number of the other end section; None if the component is prescribed
     rates: tuple[float, ...] = (0.0,)  # change of the prescribed motion in every stage [m or rad]
     flexibility: float = 0.0  # the inverse of a spring's stiffness; zero for a rigid tie
-
-    @property
-    def grounded(self) -> bool:
-        """Whether the tie is a spring to the ground."""
-        return self.other is None and self.flexibility > 0
 
     def residual(self, poses: tuple[Pose, ...], t: float, force: float) -> float:
         """Motion less the prescribed one or the other end's, plus the flexibility times the ``force``; an angle is in [-pi, pi] [m or rad]."""

@@ -59,11 +59,18 @@ def _indefinite(band: Floats) -> Factor | None:
     lu = symmetric if accurate else _superlu(matrix)
     if lu is None:
         return None
+
+    def negatives() -> int:
+        if accurate:
+            return int((lu.U.diagonal() < 0).sum())
+        bound = 2 * band.shape[0] * float(np.abs(band).max())
+        return int(eigvals_banded(band, lower=True, select="v", select_range=(-bound, 0.0)).size)
+
     return Factor(
         half=lambda right: right,
         rest=lambda half: np.asarray(lu.solve(np.ascontiguousarray(half))),
         product=lambda a, b: np.asarray(a.T @ lu.solve(np.ascontiguousarray(b))),
-        negatives=lambda: int((lu.U.diagonal() < 0).sum()) if accurate else _count_negatives(band),
+        negatives=negatives,
     )
 
 
@@ -79,9 +86,3 @@ def _superlu(matrix: csc_matrix, **options: object) -> SuperLU | None:
         return splu(matrix, permc_spec="NATURAL", **options)
     except RuntimeError:  # SuperLU's word for an exactly singular matrix
         return None
-
-
-def _count_negatives(band: Floats) -> int:
-    """Count the negative eigenvalues of a matrix in lower band storage ``(width + 1, m)`` by computing them."""
-    bound = 2 * band.shape[0] * float(np.abs(band).max())
-    return int(eigvals_banded(band, lower=True, select="v", select_range=(-bound, 0.0)).size)

@@ -136,18 +136,16 @@ class _March:
         return end if self.trial >= (end - t) * (1 - 1e-6) else t + self.trial
 
     def end(
-        self,
-        status: Status,
-        at: Accepted | None = None,
-        pair: int | None = None,
-        point: CriticalPoint | None = None,
+        self, status: Status, at: Accepted | CriticalPoint | None = None, pair: int | None = None
     ) -> Status:
         """End the path at a state, for a contact, or at a critical point."""
-        step, self.track = self.step, (*self.track, at or self.last)
-        step.cause, step.pair, step.load_parameter = status, pair, self.last.t
-        if point is not None:
-            step.critical.append(point)
-            step.load_parameter = point.load_parameter
+        step = self.step
+        step.cause, step.pair = status, pair
+        if isinstance(at, CriticalPoint):
+            step.critical.append(at)
+            step.load_parameter = at.load_parameter
+        elif at is not None:
+            self.track, step.load_parameter = (*self.track, at), at.t
         return status
 
     def judge(self, candidate: Accepted, h: float) -> Status | None:
@@ -187,7 +185,7 @@ class _March:
         if branch == "stable":
             following = stable_branch(near, candidate.t)
         if following is None:
-            return self.end(Status.BIFURCATION, point=point)
+            return self.end(Status.BIFURCATION, point)
         self.step.critical.append(point)
         self.accept(following, restart=following is not candidate)
         if following is not candidate:
@@ -240,7 +238,7 @@ class _March:
             return None
         found = limit_point(last, max(self.trial, min_step))
         if found is not None and last.t <= found.load_parameter <= target:
-            return self.end(Status.LIMIT_POINT, point=found)
+            return self.end(Status.LIMIT_POINT, found)
         return self.at_smallest_step(attempt, goal) if at_floor else None
 
     def approaches_fold(self) -> bool:
@@ -256,7 +254,7 @@ class _March:
         last, step = self.last, self.step
         limit = opening_limit(last)
         if limit is not None:
-            return self.end(Status.LIMIT_POINT, point=limit)
+            return self.end(Status.LIMIT_POINT, limit)
         lost = slipped_off(last.state, attempt)
         if lost is None:
             return Status.CUTBACK_FLOOR

@@ -101,9 +101,8 @@ def _contents(mesh: Any) -> tuple[Floats, Ints, dict[str, Ints]]:
         elif kind.startswith("line"):
             chosen = {name: sets[number] for name, sets in mesh.cell_sets.items() if sets[number] is not None}
             if tags is not None:
-                chosen |= {
-                    name: np.flatnonzero(tags[number] == tag) for name, (tag, size) in groups if size == 1
-                }
+                edges = {name: tag for name, (tag, dimension) in groups if dimension == 1}
+                chosen |= {name: np.flatnonzero(tags[number] == tag) for name, tag in edges.items()}
             for name in set(chosen) & set(EDGES):
                 lines.setdefault(name, []).append(nodes[np.asarray(chosen[name], dtype=np.int64), :2])
         else:

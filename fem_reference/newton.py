@@ -108,9 +108,8 @@ def converged(state: State) -> Attempt:
         if touch.closed and not (touch.at.stationary or touch.at.inside):
             return Attempt(status=Status.LOST_CONTACT, state=state, pair=number)
     force, length = round_off(state)
-    arms = [
-        model.sections[tie.section].height / 2 if tie.component == ROTATION else 1.0 for tie in model.ties
-    ]
+    heights = [model.sections[tie.section].height for tie in model.ties]
+    arms = [h / 2 if tie.component == ROTATION else 1.0 for tie, h in zip(model.ties, heights, strict=True)]
     limits = [
         *(force / touch.pair.penalty + model.length_round_off for touch in state.closed),
         *(force if touch.direction else length for touch in state.rubbing),
@@ -155,13 +154,11 @@ def equilibrium(guess: State, *, keep_set: bool = False) -> Attempt:
             state = following
             tried.append(state.contact_set)
             continue
-        deep = next(
-            (number for number, touch in enumerate(state.touches) if _exceeds_penetration(touch)), None
-        )
-        if deep is None:
+        deep = [number for number, touch in enumerate(state.touches) if _exceeds_penetration(touch)]
+        if not deep:
             return _verified(attempt)
         if augmentations == _MAX_AUGMENTATIONS:
-            return replace(attempt, status=Status.AUGMENTATION_LIMIT, pair=deep)
+            return replace(attempt, status=Status.AUGMENTATION_LIMIT, pair=deep[0])
         augmentations += 1
         state = state.touching(tuple(map(augmented, state.touches)))
 

@@ -144,9 +144,8 @@ def section_forces(result: Result, strip: str, k: int, stations: Floats | None =
 
     def integral(values: Floats) -> Floats:
         """Integrals ``(m, ...)`` over the sections of values ``(p, ...)``."""
-        return np.asarray(
-            np.einsum("mq,mq...->m...", weights, values.reshape(*weights.shape, *values.shape[1:]))
-        )
+        parts = values.reshape(*weights.shape, *values.shape[1:])
+        return np.asarray(np.einsum("mq,mq...->m...", weights, parts))
 
     def from_mean(values: Floats) -> Floats:
         """Values ``(p, ...)`` less their means over the sections."""

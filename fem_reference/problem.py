@@ -87,7 +87,7 @@ class Pin:
         load_parameters = []
         for stage, (fractions, axes) in enumerate(self._ways):
             directions, turned = np.arctan2(*np.diff(axes)[::-1]), 0.0
-            bends = np.abs(np.remainder(np.diff(directions) + np.pi, 2 * np.pi) - np.pi)
+            bends = np.abs(np.angle(np.exp(1j * np.diff(directions))))
             for t, bend in zip(fractions[1:-1].tolist(), bends.tolist(), strict=True):
                 turned += bend
                 if turned >= TURN:

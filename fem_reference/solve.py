@@ -15,7 +15,7 @@ from fem_reference.observe import section_means
 from fem_reference.problem import SolidProblem
 from fem_reference.result import ContactHistory, Result, SolveError, SupportHistory
 from fem_reference.settings import Settings
-from fem_reference.state import Reaction, State, reactions, spring_forces
+from fem_reference.state import Reaction, State, reactions, tie_reactions
 from fem_reference.status import Status
 
 EVENTS = (Status.LIMIT_POINT, Status.BIFURCATION, Status.LINE_CONTACT, Status.END_CONTACT)
@@ -91,7 +91,10 @@ def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
         reached=steps[-1].load_parameter,
         contacts={pair.name: _contact(states, steps, number) for number, pair in enumerate(model.pairs)},
         supports=_histories([reactions(state) for state in states], reactions(steps[-1].state)),
-        springs=_histories([spring_forces(state) for state in states], spring_forces(steps[-1].state)),
+        springs=_histories(
+            [tie_reactions(state, springs=True) for state in states],
+            tie_reactions(steps[-1].state, springs=True),
+        ),
         tips={body.strip.name: _tips(model, body.strip.name, states) for body in model.bodies},
         newton_iterations=np.array([step.iterations for step in done], dtype=np.int64),
         cutbacks=sum(step.cutbacks for step in steps),

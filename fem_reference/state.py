@@ -156,19 +156,14 @@ def reactions(state: State) -> dict[str, Reaction]:
                 turning,
                 body.offset + frame @ middle,
             )
-    return found | _tie_reactions(state, grounded=False)
+    return found | tie_reactions(state, springs=False)
 
 
-def spring_forces(state: State) -> dict[str, Reaction]:
-    """Forces and moments of the springs to the ground by end. They act at the mean of the section."""
-    return _tie_reactions(state, grounded=True)
-
-
-def _tie_reactions(state: State, *, grounded: bool) -> dict[str, Reaction]:
-    """Sums of the ties' forces at the ends that a support or, if ``grounded``, a spring holds."""
+def tie_reactions(state: State, *, springs: bool) -> dict[str, Reaction]:
+    """Forces and moments by end of the supports, or of the ``springs`` to the ground, at the means of sections."""
     forces, places = dict[str, Floats](), dict[str, Floats]()
     for tie, value in zip(state.model.ties, state.tie_forces, strict=True):
-        if tie.other is None and tie.grounded == grounded:
+        if tie.other is None and (tie.flexibility > 0) == springs:
             node = state.model.sections[tie.section].node
             forces.setdefault(node, np.zeros(3))[tie.component] = value
             places[node] = state.poses[tie.section].position
@@ -183,7 +178,10 @@ def imbalance(state: State) -> float:
         loads = nodal[body.part] @ body.strip.frame.T
         total += loads.sum(axis=0)
         turning += moment(body.offset + (body.mesh.nodes + state.u[body.part]) @ body.strip.frame.T, loads)
-    for force, free_moment, place in (*reactions(state).values(), *spring_forces(state).values()):
+    for force, free_moment, place in (
+        *reactions(state).values(),
+        *tie_reactions(state, springs=True).values(),
+    ):
         total += force
         turning += free_moment + moment(place, force)
     for touch in state.closed:

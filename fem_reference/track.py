@@ -158,8 +158,8 @@ def root(
 ) -> tuple[float, Item] | None:
     """Place and item where a value that is positive at ``low`` vanishes up to ``end``; None where it stays positive.
 
-    Regula falsi in Illinois' form. ``evaluate`` has a place and the item of the nearest place before. A place for which it returns
-    None, since nothing converges, counts as one beyond the root. If the value does not vanish, the last place before is the answer.
+    Regula falsi in Illinois' form. ``evaluate`` has a place and the item of the nearest place before. Where nothing converges, it returns
+    None, which counts as beyond the root. If the value does not vanish, the last place before is the answer.
     """
     (x, value, item), high, beyond, side = low, end, -inf, 0
     vanished = _VANISHED * value
