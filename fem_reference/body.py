@@ -32,10 +32,6 @@ class Body:
     offset: Floats  # start ``(2,)`` from that of the first strip, so that a distant scene loses no digits [m]
     round_off: float  # round-off of a nodal force [N], see `force_round_off`
 
-    def middle(self, end: str) -> Floats:
-        """Middle of the edge of an end, ``(2,)`` [m]."""
-        return np.asarray(self.mesh.nodes[self.mesh.edges[end][[0, -1]]].mean(axis=0))
-
     def internal_force(self, u: Floats) -> Floats:
         """Internal nodal forces ``(n, 2)`` [N] from nodal displacements ``u`` ``(n, 2)``."""
         return internal_force(self.mesh, self.law.stress(deformation_gradient(self.mesh, u)))
@@ -110,9 +106,8 @@ def force_round_off(strip: Strip, mesh: Discretisation, law: Law) -> float:
 def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:
     """Matrix ``(2 n, m)`` from the unknowns, ordered along the strip, to the displacements that the clamps admit.
 
-    If the edge has no node at its middle, the rod's clamp sets the transverse displacement interpolated there from the
-    two adjacent nodes to zero. With three bilinear elements over the height the two displacements are opposite. At the end of an arc
-    the transverse direction is the section's there.
+    Without a node at the middle of the edge, the rod's clamp holds the displacement interpolated there from the two adjacent
+    nodes. At the end of an arc the transverse direction is the section's there.
     """
     n = len(mesh.nodes)
     factor = np.ones(2 * n)

@@ -39,11 +39,7 @@ class Carrier:
 
     reference: Floats  # undeformed, relative to the model's origin, in the global frame, ``(m, 2)`` [m]
     rows: csr_matrix  # derivatives ``(2 m, 2 n)`` by the displacements, each in the frame of its strip
-
-    @cached_property
-    def transposed(self) -> csr_matrix:
-        """Transposed rows ``(2 n, 2 m)``."""
-        return csr_matrix(self.rows.T)
+    transposed: csr_matrix  # transposed rows ``(2 n, 2 m)``
 
     def points(self, u: Floats) -> Floats:
         """Positions ``(m, 2)`` at the nodal displacements ``u`` ``(n, 2)``."""

@@ -7,7 +7,6 @@ of the axis rotate the normal by up to ``F / (G A_e)``, depending on the positio
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -41,6 +40,7 @@ class ContactCurve:
 
     stations: Floats  # undeformed axial coordinates of the points, increasing, ``(m,)`` [m]
     slopes: csr_matrix  # from the points to the slopes of their spline at the stations, ``(m, m)`` [1/m]
+    spread: csr_matrix  # transposed `slopes`
     rows: csr_matrix  # weights ``(m, n)`` of the nodes in the points
     offsets: Floats  # offsets ``(q,)`` of the points in the moving average [m]
     kernel: Floats  # weights ``(q,)`` of these points
@@ -54,22 +54,14 @@ class ContactCurve:
         both[..., part] = np.tensordot(factors[:2].reshape(2, 2, 2, -1), hot, ((2, 3), (0, 1))).swapaxes(0, 1)
         return np.asarray(both[0] + (self.spread @ both[1].T).T)
 
-    @cached_property
-    def spread(self) -> csr_matrix:
-        """Transposed `slopes`."""
-        return csr_matrix(self.slopes.T)
-
     def at(self, zeta: float, X: Floats, D: Floats) -> Floats:
         """Position and first two derivatives ``(3, 2)`` of the curve with points X and slopes D at the stations."""
         k, factors = self.pieces(zeta)
         return np.asarray(factors.reshape(3, -1) @ np.concatenate([X[k], X[k + 1], D[k], D[k + 1]]))
 
     def pieces(self, zeta: float) -> tuple[Ints, Floats]:
-        """Spline intervals k ``(q,)`` around ``zeta``, and Hermite's polynomials there, times the kernel, ``(3, 4, q)``.
-
-        Rows: value, first and second derivative. Columns: factors of ``X_k``, ``X_k+1`` and the slopes at k and k + 1. Beyond
-        the ends the spline is continued along its tangents.
-        """
+        """Spline intervals k ``(q,)`` around ``zeta``, and Hermite's polynomials there, times the kernel, ``(3, 4, q)``."""
+        # rows: value, first and second derivative; columns: factors of X_k, X_k+1 and the slopes at k and k + 1
         s, places = self.stations, zeta + self.offsets
         inner = places
         leaves = bool(places[0] < s[0] or places[-1] > s[-1])  # the offsets increase
@@ -86,7 +78,7 @@ class ContactCurve:
         hermite[:, 2:] *= h
         hermite[1:] /= h
         hermite[2] /= h
-        if leaves:
+        if leaves:  # beyond the ends the spline goes on along its tangents
             beyond = places - inner
             hermite[0] += beyond * hermite[1]
             hermite[2] *= beyond == 0
@@ -116,7 +108,10 @@ def contact_curve(strip: Strip, mesh: Discretisation, contact: Contact) -> Conta
     offsets, kernel = averaging(spread, float(np.diff(stations).min()))
     # SciPy's equations for a spline of few stations are ill-conditioned if lengths are far from 1.
     slopes = cardinal_slopes(stations / strip.length) / strip.length
-    return ContactCurve(stations=stations, slopes=slopes, rows=rows, offsets=offsets, kernel=kernel)
+    spread = csr_matrix(slopes.T)
+    return ContactCurve(
+        stations=stations, slopes=slopes, spread=spread, rows=rows, offsets=offsets, kernel=kernel
+    )
 
 
 def averaging(spread: float, spacing: float) -> tuple[Floats, Floats]:

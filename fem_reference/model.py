@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from scipy.sparse import block_diag, csr_matrix, identity, kron
@@ -27,6 +26,7 @@ class Model:
     bodies: tuple[Body, ...]  # discretised strips
     pairs: tuple[Pair, ...]  # contacts
     expansion: csr_matrix  # matrix ``(2 n, m)`` from the unknowns to the displacements
+    restriction: csr_matrix  # transposed expansion: from nodal forces to the forces on the unknowns
     loads: Floats  # dead nodal forces added in every stage, in the frames of their strips, ``(s, n, 2)`` [N]
     sections: tuple[EndSection, ...]  # sections with a support, joint, anchor or moment
     columns: Floats  # columns ``(2 n, 4 e)`` of the sections
@@ -38,11 +38,6 @@ class Model:
     axial_stiffness: float  # largest ``E A / L`` of the strips [N/m]
     round_off: float  # round-off of a nodal force [N]
     length_round_off: float  # round-off of a position: 8 machine epsilons of the largest coordinate [m]
-
-    @cached_property
-    def restriction(self) -> csr_matrix:
-        """Transposed expansion ``(m, 2 n)``: from nodal forces to the forces on the unknowns."""
-        return csr_matrix(self.expansion.T)
 
     @property
     def nodes(self) -> int:
@@ -85,6 +80,7 @@ def build(problem: SolidProblem, settings: Settings | None = None) -> Model:
             moments[load.stage, numbers[load.node]] += load.moment
         size = max(float(np.hypot(*forces.sum(axis=0))), abs(load.moment) / length)
         largest[load.stage] = max(largest[load.stage], size)
+    expansion = block_diag([body.expansion for body in bodies], format="csr")
     columns = [section.carrier.transposed.toarray() for section in sections]
     distances = [float(np.hypot(*point)) for strip in problem.strips for point in (strip.start, strip.end)]
     return Model(
@@ -92,7 +88,8 @@ def build(problem: SolidProblem, settings: Settings | None = None) -> Model:
         settings=settings or Settings(),
         bodies=tuple(bodies),
         pairs=tuple(_pair(problem, bodies, contact) for contact in problem.contacts),
-        expansion=block_diag([body.expansion for body in bodies], format="csr"),
+        expansion=expansion,
+        restriction=csr_matrix(expansion.T),
         loads=loads,
         sections=sections,
         columns=np.hstack(columns) if columns else np.zeros((2 * bodies[-1].part.stop, 0)),
@@ -119,7 +116,8 @@ def _carrier(bodies: list[Body], body: Body, rows: csr_matrix) -> Carrier:
     everywhere = csr_matrix((both.data, both.indices + 2 * body.part.start, both.indptr), shape=shape)
     # the weights of a first moment sum to zero
     shift = np.outer(np.round(rows.sum(axis=1), 9), body.offset)
-    return Carrier(reference=shift + (rows @ body.mesh.nodes) @ body.strip.frame.T, rows=everywhere)
+    reference = shift + (rows @ body.mesh.nodes) @ body.strip.frame.T
+    return Carrier(reference=reference, rows=everywhere, transposed=csr_matrix(everywhere.T))
 
 
 def _sections(problem: SolidProblem, bodies: list[Body]) -> Iterator[EndSection]:

@@ -148,9 +148,10 @@ def reactions(state: State) -> dict[str, Reaction]:
     found = dict[str, Reaction]()
     for body in state.model.bodies:
         for end in body.strip.clamped:
-            edge, frame, middle = body.mesh.edges[end], body.strip.frame, body.middle(end)
+            edge, frame, nodes = body.mesh.edges[end], body.strip.frame, body.mesh.nodes
+            middle = nodes[edge[[0, -1]]].mean(axis=0)
             forces = state.residual[body.part][edge]
-            turning = moment(body.mesh.nodes[edge] + state.u[body.part][edge] - middle, forces)
+            turning = moment(nodes[edge] + state.u[body.part][edge] - middle, forces)
             found[f"{body.strip.name}.{end}"] = (
                 frame @ forces.sum(axis=0),
                 turning,

@@ -13,7 +13,8 @@ def curve_through(stations, offsets=(0.0,), kernel=(1.0,)):
     rows = eye_array(stations.size, format="csr")
     slopes = cardinal_slopes(stations)
     kernel, offsets = np.array(kernel), np.array(offsets)
-    return ContactCurve(stations=stations, slopes=slopes, rows=rows, offsets=offsets, kernel=kernel)
+    values = {"slopes": slopes, "spread": slopes.T, "rows": rows, "offsets": offsets, "kernel": kernel}
+    return ContactCurve(stations=stations, **values)
 
 
 def test_curve_is_twice_continuously_differentiable():
