@@ -160,19 +160,17 @@ class Rods(ElementGroup):
                 force[0, s, 0] = force[0, s - 1, 0] - touch.force[0]
                 force[1, s, 0] = force[1, s - 1, 0] - touch.force[1]
             length[s] = self.length[element] - begin[s]
-        segments = self.placed(
-            Segments(
-                flexibility,
-                force,
-                length[:, None],
-                profile.angle,
-                force,
-                place.owner,
-                begin[:, None],
-                curvature,
-            ),
-            state.load_parameter,
+        whole = (
+            flexibility,
+            force,
+            length[:, None],
+            profile.angle,
+            force,
+            place.owner,
+            begin[:, None],
+            curvature,
         )
+        segments = self.placed(Segments(*whole), state.load_parameter)
         field = rod.field(segments)
         gain, *vector = field.sums[:, :, 0] * length
         cuts: dict[int, Cut] = {}
