@@ -123,12 +123,11 @@ class Rods(ElementGroup):
 
     def section(self, element: int, arc: Any, load_parameter: float) -> Section:
         """Section of an element at an arc position within it."""
-        if self.varies:
-            course = self.course(np.array([element]), np.array([[arc]]), load_parameter)
-            stretch, shear, bend = (value.item() for value in course.flexibility)
-            return Section(stretch, shear, bend, float(self.natural[element]), course)
-        stretch, shear, bend = (value[element, 0].item() for value in self.flexibility)
-        return Section(stretch, shear, bend, 0.0, None)
+        place = np.array([element]), np.array([[arc]])
+        course = self.course(*place, load_parameter) if self.varies else None
+        own = course.flexibility if course else (value[element] for value in self.flexibility)
+        stretch, shear, bend = (value.item() for value in own)
+        return Section(stretch, shear, bend, float(self.natural[element]), course)
 
     def _owned(self, cuts: Cuts) -> _Owned:
         if cuts not in self._constants:
