@@ -60,12 +60,7 @@ class Along:
         return total
 
     def course(self, elements: Array, part: Array, resultant: Array, resultant_rate: Array) -> Course:
-        """What varies, at parts (s, p) of the lengths of elements (s,).
-
-        ``elements`` (s,): global numbers of the elements. ``part`` (s, p): parts of the lengths, from 0 at
-        the start of an element to 1. ``resultant, resultant_rate`` (2, d, s): coefficients of the resultants
-        of all loads together along these elements, and their derivatives in the load parameter.
-        """
+        """What varies at parts (s, p) of the lengths of elements (s,), from resultants (2, d, s) and their rates."""
         length = self.length[elements, None]
         gauge, gyration = self.gauge[:, elements, None], self.gyration[:, elements, None]
         wide, high = gauge[0] + (gauge[1] - gauge[0]) * part, gyration[0] + (gyration[1] - gyration[0]) * part

@@ -1,7 +1,8 @@
 """A contact that cuts an exact element: what it sees of the rod there, and the derivatives of its rows.
 
-The tangent vector of the rod jumps at a contact with its force F. The contact sees the mean of both sides, which is the tangent vector under
-the force ``n - F/2``, and the mean turn, which is that under the moment ``m - C/2`` with the couple C of the friction on a face.
+The tangent vector of the rod jumps at a contact with its force F. The contact sees the mean of both sides,
+which is the tangent vector under the force ``n - F/2``, and the mean turn, which is that under the moment ``m
+- C/2`` with the couple C of the friction on a face.
 """
 
 from __future__ import annotations
@@ -83,7 +84,7 @@ class Cut(NamedTuple):
 
 
 class CutElement(NamedTuple):
-    """Tangent of an element with contacts over n columns: its unknowns, those of the contacts, the load parameter, the inner residual."""
+    """Tangent of an element over n columns: its own and its contacts' unknowns, load parameter, inner residual."""
 
     element: int  # counted over the exact elements
     pairs: tuple[int, ...]  # its contact pairs in order of arc position

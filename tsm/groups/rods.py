@@ -1,9 +1,10 @@
 """Exact elements: the rod's equations are integrated from contact to contact.
 
-An element is cut at its contacts. Its unknowns are the nodes' displacements, the internal force n and moment m at its start, and
-for every contact the force F, the arc position and the section's angle there; between cuts the force is n less the contact
-forces before. Its equations are arrival at the end node and, at every cut, position and direction of the contact and arrival of
-the angle. The angles inside the segments are eliminated (`tsm.elements.rod`) and kept in the state.
+An element is cut at its contacts. Its unknowns are the nodes' displacements, the internal force n and moment
+m at its start, and for every contact the force F, the arc position and the section's angle there; between
+cuts the force is n less the contact forces before. Its equations are arrival at the end node and, at every
+cut, position and direction of the contact and arrival of the angle. The angles inside the segments are
+eliminated (`tsm.elements.rod`) and kept in the state.
 """
 
 from __future__ import annotations
@@ -321,7 +322,7 @@ class Rods(ElementGroup):
         return at_end
 
     def load_work(self, state: State) -> Any:
-        """Work of the loads, as large as they are at the state, on the displacements to it: with ``P' = q`` it is ``[P . u] - int P . (r' - r_0') ds``."""
+        """Work of the loads of a state on the displacements to it: ``[P . u] - int P . (r' - r_0') ds`` with ``P' = q``."""
         entry, own, t = self.enter(state), np.arange(len(self.length)), state.load_parameter.real
         segments, table = entry.segments, collocation(_UNDEFORMED_ORDER)
         arc = segments.begin + segments.length * collocation(segments.angle.shape[1]).c
@@ -337,7 +338,7 @@ class Rods(ElementGroup):
         )
 
     def load_power(self, state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> float:
-        """Work of the loads at rates of all degrees of freedom and of the contacts' unknowns: a complex step of `load_work`, which holds the loads."""
+        """Work of the loads at rates of all unknowns: a complex step of `load_work`, which holds the loads."""
         step, profile = 1j * STEP, profile_of(state)
         inside = self.turning(state, tangent, dofs, contacts).reshape(profile.angle.shape)
         touches = tuple(

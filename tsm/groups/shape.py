@@ -1,7 +1,7 @@
 """The deflected axis of exact elements between their Gauss nodes, and the angles inside.
 
-When contacts move, open or close, the elements are cut again and the angles interpolated. Where the integration is not accurate enough, they
-take more Gauss nodes.
+When contacts move, open or close, the elements are cut again and the angles interpolated. Where the
+integration is not accurate enough, they take more Gauss nodes.
 """
 
 from __future__ import annotations
@@ -210,8 +210,9 @@ def _sampled(group: Rods, shape: RodShape, state: State, cuts: Cuts, order: int)
 def truncation(group: Rods, entry: Entry) -> float:
     """Estimated error of the integration, in positions over the longest beam's length and in angles.
 
-    At the ends of a segment the error is the product of two interpolation errors, of the solution and of the influence of an error inside;
-    both are measured by the last two Legendre coefficients of moment and tangent vector, and both integrations divide by p.
+    At the ends of a segment the error is the product of two interpolation errors, of the solution and of the
+    influence of an error inside; both are measured by the last two Legendre coefficients of moment and
+    tangent vector, and both integrations divide by p.
     """
     segments, values = entry.segments, entry.field.values
     order = values.shape[2]
@@ -226,10 +227,10 @@ def truncation(group: Rods, entry: Entry) -> float:
 
 
 def deflected(group: Rods, state: State) -> tuple[RodShape, dict[int, Projection]]:
-    """Deflected axis, as accurate between the Gauss nodes as at the ends of the segments; of the last state kept, with the points found on it.
+    """Deflected axis, as accurate between the Gauss nodes as at the ends of the segments, and points found on it.
 
-    With p Gauss nodes the ends of a segment have order 2p, but the polynomial between them has order p. The polynomial is therefore
-    computed again with 2p nodes between the same ends.
+    With p Gauss nodes the ends of a segment have order 2p, but the polynomial between them has order p. The
+    polynomial is therefore computed again with 2p nodes between the same ends.
     """
     if group.memo is None or group.memo[0] is not state:
         entry = group.enter(state)
