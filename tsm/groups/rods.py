@@ -105,8 +105,8 @@ class Rods(ElementGroup):
         self.near, self.far = model.coordinates[model.element_nodes[elements].T].transpose(0, 2, 1)
         self.angles, self.length = np.stack([along.start, along.end])[:, elements], along.length[elements]
         self.natural = along.curvature[elements]
-        zero = np.zeros((len(elements), 1))
-        self.flexibility = along.course(elements, zero, *np.zeros((2, 2, 0, len(elements)))).flexibility
+        unloaded = np.zeros((2, 2, 0, len(elements)))
+        self.flexibility = along.course(elements, 0 * self.length[:, None], *unloaded).flexibility
         self._constants: dict[Cuts, _Owned] = {}
         self.memo: tuple[State, RodShape, dict[int, Projection]] | None = None
 
@@ -251,29 +251,17 @@ class Rods(ElementGroup):
         condensed_residual[ROWS] = transfer[:, :, 6].T
         if self.varies:
             by_load[ROWS] = transfer[:, :, rod.LOAD].T
-        cut = tuple(
-            cut_element(
-                e,
-                {k: entry.cuts[k] for k in pairs},
-                condensed.transfer[first[e] :],
-                self.model.stick_stiffness,
-            )
-            for e, pairs in profile_of(state).cuts
-        )
-        for part in cut:
-            e, own = part.element, part.tangent[:OWN]
+        cut, unit = [], self.model.stick_stiffness
+        for e, pairs in profile_of(state).cuts:
+            part = cut_element(e, {k: entry.cuts[k] for k in pairs}, condensed.transfer[first[e] :], unit)
+            own = part.tangent[:OWN]
             tangent[e], by_load[:, e], condensed_residual[:, e] = own[:, :OWN], own[:, -2], own[:, -1]
             enter(part, self, contacts)
+            cut.append(part)
         if self.varies:
             by_load[6:8] = -self._resultant(state, rate=True)
-        return RodTangent(
-            condensed_residual,
-            tangent.reshape(len(first), -1).T,
-            by_load,
-            cut,
-            condensed.inner,
-            condensed.transfer,
-        )
+        flat = tangent.reshape(len(first), -1).T
+        return RodTangent(condensed_residual, flat, by_load, tuple(cut), condensed.inner, condensed.transfer)
 
     def inputs(self, tangent: RodTangent, state: State, change: Change) -> Array:
         """Change (s, inputs) of the inputs of the segments; `residual` is 1 to remove the residual inside, 0 to follow a path."""
