@@ -263,8 +263,8 @@ class Rods(ElementGroup):
         flat = tangent.reshape(len(first), -1).T
         return RodTangent(condensed_residual, flat, by_load, tuple(cut), condensed.inner, condensed.transfer)
 
-    def inputs(self, tangent: RodTangent, state: State, change: Change) -> Array:
-        """Change (s, inputs) of the inputs of the segments; `residual` is 1 to remove the residual inside, 0 to follow a path."""
+    def inside(self, tangent: RodTangent, state: State, change: Change) -> Array:
+        """Change (s, p) of the inner angles with all other unknowns; `residual` is 1 to remove the residual inside."""
         place, x = layout(len(self.length), profile_of(state).cuts), change.dofs[self.dofs]
         inputs = np.zeros((len(place.owner), tangent.inner.shape[2]))
         inputs[:, :5] = x[COLUMNS][:, place.owner].T
@@ -273,11 +273,7 @@ class Rods(ElementGroup):
             own = (x[:, part.element], change.contacts[part.slots], [change.load, change.residual])
             first = place.first[part.element]
             inputs[first : first + len(part.inputs)] = part.inputs @ np.concatenate(own)
-        return inputs
-
-    def inside(self, tangent: RodTangent, state: State, change: Change) -> Array:
-        """Change (s, p) of the inner angles that follows from a change of all other unknowns at a state."""
-        inside: Array = (tangent.inner @ self.inputs(tangent, state, change)[:, :, None])[:, :, 0]
+        inside: Array = (tangent.inner @ inputs[:, :, None])[:, :, 0]
         return inside
 
     def turning(self, state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> Array:
