@@ -1,8 +1,9 @@
 """Critical points of the equilibrium path. The tangent is singular there, and a buckling mode needs no force.
 
-At a limit point the load parameter is stationary along the path, and this branch has no equilibrium beyond. At a bifurcation point
-the path goes on, unstable, and another branch crosses it. Both kinds are located as the root of a number g. This number vanishes
-where the tangent K is singular and is smooth there (Griewank and Reddien 1984)::
+At a limit point the load parameter is stationary along the path, and this branch has no equilibrium beyond.
+At a bifurcation point the path goes on, unstable, and another branch crosses it. Both kinds are located as
+the root of a number g. This number vanishes where the tangent K is singular and is smooth there (Griewank and
+Reddien 1984)::
 
     [ K  b ] [ v ]   [ 0 ]
     [ c  0 ] [ g ] = [ 1 ],     g = -1/(c . y),  v = y/(c . y),  K y = b
@@ -50,7 +51,8 @@ class CriticalPoint:
     load_parameter : float
         Load parameter of the point.
     mode : dict of ndarray, shape (m, 2)
-        Displacements of the beams' axes in the buckling mode, at the stations of `Result.axis_line`; the largest is 1.
+        Displacements of the beams' axes in the buckling mode, at the stations of `Result.axis_line`; the
+        largest is 1.
     """
 
     kind: CriticalKind
@@ -80,7 +82,8 @@ def locate_bifurcation(before: Point, after: Point, solve: Callable[[float], Poi
 
     The index shows the side of the bifurcation, and g measures the distance to it.
 
-    ``before, after``: ends of a step between which the index changes. ``solve``: point of the path at a load parameter.
+    ``before, after``: ends of a step between which the index changes. ``solve``: point of the path at a load
+    parameter.
     """
     _, v = _bordered(before)
     weights = before.newton.per_unknown**2
@@ -111,8 +114,8 @@ def critical_point(kind: CriticalKind, point: Point, load_parameter: float) -> C
 def mode_shape(point: Point) -> tuple[Array, dict[str, Array]] | None:
     """Buckling mode near a critical point, of the sign with which it begins to the left: see `_side`.
 
-    Returns the change of the unknowns that moves some point of an axis by 1, and the displacements (m, 2) of the
-    axes; None without a single mode.
+    Returns the change of the unknowns that moves some point of an axis by 1, and the displacements (m, 2) of
+    the axes; None without a single mode.
     """
     newton, model, state = point.newton, point.model, point.state
     soft = mode(newton.assembler, state, point.system)

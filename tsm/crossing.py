@@ -1,7 +1,7 @@
 """Crossings: within one step, a node goes through a beam and on past the beam's end, or a round pin through an end and on.
 
-After such a step the node no longer projects onto the beam, or is clear of its end, so that the end of the step does
-not show the missed contact. All points are assumed to move on straight lines in the step.
+After such a step the node no longer projects onto the beam, or is clear of its end, so that the end of the
+step does not show the missed contact. All points are assumed to move on straight lines in the step.
 """
 
 from __future__ import annotations

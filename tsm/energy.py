@@ -1,12 +1,11 @@
 """Work and dissipation of a structure whose contacts have friction.
 
-The work of pins, supports and loads is stored as strain energy or dissipated by friction. Both are integrals over the
-load parameter of a power that follows from the equilibrium and its rates, by Lobatto's rule inside every step.
+The work of pins, supports and loads is stored as strain energy or dissipated by friction. Both are integrals
+over the load parameter of a power that follows from the equilibrium and its rates, by Lobatto's rule inside
+every step.
 """
 
 from __future__ import annotations
-
-from typing import NamedTuple
 
 import numpy as np
 
@@ -54,18 +53,11 @@ def power(point: Point, drive: Drive) -> Array | None:
     return spent
 
 
-class Spent(NamedTuple):
-    """Work and dissipation of a step."""
+def spent(track: Track, end: Point, drive: Drive) -> tuple[Array, list[Point]] | None:
+    """Work and dissipation from the last point of a path to the next one, and points in between, in order.
 
-    total: Array  # as for `power`, over the step; shape (1 + pairs,)
-    between: list[Point]  # points inside the step, in order of the load parameter
-
-
-def spent(track: Track, end: Point, drive: Drive) -> Spent | None:
-    """Work and dissipation from the last point of a path to the next one, on a smooth part of the path.
-
-    None where a tangent is singular at an end, or no equilibrium is found in between. A short part without one counts
-    by the mean of its ends.
+    None where a tangent is singular at an end, or no equilibrium is found in between. A short part without
+    one counts by the mean of its ends.
     """
     newton, begin = track.newton, track.last
     tangent = end.predicted(end.t - _NEAR * (end.t - begin.t))
@@ -99,4 +91,4 @@ def spent(track: Track, end: Point, drive: Drive) -> Spent | None:
 
     first, last, least = power(begin, drive), power(end, drive), (end.t - begin.t) / 2**_DEPTH
     total = None if first is None or last is None else over(begin.t, end.t, first, last)
-    return None if total is None else Spent(total, sorted(between, key=lambda point: point.t))
+    return None if total is None else (total, sorted(between, key=lambda point: point.t))

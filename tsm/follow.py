@@ -1,8 +1,8 @@
 """The follower of the equilibrium path: it predicts, corrects, looks for events, and accepts.
 
-A step goes to the next prescribed load parameter, or less far after a cut-back. Newton's method starts from the
-prediction of the path. If an event lies inside the step, the step ends at the event. The contact is then opened or
-closed, and the march goes on from there.
+A step goes to the next prescribed load parameter, or less far after a cut-back. Newton's method starts from
+the prediction of the path. If an event lies inside the step, the step ends at the event. The contact is then
+opened or closed, and the march goes on from there.
 """
 
 from __future__ import annotations
@@ -125,9 +125,9 @@ class Follower:
     def _turn_corner(self) -> Status:
         """Go on as the load does, at the start, where a path has a corner and where a stage begins.
 
-        Contacts with friction may slip or stick from there. A stage begins just after the load parameter at which the
-        last one ends, so that all rates are its own. The path has a kink there, and no state before it serves for a
-        prediction.
+        Contacts with friction may slip or stick from there. A stage begins just after the load parameter at
+        which the last one ends, so that all rates are its own. The path has a kink there, and no state before
+        it serves for a prediction.
         """
         here, t = self.track.last, self.track.last.t
         goes_on = t == self.turned or not (self.model.rubbed or self.model.stages > 1)
@@ -222,10 +222,10 @@ class Follower:
             return self._meet_bifurcation(reached) if unexplained <= _STRAIGHT else self.control.refuse()
         if self.model.rubbed:
             more = spent(track, reached, self._drive(reached.t))
-            part = 1 / 2 if more is None else self._search(reached.t).dips([*more.between, reached])
+            part = 1 / 2 if more is None else self._search(reached.t).dips([*more[1], reached])
             if more is None or part is not None:
                 return self.control.refuse(part or 1 / 2)
-            self.log.spent = self.log.spent + more.total
+            self.log.spent = self.log.spent + more[0]
         self.log.events += passes(self.model, last.equilibrium, reached.equilibrium)
         self._accept(reached)
         self.control.grow(reached.t - last.t, fitting)

@@ -1,11 +1,11 @@
 """Margins of the contact events that may come next: numbers that are positive before the event and negative after it.
 
-A step in which a margin becomes negative ends at the root of the margin, and the contact changes there. An event is
-a row of `WATCHES`: where it may happen, its margin, and what becomes of its contact.
+A step in which a margin becomes negative ends at the root of the margin, and the contact changes there. An
+event is a row of `WATCHES`: where it may happen, its margin, and what becomes of its contact.
 
-A node at a distance d from the axis touches at one point while the beam bends less than a circle of radius d: for a
-round pin of radius R on the face of a beam of height h, ``d = R + h/2``. Where the curvature reaches 1/d, the
-distance to the node is no longer least at the contact point, and the beam would touch along a line.
+A node at a distance d from the axis touches at one point while the beam bends less than a circle of radius d:
+for a round pin of radius R on the face of a beam of height h, ``d = R + h/2``. Where the curvature reaches
+1/d, the distance to the node is no longer least at the contact point, and the beam would touch along a line.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from tsm.events import ROUND_OFF, EventKind, normal_force
 from tsm.friction import cone, slip_rate, turned, with_grips
 from tsm.newton import Newton
 from tsm.path import Point
-from tsm.state import State, Touch
+from tsm.state import UNDECIDED, Grip, State, Touch
 from tsm.status import Status
 from tsm.system import Drive
 
@@ -61,18 +61,10 @@ def _thick(point: Point, k: int) -> bool:
     return point.model.pairs[k].pair.offset > 0
 
 
-def _slips(point: Point, k: int) -> bool:
+def _grip(point: Point, k: int) -> Grip:
+    """Slip or stick, neither where a contact is open or has no friction."""
     touch = point.state.touches[k]
-    return touch is not None and touch.grip is not None and bool(touch.grip.slip)
-
-
-def _sticks(point: Point, k: int) -> bool:
-    touch = point.state.touches[k]
-    return touch is not None and touch.grip is not None and touch.grip.held is not None
-
-
-def _room_to_end(point: Point, k: int, _drive: Drive) -> float:
-    return clearance(point.model, point.state, k).distance / point.model.length
+    return touch.grip if touch is not None and touch.grip is not None else UNDECIDED
 
 
 def _inside(point: Point, k: int, _drive: Drive) -> float:
@@ -87,14 +79,8 @@ def _push(point: Point, k: int, _drive: Drive) -> float:
 
 def _slip_rate(point: Point, k: int, drive: Drive) -> float:
     """Slip rate, positive the way it slips; a pair without a rate slips on."""
-    rates, grip = point.rates(drive), _touch(point.state, k).grip
-    return (
-        1.0 if rates is None or grip is None else grip.slip * slip_rate(point, rates, k) / point.model.length
-    )
-
-
-def _in_cone(point: Point, k: int, _drive: Drive) -> float:
-    return cone(point, k) / point.model.force_scale
+    rates = point.rates(drive)
+    return 1.0 if rates is None else _grip(point, k).slip * slip_rate(point, rates, k) / point.model.length
 
 
 def _roundness(point: Point, k: int, _drive: Drive) -> float:
@@ -135,11 +121,21 @@ def _end(_point: Point, _state: State, margin: Margin, _alone: bool) -> Status:
 
 
 WATCHES = (
-    Watch(EventKind.END_CONTACT, _thick, _room_to_end, _end),
+    Watch(
+        EventKind.END_CONTACT,
+        _thick,
+        lambda point, k, _: clearance(point.model, point.state, k).distance / point.model.length,
+        _end,
+    ),
     Watch(EventKind.SLIP_OFF, _closed, _inside, _open),
     Watch(EventKind.RELEASE, _closed, _push, _open),
-    Watch(EventKind.STICK, _slips, _slip_rate, _turn),
-    Watch(EventKind.SLIP, _sticks, _in_cone, _turn),
+    Watch(EventKind.STICK, lambda point, k: _grip(point, k).slip != 0, _slip_rate, _turn),
+    Watch(
+        EventKind.SLIP,
+        lambda point, k: _grip(point, k).held is not None,
+        lambda point, k, _: cone(point, k) / point.model.force_scale,
+        _turn,
+    ),
     Watch(EventKind.LINE_CONTACT, lambda point, k: _closed(point, k) and _thick(point, k), _roundness, _end),
     Watch(EventKind.TOUCH, lambda point, k: not _closed(point, k) and point.state.armed[k], _gap, _close),
 )

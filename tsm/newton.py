@@ -71,10 +71,11 @@ def _scales(model: Model) -> tuple[Array, Array, float]:
 class Newton:
     """Newton's method on forces, contact positions and directions together.
 
-    The norm is the largest scaled entry of the residual: forces over ``EI/L^2``, moments over ``EI/L``, positions over L/1000. L is the
-    longest beam, so that no scale can vanish. An iteration has converged if its norm is below `tolerance`. It has also converged if the
-    last two norms are below the round-off of the residual, ``4 eps (EA L/l0 + EI/l0^2)``, and ``4 eps k_c L`` for a contact of
-    stiffness k_c, or the round-off of the forces that the beams carry.
+    The norm is the largest scaled entry of the residual: forces over ``EI/L^2``, moments over ``EI/L``,
+    positions over L/1000. L is the longest beam, so that no scale can vanish. An iteration has converged if
+    its norm is below `tolerance`. It has also converged if the last two norms are below the round-off of the
+    residual, ``4 eps (EA L/l0 + EI/l0^2)``, and ``4 eps k_c L`` for a contact of stiffness k_c, or the
+    round-off of the forces that the beams carry.
     """
 
     def __init__(self, model: Model, settings: Settings) -> None:

@@ -1,11 +1,13 @@
 """Contacts that stick on a face or under a round pin: they roll, and their slip rate ``v = A s' + rho'`` is zero all along.
 
-A depends on more than s, so v is the rate of no quantity, and the path between two states decides. With the values * of the state before::
+A depends on more than s, so v is the rate of no quantity, and the path between two states decides. With the
+values * of the state before::
 
     int v = (A + A*)/2 (s - s*) + rho - rho* - c,   c = (A - A*)/2 (s - s*) - int (A - A*) ds
 
-The row of a stick is the trapezium, without c. The area c between the path and its chord in the plane of s and A follows from equilibria at
-Lobatto's points, and the angle of the held place takes it. Every equilibrium of a path is then the held place of the next one.
+The row of a stick is the trapezium, without c. The area c between the path and its chord in the plane of s
+and A follows from equilibria at Lobatto's points, and the angle of the held place takes it. Every equilibrium
+of a path is then the held place of the next one.
 """
 
 from __future__ import annotations
@@ -43,8 +45,8 @@ Held = dict[int, Place]
 def rolled(newton: Newton, before: State, reached: Equilibrium) -> Equilibrium:
     """Equilibrium whose contacts in stick have not slipped since an equilibrium before, and are held in their own places.
 
-    ``before``: in whose places the contacts of `reached` are held, so that their rows are the trapezium since then.
-    Returns one that has not converged where none is found.
+    ``before``: in whose places the contacts of `reached` are held, so that their rows are the trapezium since
+    then. Returns one that has not converged where none is found.
     """
     model, small = newton.model, _ZERO * newton.model.length
     held = {

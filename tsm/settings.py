@@ -21,11 +21,12 @@ class Settings:
     max_iterations : int
         Newton iterations before a step is cut back.
     integration_tolerance : float
-        Bound on the estimated integration error inside exact elements: the largest error of positions over the longest beam, of
-        angles, and of forces over ``EI/L^2``.
+        Bound on the estimated integration error inside exact elements: the largest error of positions over
+        the longest beam, of angles, and of forces over ``EI/L^2``.
     branch : {"stop", "stable", "primary"}
-        Continuation at a critical point. With ``stop`` the path ends there, with the kind of the point as status. With ``stable`` it
-        turns to the stable branch of least energy. With ``primary`` it goes on along the unstable branch, if there is one.
+        Continuation at a critical point. With ``stop`` the path ends there, with the kind of the point as
+        status. With ``stable`` it turns to the stable branch of least energy. With ``primary`` it goes on
+        along the unstable branch, if there is one.
     """
 
     tolerance: float = 1e-10

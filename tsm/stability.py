@@ -5,8 +5,9 @@ The energy's Hessian, bordered by the contacts, is a symmetric matrix K::
     [ A   B ]   A: band of the beams
     [ B^T D ]   D: the contacts' forces, arc positions and angles
 
-A contact force is the Lagrange multiplier of a constraint on a position. With m multipliers, the Hessian over the variations that the
-closed contacts admit has ``negatives(K) - m`` negative eigenvalues (Haynsworth 1968). The same holds with a flexibility at the contact.
+A contact force is the Lagrange multiplier of a constraint on a position. With m multipliers, the Hessian over
+the variations that the closed contacts admit has ``negatives(K) - m`` negative eigenvalues (Haynsworth 1968).
+The same holds with a flexibility at the contact.
 """
 
 from __future__ import annotations
@@ -38,8 +39,8 @@ UNDEFINED = -1
 def index(assembler: Assembler, state: State, system: Linearisation) -> int:
     """Number of negative eigenvalues of the energy's Hessian over the variations that supports and closed contacts admit.
 
-    A contact that is closed without force admits variations to one side only. The index is then defined only if it is the same with the
-    contact open, where the structure is no mechanism.
+    A contact that is closed without force admits variations to one side only. The index is then defined only
+    if it is the same with the contact open, where the structure is no mechanism.
 
     The number is a lower bound for an exact element with more than a few hundred modes. It is -1, not
     defined, for a singular tangent, for numbers that are not finite, and for more than 1,500 unknowns whose
@@ -99,9 +100,9 @@ def _freed(symmetric: Symmetric, idle: list[int]) -> Symmetric:
 def mode(assembler: Assembler, state: State, system: Linearisation) -> tuple[Array, float] | None:
     """Null vector of a tangent near a critical point, and the smallest singular value, which is 0 there.
 
-    The units are longest beams, radians and ``EI/L^2``; in them the vector is 1 at most. A column and a row are added to
-    the tangent, which makes it regular. They converge to the null vectors (Govaerts 2000). None where the tangent has two
-    null vectors at once, or numbers that are not finite.
+    The units are longest beams, radians and ``EI/L^2``; in them the vector is 1 at most. A column and a row
+    are added to the tangent, which makes it regular. They converge to the null vectors (Govaerts 2000). None
+    where the tangent has two null vectors at once, or numbers that are not finite.
     """
     from scipy.sparse.linalg import splu
 

@@ -60,7 +60,8 @@ class Step:
     index : int
         Index of the equilibrium, see `tsm.stability`.
     spent : ndarray, shape (1 + pairs,)
-        Work of pins, supports and loads up to here, then the dissipation of every pair, see `tsm.energy`; empty without friction.
+        Work of pins, supports and loads up to here, then the dissipation of every pair, see `tsm.energy`;
+        empty without friction.
     """
 
     equilibrium: Equilibrium
