@@ -24,17 +24,16 @@ from tsm.contact_set import initial_state
 from tsm.elements.properties import Array
 from tsm.events import Event, EventKind
 from tsm.friction import regripped
-from tsm.margins import Margin, margins
+from tsm.margins import Margin, broken, margins
 from tsm.model import Model
 from tsm.newton import Newton
-from tsm.path import Point
+from tsm.path import SMALLEST, Point
 from tsm.result import Result
 from tsm.root import find_root
-from tsm.search import broken
 from tsm.settings import Settings
 from tsm.solve import ended
 from tsm.status import Status
-from tsm.step import SMALLEST, Step
+from tsm.step import Step
 from tsm.structure import Structure
 from tsm.system import Drive
 

@@ -15,7 +15,7 @@ from tsm.ends import clearance
 from tsm.events import ROUND_OFF, EventKind
 from tsm.model import Model
 from tsm.pairs import PairModel
-from tsm.predictor import extrapolate
+from tsm.path import extrapolate
 from tsm.projection import Projection
 from tsm.root import find_root
 from tsm.state import State

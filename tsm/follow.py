@@ -16,25 +16,22 @@ from itertools import count
 import numpy as np
 
 from tsm.contact_set import crowded, initial_state, rearm
-from tsm.critical import CriticalKind, critical_point, locate_bifurcation
+from tsm.critical import CriticalKind, critical_point, locate_bifurcation, mechanism
 from tsm.crossing import crossing, on_held_end, overlapping, through_end
 from tsm.elements.properties import Array
-from tsm.energy import spent
+from tsm.energy import rolled, spent
 from tsm.events import Event, EventKind, passes
 from tsm.fall import Fall
 from tsm.friction import grips, regripped
-from tsm.margins import Margin, margins
-from tsm.mechanism import mechanism
+from tsm.margins import Margin, Search, broken, margins
 from tsm.model import Model
 from tsm.newton import Newton
-from tsm.path import FOLLOWED, Point, Track
-from tsm.rolling import rolled
-from tsm.search import Search, broken
+from tsm.path import FOLLOWED, SMALLEST, Point, StepControl, Track, allowed
 from tsm.settings import Settings
 from tsm.stages import stage_of
 from tsm.state import UNDECIDED, State
 from tsm.status import Status
-from tsm.step import NEAR, SMALLEST, Step, StepControl, allowed, ends
+from tsm.step import NEAR, Step, ends
 from tsm.system import Drive
 
 _STRAIGHT = 0.02
@@ -188,7 +185,7 @@ class Follower:
             return found if isinstance(found, Status) else self._switch(*found)
         if search.pulls_at_first():
             return self.control.failure
-        return self._advance(reached) if self.newton.balanced(reached.equilibrium) else Status.UNBALANCED
+        return self._advance(reached)
 
     def _search(self, goal: float) -> Search:
         return Search(self.track.last, self.margins, goal, self._solve, self._measure, self.control)

@@ -110,23 +110,6 @@ class Newton:
             work += sum(group.load_work(state) for group in self.model.groups)
         return self.assembler.energy(state) - work
 
-    def balanced(self, equilibrium: Equilibrium) -> bool:
-        """Whether support reactions, pin forces and loads are in balance."""
-        model, system = self.model, equilibrium.system
-        held = np.zeros(model.dof_count)
-        held[model.fixed] = system.nodal[model.fixed]
-        pushed = [force for k, force in system.forces.items() if model.pairs[k].pin is not None]
-        loads = model.loads.at(equilibrium.state.load_parameter)
-        total = (held + loads).reshape(-1, 3)[:, :2].sum(axis=0) + np.sum(pushed, axis=0, initial=0.0)
-        along = model.along.total(equilibrium.state.load_parameter) if model.along.loaded else np.zeros(2)
-        total += along
-        if model.springs is not None:
-            total = total + model.springs.pull(equilibrium.state.q)
-        largest = max((float(np.hypot(*force)) for force in pushed), default=0.0) + float(np.abs(loads).max())
-        largest += max(map(abs, along.tolist()))
-        noise = max(self.noise, self.tolerance) * model.force_scale + system.noise
-        return bool(np.abs(total).max() <= 1e-8 * largest + len(model.coordinates) * noise)
-
     def size(self, motion: Array) -> float:
         """Largest entry of a motion, in largest Newton steps; nan inside does not count."""
         nodes = self.model.equations

@@ -13,20 +13,41 @@ The decision therefore depends on the path, and not on the prescribed load param
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from tsm.contact import handed_over
+from tsm.contact_set import owned
 from tsm.elements.properties import Array
+from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
-from tsm.predictor import extrapolate
+from tsm.pairs import PairModel
 from tsm.stability import index
-from tsm.state import State
+from tsm.state import State, Touch
+from tsm.status import Status
 from tsm.system import Drive
 
 FOLLOWED = 0.35
 """The bound c. A limit point is approached by a factor of (1 + 2 c)^2 = 2.9 a step."""
+SMALLEST = 1e-12
+"""Floor of the load step, as a part of the whole load."""
+_SAFE = 0.8
+"""Safety factor: next step over the step that the tangents would still allow."""
+_SHORTEST = 0.1
+"""Shortest part of a refused step that is tried next."""
+_NAMED = {
+    Status.NOT_FINITE,
+    Status.SINGULAR_TANGENT,
+    Status.INACCURATE,
+    Status.TWO_CONTACTS,
+    Status.PING_PONG,
+    Status.JAMMED,
+}
+"""Failures that are reported by their own status instead of the general status of a step at its floor."""
 _LONGEST = 1.0
 """Longest step whatever its tangents are, in largest Newton steps (0.3 L, 0.7 rad); the farthest equilibrium
 from its prediction where no tangent is usable. With 2 instead of 1, one random pin in a hundred ends on another branch."""
@@ -221,3 +242,79 @@ def limit_load(before: tuple[float, float], last: tuple[float, float]) -> float:
 
 def _owners(state: State) -> list[int]:
     return [touch.element for touch in state.touches if touch is not None]
+
+
+def _weighted(weights: Sequence[float], values: Iterable[Any]) -> Any:
+    return sum(weight * value for weight, value in zip(weights, values, strict=True))
+
+
+def extrapolate(model: Model, history: list[State], t: float) -> State:
+    """State at t by the polynomial through earlier states, all with the same closed contacts."""
+    for group in model.groups:
+        history = group.alike(history)
+    times = [state.load_parameter for state in history]
+    weights = [  # Lagrange's
+        math.prod((t - other) / (time - other) for k, other in enumerate(times) if k != n)
+        for n, time in enumerate(times)
+    ]
+    last = history[-1]
+    moved = replace(last, load_parameter=t, q=_weighted(weights, [state.q for state in history]))
+    if last.profile:
+        angle = _weighted(weights, [state.profile.angle for state in history if state.profile])
+        moved = replace(moved, profile=replace(last.profile, angle=angle))
+    trails = zip(*(state.touches for state in history), strict=True)
+    touches = [
+        _touch(pair, weights, trail) if all(trail) else None
+        for pair, trail in zip(model.pairs, trails, strict=True)
+    ]
+    return owned(model, handed_over(model, moved, tuple(touches)))
+
+
+def _touch(pair: PairModel, weights: list[float], trail: Sequence[Touch]) -> Touch:
+    """Extrapolated contact, on the element that owned it last."""
+    last = trail[-1]
+    arc = _weighted(weights, map(pair.arc_position, trail))
+    place = last.element - pair.target.first
+    xi = (arc - pair.target.arcs[place]) / pair.target.lengths[place]
+    x, y = (_weighted(weights, [touch.force[c] for touch in trail]) for c in range(2))
+    return replace(last, xi=xi, force=(x, y), angle=_weighted(weights, [touch.angle for touch in trail]))
+
+
+def allowed(unexplained: float) -> float:
+    """Return the fraction of a step that its tangents would explain; `unexplained` is the fraction that they do not explain."""
+    return _SAFE * FOLLOWED / max(unexplained, 1e-9)
+
+
+class StepControl:
+    """Length of the next load step: it grows while the path is followed, and is cut back where an attempt fails."""
+
+    def __init__(self) -> None:
+        self.step, self.failure, self.part = (
+            1.0,
+            Status.CONVERGED,
+            1 / 2,
+        )  # why the last attempt failed, and what to try next
+
+    def fail(self, status: Status, part: float = 1 / 2) -> Status:
+        """Give up an attempt; the fraction `part` of its step is tried next."""
+        self.failure, self.part = status, min(max(part, _SHORTEST), 1 / 2)
+        return status
+
+    def refuse(self, part: float = 1 / 2) -> Status:
+        """Give up a step that is too long, whatever was found at its end."""
+        return self.fail(Status.ITERATION_LIMIT, part)
+
+    def cut_back(self, left: float) -> bool:
+        """Shorten the step, of which `left` was tried at most; return whether it is at its floor."""
+        self.step = min(self.step, left) * self.part
+        return self.step < SMALLEST
+
+    def grow(self, taken: float, fitting: float) -> None:
+        """Lengthen the step after one that was taken and could have been `fitting` times as long."""
+        self.step = min(max(min(2.0, fitting) * taken, self.step if fitting >= 1 else 0.0), 1.0)
+
+    def verdict(self, folds: bool) -> Status:
+        """Status that explains why no step succeeds; `folds` if the speed of the path shows a limit point."""
+        if self.failure in _NAMED:
+            return self.failure
+        return Status.LIMIT_POINT if folds else Status.CUTBACK_FLOOR

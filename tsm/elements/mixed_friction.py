@@ -19,7 +19,7 @@ Without friction a force has no component along the beam, and ``C F`` is the sam
 - the node at ``r - side offset n(T)``, the offset being h and the radius of a round pin;
 - in slip ``F_t = sigma mu F_n``, which is ``F . T = c (T_x F_y - T_y F_x)`` with the lean ``c = sigma mu side``;
 - in stick ``(A_s + A_s*)/2 (s - s*) + side h (psi - psi*) + side radius (phi - phi*) = 0``, where psi = phi - theta is the shear angle,
-  ``A_s = |T| + side h theta'`` the length of the face per arc position, and * the value in the held place, see `tsm.rolling`.
+  ``A_s = |T| + side h theta'`` the length of the face per arc position, and * the value in the held place, see `tsm.energy`.
 
 The mean tangent is ``T = dp/ds + (dC/ds F_n n + ..)/2 + M rho n``, with the slope rho that a unit couple makes. These parts are such that
 ``F . T + M theta' = d(F . p + M theta + E)/ds``. So the work of the node less the nodal work and the change of E is F_t times the slip,

@@ -10,7 +10,7 @@ mean curvature k, ``lever = side h/2`` of the face and ``roll = side R`` of a ro
     stick:  (A + A*)/2 (s - s*) + lever (psi - psi*) + roll (phi - phi*) = 0
 
 The power of the pin is that of the strain energy and ``F_t v``, so couple and slip rate belong together. The starred values are those
-at the last equilibrium. On the axis, under a sharp pin, the row is ``s = s*``. What the mean of A leaves out where a contact rolls, `tsm.rolling`
+at the last equilibrium. On the axis, under a sharp pin, the row is ``s = s*``. What the mean of A leaves out where a contact rolls, `tsm.energy`
 takes into the held angle.
 """
 

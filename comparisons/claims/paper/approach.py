@@ -15,7 +15,7 @@ from tsm import Settings, Structure
 from tsm.contact_set import initial_state
 from tsm.model import Model
 from tsm.newton import Newton
-from tsm.predictor import extrapolate
+from tsm.path import extrapolate
 from tsm.projection import arc_position
 from tsm.state import State
 from tsm.status import Status
