@@ -51,10 +51,8 @@ class Follower:
         self.model, self.branch = model, settings.branch
         self.newton = Newton(model, settings)
         self.control = StepControl()
-        self.target, self.turned = (
-            0.0,
-            -1.0,
-        )  # next prescribed load parameter, and the last corner of a pin's path
+        self.target = 0.0  # next prescribed load parameter
+        self.turned = -1.0  # last corner of a pin's path
         start = Point(self.newton, self.newton.solve(initial_state(model)))
         self.track = Track(start)
         self.log = Step(equilibrium=start.equilibrium)  # since the last yielded step
@@ -103,7 +101,10 @@ class Follower:
         t = self.track.last.t
         left, step = self.target - t, min(self.control.step, self.track.room())
         goal = self.target if left <= step * (1 + 1e-6) else t + step
-        status = self._attempt(goal) if step >= SMALLEST else self.control.refuse()
+        status = self.control.refuse()
+        if step >= SMALLEST:
+            status = self._turn_corner()
+            status = self._reach(goal) if status is Status.CONVERGED else status
         if status is Status.CONVERGED or status is not self.control.failure:
             return status
         self.log.cutbacks += 1
@@ -113,11 +114,6 @@ class Follower:
             return Status.FOLDED
         status = self.control.verdict(self.track.folds())
         return self._meet_limit_point() if status is Status.LIMIT_POINT else status
-
-    def _attempt(self, goal: float) -> Status:
-        """Go to a load parameter or to the first event before it, past a corner where one is."""
-        turned = self._turn_corner()
-        return self._reach(goal) if turned is Status.CONVERGED else turned
 
     def _turn_corner(self) -> Status:
         """Go on as the load does, at the start, where a path has a corner and where a stage begins.
@@ -199,9 +195,7 @@ class Follower:
             self.control.fail(equilibrium.status)
             return None
         reached = Point(self.newton, equilibrium)
-        reached.unexplained_behind = left = (
-            0.0 if last.on_chords else last.unexplained(last.state, reached.state)
-        )
+        reached.behind = left = self.track.unexplained(last, reached)
         if left > FOLLOWED or self.track.strays(start, reached.state):
             self.control.refuse(allowed(left) if left > FOLLOWED else 1 / 2)
             return None
@@ -210,8 +204,7 @@ class Follower:
     def _advance(self, reached: Point) -> Status:
         """Accept a point if the step has no event, has followed the path and has passed no critical point."""
         last, track = self.track.last, self.track
-        behind = 0.0 if last.on_chords else reached.unexplained(last.state, reached.state)
-        unexplained = max(reached.unexplained_behind, behind)
+        unexplained = max(reached.behind, track.unexplained(reached, reached))
         fitting = allowed(unexplained)
         if unexplained > FOLLOWED:
             return self.control.refuse(fitting)

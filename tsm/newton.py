@@ -16,7 +16,9 @@ from tsm.state import State, Touch
 from tsm.status import Status
 from tsm.system import Assembler, Drag, Linearisation
 
-LONGEST, _LONGEST_WHOLE = 1.0, 1.4
+MAX_ITERATIONS = 25
+"""Iterations before a step is given up."""
+_LONGEST, _LONGEST_WHOLE = 1.0, 1.4
 """Largest Newton step, over 0.3 L and 0.7 rad; the second value holds where no contact passes from element to element."""
 _RISE, _SHORTEST = 10.0, 0.1
 """Merit test of exact elements. An iteration that raises the residual tenfold is halved, at most three times. A stricter test refuses
@@ -81,7 +83,6 @@ class Newton:
     def __init__(self, model: Model, settings: Settings) -> None:
         self.model = model
         self.assembler = Assembler(model)
-        self.max_iterations = settings.max_iterations
         self.integration_tolerance = settings.integration_tolerance
         self.tolerance = settings.tolerance
         self.scale, self.per_step, self.noise = _scales(model)
@@ -89,7 +90,7 @@ class Newton:
         self.per_unknown = self.per_step + np.where((kind > 2) & (kind < 6), 1 / model.units, 0.0)
         if model.springs is not None:
             self.noise = max(self.noise, model.springs.noise(model.extent, model.least_force))
-        self.longest = _LONGEST_WHOLE if model.whole else LONGEST
+        self.longest = _LONGEST_WHOLE if model.whole else _LONGEST
 
     def apart(self, one: State, other: State) -> float:
         """Size of the motion from one state to another, the one measure of how far they are apart."""
@@ -136,9 +137,9 @@ class Newton:
         taken: tuple[State, Array, Linearisation] | None = None
         residuals: list[float] = []
         owners: list[tuple[int, ...]] = []
-        for iteration in range(self.max_iterations + 1):
+        for iteration in range(MAX_ITERATIONS + 1):
             system = self.assembler.linearise(state, drag)
-            residual, left = self.norm(system), self.max_iterations - iteration
+            residual, left = self.norm(system), MAX_ITERATIONS - iteration
             risen = taken is not None and self.assembler.internal and not residual <= _RISE * residuals[-1]
             if risen and part > _SHORTEST and left:
                 part /= 2

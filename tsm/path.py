@@ -84,7 +84,7 @@ class Rates(NamedTuple):
 class Point:
     """An equilibrium with what the path has there; each is computed once."""
 
-    unexplained_behind = 0.0  # part of the step to here that the tangent at its start does not explain
+    behind = 0.0  # part of the step to here that the tangent at its start does not explain
 
     def __init__(self, newton: Newton, equilibrium: Equilibrium) -> None:
         self.newton, self.model, self.equilibrium = newton, newton.model, equilibrium
@@ -152,16 +152,6 @@ class Point:
             return self.newton.prescribed(self.state, t)
         return self.newton.update(self.state, (t - self.t) * rates.unknowns, self.system, t=t)
 
-    def unexplained(self, before: State, after: State) -> float:
-        """Part of a step that the tangent here does not explain, ``|q_B - q_A - h q'|/|q_B - q_A|``."""
-        begin, end = before.load_parameter, after.load_parameter
-        rates = self.rates(self.newton.assembler.drive(begin, end))
-        if rates is None:
-            return 0.0
-        step = self.newton.motion(before, after, self.state)
-        size, left = self.newton.size(step), self.newton.size(step - (end - begin) * rates.motion)
-        return left / size if min(left, size) > _RESOLVED else 0.0
-
 
 class Track:
     """The path up to its last point."""
@@ -204,6 +194,16 @@ class Track:
                 self.history[-1] = (last.state, last.predicted(last.t + _AHEAD * step))
         states = [state for near in self.history for state in near]
         return self.newton.prescribed(extrapolate(last.model, states, t), t)
+
+    def unexplained(self, by: Point, reached: Point) -> float:
+        """Part of the step to a point that the tangent at one of its ends does not explain; 0 where none is usable."""
+        last, newton = self.last, self.newton
+        rates = None if last.on_chords else by.rates(newton.assembler.drive(last.t, reached.t))
+        if rates is None:
+            return 0.0
+        step = newton.motion(last.state, reached.state, by.state)
+        size, left = newton.size(step), newton.size(step - (reached.t - last.t) * rates.motion)
+        return left / size if min(left, size) > _RESOLVED else 0.0
 
     def strays(self, predicted: State, reached: State) -> bool:
         """Whether an equilibrium lies too far away, or too far from its prediction where no tangent is usable."""

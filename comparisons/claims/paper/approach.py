@@ -75,7 +75,7 @@ class _Contact:
 
     def __init__(self, structure: Structure, tolerance: float) -> None:
         self.model = Model(structure)
-        self.newton = Newton(self.model, Settings(tolerance=tolerance, max_iterations=_ITERATIONS))
+        self.newton = Newton(self.model, Settings(tolerance=tolerance))
         beam = structure.beams[0]
         self.l0 = beam.length / beam.elements
         self.length = beam.length
