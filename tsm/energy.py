@@ -187,8 +187,8 @@ def spent(track: Track, end: Point, drive: Drive) -> tuple[Array, list[Point]] |
     one counts by the mean of its ends.
     """
     newton, begin = track.newton, track.last
-    tangent = end.predicted(end.t - _NEAR * (end.t - begin.t))
-    trail = [*track.history[-1][1:], tangent, begin.state, end.state]
+    near = _NEAR * (end.t - begin.t)
+    trail = [begin.predicted(begin.t + near), end.predicted(end.t - near), begin.state, end.state]
     between: list[Point] = []
 
     def at(t: float) -> Array | None:

@@ -13,7 +13,7 @@ The decision therefore depends on the path, and not on the prescribed load param
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -55,15 +55,12 @@ _PROMISED = 0.8
 """Longest step at the last speed, in the same measure: most of the longer ones would be refused."""
 _RESOLVED = 1e-8
 """Smaller motions, in the same measure, are round-off, as of a column that stays straight: it moves along itself only."""
-_MEMORY, _ON_CHORDS = 3, 4
-"""Points in the prediction, a polynomial in the load parameter through their states and tangents; the second value
-holds where no tangent is usable."""
+_MEMORY = 4
+"""Points in the prediction, a polynomial in the load parameter through their states and usable tangents."""
 _BEFORE_KINK = 1
 """Points before a contact passed from element to element that the prediction still uses: the path has a kink there."""
-_AHEAD = 1e-6
-"""Part of a step at which a state along the tangent stands for the tangent."""
-_NEAR = 1e-3
-"""Part of a step up to which this state is near."""
+_AHEAD = 1e-2
+"""Part of a step ahead of a state at which another one states its tangent; a shorter one has fewer digits."""
 _SHORTEST = 1e-6
 """Step of the load parameter below which the tangent alone predicts: the others would be round-off."""
 _FOLD = 100.0
@@ -161,7 +158,7 @@ class Track:
         self.index = (
             max(point.index, 0) if point.equilibrium.converged else 0
         )  # of the last point that has one
-        # states, each with one a little ahead of it along its tangent if there is any; all have the same contacts
+        # states with the same contacts, each after one ahead of it along its tangent if there is any
         self.history: list[tuple[State, ...]] = [(point.state,)]
 
     def accept(self, point: Point) -> None:
@@ -174,26 +171,24 @@ class Track:
     def _remembered(self, point: Point) -> list[tuple[State, ...]]:
         """Earlier states that serve for the prediction beyond a point."""
         kept: list[tuple[State, ...]] = []
-        kinks, memory = 0, _ON_CHORDS if point.on_chords else _MEMORY
-        for state, *ahead in reversed(self.history[1 - memory :]):
+        kinks = 0
+        for *ahead, state in reversed(self.history[1 - _MEMORY :]):
             kinks += _owners(state) != _owners(point.state)
             if kinks > _BEFORE_KINK and not point.on_chords:
                 break
-            step = point.t - state.load_parameter
-            near = (one for one in ahead if one.load_parameter - state.load_parameter <= _NEAR * step)
-            kept += [(state, *near)] * (step > 0)
+            kept += [(*ahead, state)] * (state.load_parameter < point.t)
         return kept[::-1]
 
     def predicted(self, t: float) -> State:
         """State at t from the last states and their tangents, or along the last tangent."""
-        last, step = self.last, t - self.last.t
-        if not last.on_chords:
-            if len(self.history) == 1 or step < _SHORTEST:
-                return last.predicted(t)
-            if self.history[-1][-1].load_parameter - last.t > _NEAR * step or len(self.history[-1]) == 1:
-                self.history[-1] = (last.state, last.predicted(last.t + _AHEAD * step))
-        states = [state for near in self.history for state in near]
-        return self.newton.prescribed(extrapolate(last.model, states, t), t)
+        last, step, history = self.last, t - self.last.t, self.history
+        steady = not last.on_chords and last.speed < _FOLD  # a nearly singular tangent leads anywhere
+        if steady and step >= _SHORTEST and len(history[-1]) == 1:
+            history[-1] = (last.predicted(last.t + _AHEAD * step), last.state)
+        if (len(history) == 1 and not last.on_chords) or (steady and step < _SHORTEST):
+            return last.predicted(t)
+        states = [state for near in history if len(near) == 1 + steady for state in near]
+        return self.newton.prescribed(extrapolate(last.model, states, t, tangents=steady), t)
 
     def unexplained(self, by: Point, reached: Point) -> float:
         """Part of the step to a point that the tangent at one of its ends does not explain; 0 where none is usable."""
@@ -248,15 +243,19 @@ def _weighted(weights: Sequence[float], values: Iterable[Any]) -> Any:
     return sum(weight * value for weight, value in zip(weights, values, strict=True))
 
 
-def extrapolate(model: Model, history: list[State], t: float) -> State:
-    """State at t by the polynomial through earlier states, all with the same closed contacts."""
+def extrapolate(model: Model, history: list[State], t: float, *, tangents: bool = False) -> State:
+    """State at t by the polynomial through earlier states, all with the same closed contacts.
+
+    With `tangents`, every other one lies ahead of the next along the tangent there, which the polynomial has too.
+    """
     for group in model.groups:
         history = group.alike(history)
     times = [state.load_parameter for state in history]
-    weights = [  # Lagrange's
-        math.prod((t - other) / (time - other) for k, other in enumerate(times) if k != n)
-        for n, time in enumerate(times)
-    ]
+    if tangents and len(times) > 1:
+        history, times = history[len(times) % 2 :], times[len(times) % 2 :]
+        weights = _hermite(times[1::2], times[::2], t)
+    else:
+        weights = [math.prod(part) for _, part, _ in _lagrange(times, t)]
     last = history[-1]
     moved = replace(last, load_parameter=t, q=_weighted(weights, [state.q for state in history]))
     if last.profile:
@@ -268,6 +267,27 @@ def extrapolate(model: Model, history: list[State], t: float) -> State:
         for pair, trail in zip(model.pairs, trails, strict=True)
     ]
     return owned(model, handed_over(model, moved, tuple(touches)))
+
+
+def _lagrange(times: list[float], t: float) -> Iterator[tuple[float, list[float], list[float]]]:
+    """For each time, the factors of Lagrange's polynomial at t, and the terms of its derivative at the time."""
+    for n, time in enumerate(times):
+        others = [other for k, other in enumerate(times) if k != n]
+        yield (
+            time,
+            [(t - other) / (time - other) for other in others],
+            [1 / (time - other) for other in others],
+        )
+
+
+def _hermite(times: list[float], ahead: list[float], t: float) -> list[float]:
+    """Weights of the states ahead and at some times, in turn."""
+    weights = []
+    for (time, part, slope), later in zip(_lagrange(times, t), ahead, strict=True):
+        bell = math.prod(part) ** 2
+        along = (t - time) * bell / (later - time)
+        weights += [along, bell * (1 - 2 * (t - time) * sum(slope)) - along]
+    return weights
 
 
 def _touch(pair: PairModel, weights: list[float], trail: Sequence[Touch]) -> Touch:

@@ -22,7 +22,7 @@ from tsm.groups import ExactGroup
 from tsm.inertia import Symmetric, negatives
 from tsm.rods.layout import OWN
 from tsm.rods.records import RodBalance
-from tsm.rods.variation import Bordered, modes_at_least, variation
+from tsm.rods.variation import modes_at_least, variation
 from tsm.state import State
 from tsm.system import Assembler, Linearisation
 
@@ -187,31 +187,29 @@ def _with_variation(
     ``symmetric``: units of the unknowns, and how many forces of contacts are unknown.
     """
     model, (group, balance), (units, multipliers) = assembler.model, exact, symmetric
-    mixed = len(model.groups) > 1
-    known = system.tangent.groups[group.number] if mixed or "tangent" in system.__dict__ else None
-    second = variation(group.rods, state, balance, known.transfer if known else None)
-    border, aside, before = model.border, model.border_dofs, 36 * len(model.closed)
+    tangent, border, aside, before = system.tangent, model.border, model.border_dofs, 36 * len(model.closed)
+    rods = tangent.groups[group.number]
+    second = variation(group.rods, state, balance, rods.transfer)
     moments = [part.moments for part in second.bordered]
     angles = [part.slots.count(-1) - part.moments for part in second.bordered]
     right = np.zeros((model.equations + 1, border + sum(angles) + sum(moments)))
     corner = np.eye(right.shape[1])
+    right[:, :border], corner[:border, :border] = tangent.right, tangent.corner
     values = second.tangent.reshape(len(second.tangent), -1).T
-    closed = [part.tangent.ravel() for part in system.tangent.groups[: group.number]] if mixed else []
+    closed = [part.tangent.ravel() for part in tangent.groups[: group.number]]
     flat = np.concatenate([*closed, values.ravel(), assembler.spring_values])
     band = np.bincount(assembler.scatter, flat, assembler.band_size + 1)[:-1].reshape(model.banded, -1)
-    there = slice(before, before + values.size if mixed else None)
-    if mixed:
-        tangent = system.tangent
-        flat = (values - tangent.groups[group.number].tangent).ravel()
-        right[:, :border], corner[:border, :border] = tangent.right, tangent.corner
     if aside:
-        added = np.bincount(assembler.scatter_right[there], flat, assembler.size + 1)[:-1]
+        there = assembler.scatter_right[before : before + values.size]
+        added = np.bincount(there, (values - rods.tangent).ravel(), assembler.size + 1)[:-1]
         right[:, :border] += added.reshape(-1, border)
     spare = border
     for part in second.bordered:
-        own, spare = _columns(part, aside, spare)
-        if mixed:
-            right[:, own] = corner[own] = corner[:, own] = 0.0
+        own = np.array(part.slots) + aside
+        new = np.array(part.slots) < 0
+        own[new] = spare + np.arange(np.count_nonzero(new))
+        spare += int(np.count_nonzero(new))
+        right[:, own] = corner[own] = corner[:, own] = 0.0
         right[model.equation[group.dofs[:, part.element], None], own] = part.matrix[:OWN, OWN:]
         corner[own[:, None], own] = part.matrix[OWN:, OWN:]
     for pair, touch in zip(model.pairs, state.touches, strict=True):
@@ -234,12 +232,3 @@ def _with_variation(
         units=units[: model.banded],
         multipliers=multipliers + sum(moments),
     )
-
-
-def _columns(part: Bordered, aside: int, spare: int) -> tuple[Array, int]:
-    """Places of an element's unknowns in the border, and the next free one."""
-    own = np.array(part.slots) + aside
-    new = np.array(part.slots) < 0
-    count = int(np.count_nonzero(new))
-    own[new] = np.arange(spare, spare + count)
-    return own, spare + count
