@@ -40,7 +40,7 @@ class Grip(NamedTuple):
     """State of a closed contact with friction."""
 
     slip: int  # sign of the slip rate, 0 in stick
-    held: Place | None  # place at which the row of stick is zero, see `tsm.rolling`; None in slip
+    held: Place | None  # place at which the row of stick is zero, see `tsm.energy`; None in slip
 
 
 UNDECIDED = Grip(slip=0, held=None)

@@ -19,7 +19,6 @@ from comparisons.response.round_off import (
     UNRESOLVED,
     force_round_off,
     least_force,
-    least_force,
 )
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 

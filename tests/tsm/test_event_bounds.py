@@ -16,13 +16,12 @@ from tests.tsm.structures import SECTION, beam, cantilever
 from tsm.contact_set import initial_state, rearm
 from tsm.crossing import crossing
 from tsm.events import EventKind
-from tsm.margins import Margin
+from tsm.margins import Margin, broken
 from tsm.model import Model
 from tsm.newton import Newton
 from tsm.projection import arc_position, slide
 from tsm.root import find_root
 from tsm.scales import joined_extents, sizes_of
-from tsm.search import broken
 
 
 def open_states(*path):
