@@ -12,7 +12,7 @@ angle theta, the shear angle ``psi = phi - theta`` and the mean turn theta'::
 
 What friction dissipates is ``F_t v``: the power of the node less that of the strain energy. The starred
 values are those in the held place. On the axis, under a sharp pin, the row is ``s = s*``. What the mean of A
-leaves out where a contact rolls, `tsm.rolling` takes into the held place.
+leaves out where a contact rolls, `tsm.energy` takes into the held place.
 """
 
 from __future__ import annotations
