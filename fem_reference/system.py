@@ -27,8 +27,8 @@ from fem_reference.contact import Touch
 from fem_reference.end_section import COLUMNS, ROTATION
 from fem_reference.factor import Factor
 from fem_reference.friction import slip_gradient, stiffness
+from fem_reference.loads import increment
 from fem_reference.problem import Pin
-from fem_reference.stages import increment
 from fem_reference.state import State
 
 
@@ -104,9 +104,7 @@ class Tangent:
 
     state: State  # the state of linearisation
     factors: tuple[Factor, ...]  # factorised stiffness of every body
-    # first half ``(m, k)`` of the solution ``K^-1 U`` for the columns of the closed contacts and end sections over
-    # the unknowns, see `fem_reference.factor.Factor`
-    V: Floats
+    V: Floats  # first half ``(m, k)`` of ``K^-1 U`` for the columns over the unknowns, see `Factor`
     border: Border  # curvatures and constraints over the columns
 
     @cached_property
