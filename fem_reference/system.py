@@ -48,9 +48,7 @@ class Border:
     A: Floats  # curvatures ``(k, k)``: the Hessian without constraints is ``K - U A U^T``
     N: Floats  # directions ``(k, c)`` of the constraints' forces ``U N``: gaps, friction, then ties
     M: Floats  # gradients ``(k, c)`` of the constraints ``U M``. They differ from N for friction only
-    # flexibilities ``(c, c)``: of contacts and ties on the diagonal [m/N]; where a contact slips, the factor 1 of its
-    # tangential force, and beside it the factor ``-sigma mu`` of the normal force
-    C: Floats
+    C: Floats  # flexibilities ``(c, c)`` [m/N]; of a contact that slips 1, and ``-sigma mu`` at its normal force
     rates: Floats  # the same for changes along the path, on which augmented Lagrangian steps remove a contact's flexibility
     contacts: tuple[slice, ...]  # columns of each closed contact
 
