@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from bisect import bisect_left
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 from itertools import accumulate, pairwise
 
@@ -28,7 +27,7 @@ class Polyline:
         legs = [math.dist(a, b) for a, b in pairwise(self.points)]
         if not math.isfinite(sum(legs)):
             return list(accumulate(legs, initial=0.0))
-        return [float(reached) for reached in accumulate(map(Fraction, legs), initial=Fraction(0))]
+        return [math.fsum(legs[:corner]) for corner in range(len(legs) + 1)]
 
     @property
     def length(self) -> float:

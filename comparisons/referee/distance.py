@@ -212,7 +212,7 @@ def _section_differences(
     for letter, name in (("N", "N"), ("V", "Q"), ("M", "moment")):
         values = getattr(at, letter)
         offs = (
-            (values - getattr(station, name))[np.unique([begins, begins + 1])],
+            (values - getattr(station, name))[sorted({*begins, *(begins + 1)})],
             ((values[1:] + values[:-1]) / 2.0)[kept] - getattr(middle, name),
         )
         yield letter, min(float(np.max(np.nan_to_num(np.abs(off), nan=np.inf), initial=0.0)) for off in offs)

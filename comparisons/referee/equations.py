@@ -144,7 +144,7 @@ def solved(system: System, held: Ints | None = None) -> Array | None:
         hessian[held], hessian[:, held], gradient[held] = 0.0, 0.0, 0.0
         hessian[held, held] = 1.0
     row, column, entry = _entries(hessian)
-    if not np.all(np.isfinite(entry)) or len(np.unique(row)) < len(hessian):
+    if not np.all(np.isfinite(entry)) or len(set(row.tolist())) < len(hessian):
         return None
     # EI, EA and forces differ by orders of magnitude
     scale = _scales(row, column, entry)

@@ -70,7 +70,7 @@ def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
     start = _fitted(layout, mesh, z, np.concatenate(seen), _FIT_LOW)
     best = correct(start, _ITERATIONS)
     # arc positions of contacts and forces of parts are more accurate in an answer than rotations
-    for held in (layout.arcs, np.union1d(layout.arcs, layout.forces)):
+    for held in (layout.arcs, np.array(sorted({*layout.arcs, *layout.forces}), dtype=int)):
         if _is_near(z, best):
             break
         other = correct(_rotations_corrected(start, held), _ITERATIONS)

@@ -81,9 +81,10 @@ class RodShape(NamedTuple):
             length = self.length[segment]
             sigma = (arc - self.arc[segment]) / length if length else np.zeros(len(arc))
             return self.within(segment, sigma)
-        parts = [self.at(element, arc[within == n]) for n in range(last - first + 1) if n in within]
+        numbers = sorted(set(within.tolist()))  # `np.unique` imports numpy.ma
+        parts = [self.at(element, arc[within == n]) for n in numbers]
         stations = Station(*(np.empty((len(arc), *value.shape[1:])) for value in parts[0]))
-        for n, part in zip(np.unique(within), parts, strict=True):
+        for n, part in zip(numbers, parts, strict=True):
             for whole, value in zip(stations, part, strict=True):
                 whole[within == n] = value
         return stations
