@@ -113,17 +113,6 @@ def test_solve_writes_a_history_and_a_picture(tmp_path, monkeypatch, capsys):
     assert "</svg>" in Path("a.svg").read_text(encoding="utf-8")
 
 
-def test_the_element_suits_and_is_named(capsys):
-    for options, setting, chosen in (
-        ([], "exact 1, 14 unknowns", True),
-        (["--element", "timoshenko", "--elements", "4"], "timoshenko 4,", False),
-    ):
-        assert main(["solve", "two-pins", *options]) == 0
-        out = capsys.readouterr().out
-        assert f"  model        tsm, {setting}" in out
-        assert ("  element      " in out) == chosen
-
-
 def test_an_answer_of_the_solid_that_is_read_back_is_in_balance(tmp_path, capsys):
     """A strip that moves as a whole: rounded positions alone make forces, and the file has how large they are."""
     scene = str(Path(__file__).parent / "referee" / "scenes" / "unloaded.toml")

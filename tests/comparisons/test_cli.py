@@ -38,13 +38,6 @@ def run(line: str) -> int:
         return int(exit_.code or 0)
 
 
-def test_scenes_are_listed(capsys):
-    assert run("scenes") == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines] == sorted(built_in_scenes())
-    assert all(len(line.split()) > 2 for line in lines)
-
-
 def test_the_table_of_commands_is_whole_and_its_old_names_are_gone():
     commands = {name: stated["arguments"].split() for name, stated in STATED["command"].items()}
     named = [argument for arguments in commands.values() for argument in arguments]

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 import tsm
-from comparisons.claims.paper import fig9 as double_beam
 from comparisons.models import solve as solve_scene
-from comparisons.models.options import Options
 from comparisons.models.tsm import to_structure
 from comparisons.scene import load_scene
-from tests.oracles.coupled import pair_of
-from tests.tsm.structures import KS_PATH, essentials, raised, steps
+from tests.tsm.structures import essentials, raised, steps
 from tests.verification.structures import (
-    KS,
     LENGTH,
     PINS,
     SECTION,
@@ -75,72 +69,6 @@ def test_41_at_60_depths_and_its_slip_off(x, stated):
         assert np.abs(over.tips["b"][-1] - [LENGTH, 0.0]).max() <= 1e-9
 
 
-def test_double_beam_stages(stated):
-    scene, bound = load_scene("double-beam"), 1e-8
-    double = tsm.solve(to_structure(scene, element="exact"), steps(76))
-    upper, tip, lower = (
-        double.contacts[name] for name in (double_beam.UPPER, double_beam.TIP, double_beam.LOWER)
-    )
-    expected = [(TOUCH, double_beam.TIP), (OFF, double_beam.UPPER), (TOUCH, double_beam.LOWER), (RELEASE, double_beam.TIP), (OFF, double_beam.LOWER)]  # fmt: skip
-    assert essentials(double) == expected
-    depth = 0.76 * double.load_parameter
-    stage = (depth > 0.15) & (depth < 0.535)
-    exact = pair_of(scene).stage(depth[stage])
-    differences = (
-        upper.force[stage] / np.hypot(*exact.pin_force.T) - 1,
-        tip.force[stage] / np.hypot(*exact.tip_force.T) - 1,
-        upper.arc_position[stage] - exact.pin_arc,
-        tip.arc_position[stage] - exact.tip_arc,
-    )
-    off = [np.abs(differences).max()]
-    moments = np.stack(
-        [double.supports[f"{name}.start"].moment[stage] for name in ("upper", "lower")], axis=1
-    )
-    assert np.abs(moments + exact.clamp_moments).max() <= bound * np.abs(moments).max()
-    times = [0.76 * e.load_parameter for e in double.events if e.kind is not tsm.EventKind.PASS_THROUGH]
-    off.append(max(abs(times[0] - exact.touch_depth), abs(times[1] - exact.end_depth)))
-    alone = (depth > 0.54) & (depth < 0.73)
-    rod = pair_of(scene).single(depth[alone] - 0.2)
-    assert lower.force[alone] == pytest.approx(rod.magnitude[1:], rel=bound)
-    assert times[-1] == pytest.approx(double_beam.EVENTS["slip-off"], abs=bound)
-    assert np.abs(double.tips["lower"][depth > 0.74] - [1.0, -0.2]).max() <= 1e-9
-    assert max(off) <= bound
-    stated("exact.double-beam", off[0], bound=True)
-    stated("exact.double-beam-events", off[1], bound=True)
-
-
-SLENDER, SHEAR = (10, 20, 50, 100, 1e3, 1e4, 1e5, 1e6), (1e-2, 1e-1, 1 / 2.6, 1e3, 1e12)
-CORNERS = {(10, 1e-2), (1e6, 1e12)}
-
-
-@pytest.mark.parametrize(
-    ("slenderness", "shear"),
-    [pytest.param(s, g, marks=() if (s, g) in CORNERS else pytest.mark.slow) for s in SLENDER for g in SHEAR],
-)
-def test_slenderness_and_shear_modulus(slenderness, shear, stated):
-    """KS with L/h from 10 to 1e6 and G/E from 1e-2 to 1e12: against the rod, in 50 steps and in one."""
-    h = 1 / slenderness
-    section = tsm.Section.rectangle(width=h, height=h, youngs_modulus=1.0, shear_modulus=shear)
-    structure = cantilever(KS_PATH, section=section)
-    result, error = off_rod(structure, steps(50))
-    assert error <= 1e-8
-    stated("exact.slenderness", error, part=True)
-    at_once = tsm.solve(structure, steps(1))
-    assert at_once.newton_iterations.sum() <= 80
-    assert np.abs(dimensionless(at_once)[-1] - dimensionless(result)[-1]).max() <= 1e-8
-
-
-@pytest.mark.parametrize(("elements", "x"), [(1, 5e-324), (11, 1e-16), (1, 1e-8), (11, 1e-4)])
-def test_near_the_clamp(elements, x):
-    """Raised by a part of the distance, which positions resolve to 1e-13 of the length: shear alone carries the force."""
-    for section, length in SECTIONS.values():
-        path = ((x * length, 0.0), (x * length, max(0.02 * x * length, 5e-324)))
-        result = tsm.solve(cantilever(path, section=section, length=length, elements=elements), steps(3))
-        assert result.cutbacks == 0
-        if x >= 1e-8:
-            assert result.contacts["p0->b"].force[-1] == pytest.approx(0.02 * section.GA, rel=1e-3)
-
-
 def test_near_the_tip():
     """The slip-off is the rod's; the slid way is as depth^2, located to 1e-12, and a contact within 1e-10 of the tip is at the tip."""
     for section, length in SECTIONS.values():
@@ -153,19 +81,3 @@ def test_near_the_tip():
             assert squares == pytest.approx(
                 [] if np.isnan(expected) else [(0.02 * expected) ** 2], abs=located
             )
-
-
-def test_strong_tension():
-    """Clamped at both ends and pushed aside by a fifth of its length: the referee's axial force is more than 500 EI/L^2."""
-    scene = load_scene("ks-cantilever")
-    beam = replace(scene.beams[0], clamped=("start", "end"))
-    pin = replace(scene.pins[0], start=(0.5, 0.0), displacement=(0.0, 0.2))
-    held = replace(scene, beams=(beam,), pins=(pin,), load_parameters=4)
-    answer, exact = (
-        solve_scene(held, name, options)
-        for name, options in (("tsm", Options(element="exact")), ("rod", Options()))
-    )
-    assert exact.supports["cantilever.start"].force[-1, 0] < -500 * KS.EI
-    for found, expected in ((answer.contacts, exact.contacts), (answer.supports, exact.supports)):
-        for name in expected:
-            assert found[name].force[-1] == pytest.approx(expected[name].force[-1], rel=1e-9)
