@@ -10,9 +10,9 @@ from __future__ import annotations
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
-from tsm.elements.chord_contact import INSIDE
 
-from tsm.elements import CLOSED_FORM, ClosedForm, beam, cantilever
+from tsm.elements import CLOSED_FORM, ClosedForm, beam
+from tsm.elements.kinds.paper import INSIDE, cantilever
 from tsm.elements.properties import Array, Properties
 
 TURNED = "euler-bernoulli-cantilever, turned frame"
@@ -35,7 +35,7 @@ def _turned(p: Properties, x: Array, lever: Any) -> tuple[Array, Array]:
     t, n = _frame(p, x)
     d, r = np.array([p.dx0, p.dy0]) + (x[3:5] - x[:2]), -np.asarray(lever)
     xi = min(max(t @ r / p.l0, INSIDE), 1 - INSIDE)
-    K, _ = cantilever.euler_bernoulli(p, xi)
+    K = cantilever(p, xi)
     Yj, Yc, Mj = K @ np.array([n @ d, n @ r, x[5] - x[2]])
     length = np.sqrt(d @ d)
     du = d - np.array([p.dx0, p.dy0])
