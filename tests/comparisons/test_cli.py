@@ -63,41 +63,6 @@ def test_solve_prints_a_summary_and_writes_json_and_vtk(scene, capsys):
     assert [len(list(Path("vtk").glob(f"*.{kind}"))) for kind in ("pvd", "vtm", "vtu")] == [1, 4, 12]
 
 
-BAD = {
-    "": "COMMAND",
-    "solve my.toml --model nosuch": "nosuch",
-    "solve my.toml --model tsm --elements 0": "--elements",
-    "solve my.toml --model tsm --elements 1000001": "elements",
-    "solve my.toml --model tsm --element nosuch": "nosuch",
-    "solve my.toml --model tsm --element mixed --integration-tolerance 1e-9": "tolerance",
-    "solve my.toml --model tsm --element exact --integration-tolerance 1e-17": "tolerance",
-    "solve my.toml --model rod --elements 3": "elements",
-    "solve my.toml --model solid --mesh 50": "--mesh",
-    "solve my.toml --accuracy 1e-3 --mesh 5x2": "--mesh: is what --accuracy chooses",
-    "solve my.toml --accuracy 1e-3 --model rod": "model = rod: has no resolution to choose",
-    "solve my.toml --accuracy 0": "must be a number between 0 and 1",
-    "solve my.toml --accuracy length=1e-3": "must be QUANTITY=X, one of force, arc",
-    "solve nosuch.toml --model tsm": "nosuch.toml",
-    "solve my.toml --model tsm --out none/a.json": "none/a.json: cannot be written",
-    "solve my.toml --out a.gif": "must end in",
-    "solve my.toml --out=": "--out: must end in .json, .csv",
-    "solve my.toml --csv a.csv": "--csv: is no longer an option, see --out FILE.csv",
-    "solve my.toml --model tsm --out my.toml": "must end in",
-    "compare my.toml --out my.toml": "cannot be written",
-    "view my.toml --out out --scale -1": "--scale",
-}
-
-
-@pytest.mark.parametrize("line", BAD)
-def test_bad_input_is_status_2_with_one_reason_and_no_file(line, scene, capsys):
-    assert run(line) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    (reason,) = [said for said in err.splitlines() if said.startswith("crossval")]
-    assert BAD[line] in reason
-    assert [path.name for path in scene.iterdir()] == ["my.toml"]
-
-
 def test_a_model_that_cannot_state_the_scene_says_why(scene, capsys):
     text = KS.replace("width = 0.02", "area = 4e-4").replace("height = 0.02", "second_moment = 1.3333e-6")
     Path("my.toml").write_text(text)

@@ -109,34 +109,6 @@ def test_a_solution_that_stops_holds_no_bound(tmp_path, capsys):
     assert error.startswith("crossval: ")
 
 
-BAD = {
-    "ks-cantilever --max-error force=-1": "force=-1: must be a positive number",
-    "ks-cantilever --max-error force=nan": "force=nan: must be a positive number",
-    "ks-cantilever --max-error weight=1": "weight=1: must be QUANTITY=X",
-    "ks-cantilever --max-error tip=1 --max-error tip=2": "bounds a quantity twice",
-    "ks-cantilever --max-error stress=1": "stress: is measured between two solids of a single beam",
-    "ks-cantilever --max-error tip=1 --model rod": "rod: is measured against itself",
-    "ks-cantilever --max-error tip=1 --quick": "--quick: is no option of --max-error",
-    "ks-cantilever two-pins --max-error tip=1": "--max-error: takes a single scene",
-    "ks-cantilever two-pins --element mixed": "--element: is no option of several scenes",
-    "ks-cantilever --max-error tip=1 --out a.txt": "a.txt: must end in .xml",
-    "tip-load --max-error arc=1": "arc: the scene has none",
-    "two-pins --max-error friction=1": "friction: no touched beam is held by one clamp alone",
-}
-
-
-@pytest.mark.parametrize("line", BAD)
-def test_bad_bounds_and_options_are_one_line_and_no_file(line, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    try:
-        status = main(["compare", *line.split()])
-    except SystemExit as end:
-        status = end.code
-    out, error = capsys.readouterr()
-    assert (status, out, list(tmp_path.iterdir())) == (2, "", [])
-    assert BAD[line] in error.splitlines()[-1]
-
-
 def test_gaps_and_events_tell_of_another_path(tmp_path, capsys):
     """The pin is .02 below the arm and moves up by .05, so that it touches at .4 and is .0075 away at the first load parameter."""
     scene, file = read_scene(ARM, "arm"), tmp_path / "arm.toml"
