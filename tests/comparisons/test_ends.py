@@ -16,7 +16,6 @@ from comparisons.response import Response
 from comparisons.scene import (
     BeamSpec,
     ContactSpec,
-    InputError,
     LoadSpec,
     PinSpec,
     Scene,
@@ -180,12 +179,6 @@ contact = [{{ node = "ball", beam = "b", side = "right", surface = "face" }}]
 """,
         "nose.toml",
     )
-
-
-def test_a_pin_over_an_end_is_refused():
-    with pytest.raises(InputError, match="must lie clear of the end"):
-        nose(start=(42.0, 0.0))
-    nose(start=(42.5, 0.0))
 
 
 def test_check_names_a_path_that_comes_to_an_end(tmp_path, capsys):

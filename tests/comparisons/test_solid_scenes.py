@@ -17,11 +17,7 @@ EXACT = Options(element="exact")
 
 
 def scene(
-    height: float,
-    conditions: str,
-    more: str = "",
-    size: str = "",
-    axis: str = "start = [0, 0]\nend = [1, 0]",
+    height: float, conditions: str, more: str = "", size: str = "", axis: str = "start = [0, 0]\nend = [1, 0]"
 ) -> Scene:
     """A strip "s" of length 1, EI = 1 where it is thickest; `more` are beams of the same section."""
     width = 12.0 / height**3
@@ -146,10 +142,7 @@ HINGED = scene(
 
 @pytest.mark.parametrize(
     ("clamp", "cure"),
-    [
-        ("rod", "use a pinned support and a [[spring]] with a rotation"),
-        ("full", 'use solid_clamp = "rod"'),
-    ],
+    [("rod", "use a pinned support and a [[spring]] with a rotation"), ("full", 'use solid_clamp = "rod"')],
 )
 def test_a_hinge_at_a_clamp_is_refused_with_its_cure(clamp, cure):
     with pytest.raises(ModelError) as caught:

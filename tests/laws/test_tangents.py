@@ -10,14 +10,7 @@ from tests.laws.scenes import ELEMENTS, scene, states
 
 LOOSE, SHARP = 1e-5, 1e-9
 STEP = (0.9, 0.92)
-SCENES = {
-    "world-0": 1,
-    "world-2": 1,
-    "world-13": 1,
-    "world-20": 1,
-    "held-8": 1,
-    "friction-10": 2,
-}
+SCENES = {"world-0": 1, "world-2": 1, "world-13": 1, "world-20": 1, "held-8": 1, "friction-10": 2}
 """Number of iterations by scene; the pin's path with friction has more than one step."""
 CASES = [(model, name) for name in SCENES for model in (*ELEMENTS, "solid") if states(model, scene(name))]
 QUICK = [("exact", "world-20"), ("mixed", "world-20"), ("timoshenko", "world-2"), ("exact", "friction-10"), ("mixed", "friction-10"), ("solid", "world-20")]  # fmt: skip

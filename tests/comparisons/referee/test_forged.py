@@ -44,9 +44,7 @@ SOURCES: dict[str, tuple[Scene, tuple[str, ...]]] = {
     "smooth": (cantilever(0.0, 20), EXACT),
 }
 """Scenes, and the options of the model whose true answers are forged."""
-SCENES = {
-    "left": cantilever(0.0, STEPS, (1.0, 0.0), (0.0, 2.0 / np.pi), side="left"),
-}
+SCENES = {"left": cantilever(0.0, STEPS, (1.0, 0.0), (0.0, 2.0 / np.pi), side="left")}
 """Scenes that are judged with answers of others."""
 
 

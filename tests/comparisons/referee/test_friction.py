@@ -164,11 +164,7 @@ def test_a_strut_buckles_in_stick_whatever_the_steps():
 @pytest.mark.slow_at("axis-None-1.0-0.003-8", "face-0.1-20.0-0.003-8")
 @pytest.mark.parametrize(
     ("surface", "radius", "friction", "gap", "steps"),
-    [
-        ("axis", 0.1, 1.0, 0.0, 2),
-        ("axis", None, 1.0, 0.003, 8),
-        ("face", 0.1, 20.0, 0.003, 8),
-    ],
+    [("axis", 0.1, 1.0, 0.0, 2), ("axis", None, 1.0, 0.003, 8), ("face", 0.1, 20.0, 0.003, 8)],
 )
 def test_a_pin_that_sticks_where_it_touches_is_certified(surface, radius, friction, gap, steps):
     """A round pin rolls. With and without events."""
