@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from pathlib import Path
 from xml.etree import ElementTree as ET
 
 import numpy as np
@@ -10,23 +11,9 @@ import pytest
 from comparisons.cli import main
 from comparisons.errors import errors, worst_place
 from comparisons.models import solve
-from comparisons.scene import built_in_scenes, read_scene
+from comparisons.scene import built_in_scenes, load_scene, read_scene
 
 KS = built_in_scenes()["ks-cantilever"].replace("load_parameters = 50", "load_parameters = 4")
-ARM = """
-scene = { name = "arm", load_parameters = 4 }
-pin = [{ name = "pin", start = [0.6, -0.02], displacement = [0, 0.05] }]
-contact = [{ node = "pin", beam = "arm", side = "right" }]
-[[beam]]
-name = "arm"
-start = [0, 0]
-end = [1, 0]
-clamped = ["start"]
-width = 0.1
-height = 0.1
-youngs_modulus = 1e7
-poissons_ratio = 0.25
-"""
 
 
 def gate(scene, *bounds, **options):
@@ -109,10 +96,10 @@ def test_a_solution_that_stops_holds_no_bound(tmp_path, capsys):
     assert error.startswith("crossval: ")
 
 
-def test_gaps_and_events_tell_of_another_path(tmp_path, capsys):
+def test_gaps_and_events_tell_of_another_path(capsys):
     """The pin is .02 below the arm and moves up by .05, so that it touches at .4 and is .0075 away at the first load parameter."""
-    scene, file = read_scene(ARM, "arm"), tmp_path / "arm.toml"
-    file.write_text(ARM)
+    file = Path(__file__).with_name("arm.toml")
+    scene = load_scene(str(file))
     assert gate(str(file), "event=1e-9", "gap=1e-9", element="mixed", against="tsm") == 0
     assert gate(str(file), "event=1e-9", against="tsm") == 2
     assert "tsm: is measured against itself" in capsys.readouterr().err

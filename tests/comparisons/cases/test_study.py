@@ -13,7 +13,7 @@ from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.scene import load_scene
 from docs.extensions.messages import SCENES
-from tests.comparisons.cases.conftest import crossval, rows
+from tests.comparisons.cases.conftest import MANY, crossval, rows
 
 HEAD = '[study]\nname = "mine"\nscene = "ks-cantilever"\nrepeats = 1\n'
 RUN = '[[run]]\nmodel = "tsm"\n'
@@ -57,8 +57,7 @@ def test_a_row_is_the_answer_at_the_last_load_parameter(many):
 
 def test_the_table_and_what_is_done_is_not_done_again(many, capsys):
     before, kept = many.read_text(), {file.name for file in many.with_suffix("").iterdir()}
-    study = many.with_suffix(".toml")
-    assert crossval("run", study, "--out", many.parent, "--workers", "1") == 0
+    assert crossval("run", MANY, "--out", many.parent, "--workers", "1") == 0
     out, err = capsys.readouterr()
     lines = out.splitlines()
     assert lines[0].split()[:4] == ["model", "element", "elements", "integration_tolerance"]
@@ -92,7 +91,7 @@ def test_progress_is_a_bar_on_a_terminal_and_lines_elsewhere(many, tmp_path, mon
             if told["model"] == "rod" or told["response"]["status"] == "REFUSED":
                 file.unlink()
         monkeypatch.setattr(sys, "stderr", stream)
-        assert crossval("run", many.with_suffix(".toml"), "--out", folder, "--workers", "1") == 0
+        assert crossval("run", MANY, "--out", folder, "--workers", "1") == 0
         text = stream.getvalue()
         if stream.isatty():
             first, *_, last = text.split("\r")[1:]
