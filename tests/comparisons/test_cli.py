@@ -63,17 +63,6 @@ def test_solve_prints_a_summary_and_writes_json_and_vtk(scene, capsys):
     assert [len(list(Path("vtk").glob(f"*.{kind}"))) for kind in ("pvd", "vtm", "vtu")] == [1, 4, 12]
 
 
-def test_a_model_that_cannot_state_the_scene_says_why(scene, capsys):
-    text = KS.replace("width = 0.02", "area = 4e-4").replace("height = 0.02", "second_moment = 1.3333e-6")
-    Path("my.toml").write_text(text)
-    assert run("solve my.toml --model solid") == 2
-    assert capsys.readouterr().err == (
-        'crossval: solid: the solid model needs the width and height of beam "cantilever": the rectangle of its area '
-        "and second moment is 0.2 high, more than an eighth of the length\n"
-    )
-    assert run("solve my.toml --model tsm") == 0
-
-
 def test_solve_to_an_accuracy(scene, capsys):
     assert run("solve my.toml --accuracy 1e-3") == 0
     out, err = capsys.readouterr()

@@ -13,6 +13,7 @@ REFUSED = tomllib.loads(Path(__file__).with_name("refused.toml").read_text(encod
 KS = built_in_scenes()["ks-cantilever"].replace("load_parameters = 50", "load_parameters = 4")
 STUDY = '[study]\nname = "mine"\nscene = "ks-cantilever"\nrepeats = 1\n[[run]]\nmodel = "tsm"\n'
 FILES = {"my.toml": KS, "there.toml": KS.replace('side = "right"', 'side = "below"'), "study.toml": STUDY}
+FILES["many.toml"] = KS.replace("load_parameters = 4", "load_parameters = 100_000")
 CASES = [
     *((line, said, {}) for line, said in REFUSED["commands"].items()),
     *(("run my.toml --out out", f"my.toml: {said}", {"my.toml": STUDY + text}) for said, text in REFUSED["runs"].items()),

@@ -14,6 +14,7 @@ from comparisons.models.options import Options
 from comparisons.scene import load_scene
 from docs.extensions.messages import SCENES
 from tests.comparisons.cases.conftest import MANY, crossval, rows
+from tests.comparisons.test_progress import Terminal
 
 HEAD = '[study]\nname = "mine"\nscene = "ks-cantilever"\nrepeats = 1\n'
 RUN = '[[run]]\nmodel = "tsm"\n'
@@ -73,11 +74,6 @@ def test_the_table_and_what_is_done_is_not_done_again(many, capsys):
     assert many.read_text() == before
     assert {file.name for file in many.with_suffix("").iterdir()} == kept
     assert len(kept) == 12
-
-
-class Terminal(io.StringIO):
-    def isatty(self):
-        return True
 
 
 @pytest.mark.slow

@@ -60,12 +60,6 @@ def test_a_new_scene_is_like_a_built_in_one():
         mine.unlink()
 
 
-def test_a_new_scene_is_not_like_a_file_with_the_name_of_a_built_in_one(capsys):
-    Path("mine.toml").write_text(KS)
-    said = refused(["new", "other", "--like", "mine.toml"], capsys)
-    assert said == "mine.toml: must be a built-in scene, crossval scenes lists them"
-
-
 def test_every_built_in_scene_obeys_the_schema(capsys):
     assert main(["scenes", "--schema"]) == 0
     assert json.loads(capsys.readouterr().out) == json.loads(json.dumps(SCHEMA))
