@@ -11,12 +11,11 @@ from pathlib import Path
 
 import pytest
 
-from comparisons.cli import main
-
 # the table of the commands: that it is whole is the contract
 from comparisons.cli.command import COMMANDS
 from comparisons.cli.options import STATED
 from comparisons.scene import built_in_scenes
+from tests.comparisons.cases.conftest import crossval
 
 KS = built_in_scenes()["ks-cantilever"].replace("load_parameters = 50", "load_parameters = 4")
 BIN = Path(sys.executable).parent
@@ -31,11 +30,7 @@ def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def run(line: str) -> int:
-    """Return the exit status, argparse's own included."""
-    try:
-        return main(line.split())
-    except SystemExit as exit_:
-        return int(exit_.code or 0)
+    return crossval(*line.split())
 
 
 def test_the_table_of_commands_is_whole_and_its_old_names_are_gone():
