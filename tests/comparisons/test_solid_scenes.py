@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from comparisons.models import certified, solve
-from comparisons.models.options import ModelError, Options
+from comparisons.models.options import Options
 from comparisons.response import Response
 from comparisons.scene import Scene, load_scene, read_scene
 
@@ -133,19 +133,3 @@ def test_a_frame_of_a_user_is_the_rods():
     portal = load_scene(str(FINDINGS / "portal.toml"))
     beams = tuple(replace(item, material="biot-linear") for item in portal.beams)
     assert distance(replace(portal, beams=beams)) < 1e-4
-
-
-HINGED = scene(
-    0.02, CLAMP + END + "force = [0.0, 3.0]\n" + '[[hinge]]\nbeam = "s"\nend = "start"\nstiffness = 5.0\n'
-)
-
-
-@pytest.mark.parametrize(
-    ("clamp", "cure"),
-    [("rod", "use a pinned support and a [[spring]] with a rotation"), ("full", 'use solid_clamp = "rod"')],
-)
-def test_a_hinge_at_a_clamp_is_refused_with_its_cure(clamp, cure):
-    with pytest.raises(ModelError) as caught:
-        solve(replace(HINGED, beams=(replace(HINGED.beams[0], solid_clamp=clamp),)), "solid")
-    assert cure in str(caught.value)
-    assert "\n" not in str(caught.value)
