@@ -6,10 +6,18 @@ from fem_reference.conditions import Joint, Spring, Support
 from fem_reference.critical import CriticalPoint
 from fem_reference.loads import LineLoad, PointLoad
 from fem_reference.material import MATERIALS, PLANES
-from fem_reference.observe import axis_line, axis_stations, energy, fibre_stress, nodal_stress
+from fem_reference.observe import (
+    SectionForces,
+    axis_line,
+    axis_stations,
+    energy,
+    face_strains,
+    fibre_stress,
+    nodal_stress,
+    section_forces,
+)
 from fem_reference.problem import Contact, Pin, SolidProblem, default_penalty
 from fem_reference.result import ContactHistory, Result, SolveError, SupportHistory
-from fem_reference.sections import SectionForces, face_strains, section_forces
 from fem_reference.settings import Settings
 from fem_reference.solve import solve
 from fem_reference.status import Status

@@ -6,9 +6,9 @@
   ``(i, j, e, q)`` and a tangent ``(i, j, k, l, e, q)``.
 - Element matrices: element axis first, ``(e, 2 k, 2 k)``, local degree of freedom ``2 a + i``.
 - Displacements are in the frame of their strip; contact positions and results are in the global frame.
-- Only `fem_reference.mesh`, `mesh_file` and `sampling` read scikit-fem's arrays.
+- Only `fem_reference.mesh`, `mesh_file` and `end_section` read scikit-fem's arrays.
 
-Array functions accept complex arrays too, so that tests can check every derivative by complex steps.
+Material laws accept complex arrays too, so that tests can check their derivatives by complex steps.
 """
 
 from typing import Any, TypeAlias

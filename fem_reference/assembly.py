@@ -46,10 +46,8 @@ def pattern(mesh: Discretisation, expansion: csr_matrix, added: csr_matrix | Non
     unknown, factor = np.full(expansion.shape[0], -1), np.zeros(expansion.shape[0])
     unknown[given.row], factor[given.row] = given.col, given.data
     dofs = (2 * mesh.cells[:, :, None] + np.arange(2)).reshape(len(mesh.cells), -1)
-    rows, columns = (
-        np.concatenate([dofs[:, local].ravel() for local in entries])
-        for entries in zip(*_entries(mesh.cells.shape[1]), strict=True)
-    )
+    pairs = _entries(mesh.cells.shape[1])
+    rows, columns = (np.concatenate([dofs[:, pair[side]].ravel() for pair in pairs]) for side in (0, 1))
     kept = np.flatnonzero((unknown[rows] >= 0) & (unknown[columns] >= 0))
     i, j, factors = unknown[rows[kept]], unknown[columns[kept]], factor[rows[kept]] * factor[columns[kept]]
     factors[(rows[kept] != columns[kept]) & (i == j)] *= 2  # the entry and the transposed one
@@ -99,9 +97,8 @@ def internal_force(mesh: Discretisation, P: Array) -> Array:
 def element_entries(mesh: Discretisation, moduli: Callable[[Array], Array], u: Array) -> Array:
     """Entries of all element stiffnesses, the integral of ``dN/dX . A . dN/dX``, in one array.
 
-    ``moduli`` returns ``A = dP/dF`` ``(2, 2, 2, 2, e, q)`` for ``F`` ``(2, 2, e, q)``. A has major symmetry. The array has three
-    parts: the block of the first component of the shape functions a <= b, ``(e, k (k + 1) / 2)``; the same block of the second
-    component; the block of both components for all shape functions, ``(e, k k)``.
+    ``moduli`` returns the symmetric ``A = dP/dF`` for ``F`` ``(2, 2, e, q)``. The three parts are the blocks of the first and of the
+    second component for the shape functions a <= b, ``(e, k (k + 1) / 2)``, and that of both components for all, ``(e, k k)``.
     """
     elements, shapes = mesh.cells.shape
     half = shapes * (shapes + 1) // 2

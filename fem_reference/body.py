@@ -7,21 +7,12 @@ import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix
 
 from fem_reference.arrays import Floats
-from fem_reference.assembly import (
-    Pattern,
-    deformation_gradient,
-    element_entries,
-    internal_force,
-    pattern,
-)
+from fem_reference.assembly import Pattern, deformation_gradient, element_entries, internal_force, pattern
 from fem_reference.end_section import anchor
 from fem_reference.factor import Factor, factorise, full
 from fem_reference.material import Law, elastic_law
 from fem_reference.mesh import Discretisation, structured_mesh
 from fem_reference.strip import Strip
-
-ANCHORED = "start"
-"""End of a strip without a clamp at which its anchor is."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -41,10 +32,6 @@ class Body:
     offset: Floats  # start ``(2,)`` from that of the first strip, so that a distant scene loses no digits [m]
     round_off: float  # round-off of a nodal force [N], see `force_round_off`
 
-    def middle(self, end: str) -> Floats:
-        """Middle of the edge of an end, ``(2,)`` [m]."""
-        return np.asarray(self.mesh.nodes[self.mesh.edges[end][[0, -1]]].mean(axis=0))
-
     def internal_force(self, u: Floats) -> Floats:
         """Internal nodal forces ``(n, 2)`` [N] from nodal displacements ``u`` ``(n, 2)``."""
         return internal_force(self.mesh, self.law.stress(deformation_gradient(self.mesh, u)))
@@ -58,13 +45,12 @@ class Body:
         entries = element_entries(self.mesh, self.law.tangent, u)
         if not np.all(np.isfinite(entries)):
             return None
-        band = self.stiffness.band(entries)
-        return factorise(band if self.anchor is None else band + self.anchor)
 
-    def least_volume(self, u: Floats) -> float:
-        """Least determinant of the deformation gradient."""
-        F = deformation_gradient(self.mesh, u)
-        return float((F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0]).min())
+        def band() -> Floats:
+            K = self.stiffness.band(entries)
+            return K if self.anchor is None else K + self.anchor
+
+        return factorise(band)
 
     def strain_energy(self, u: Floats) -> float:
         """Strain energy [J]."""
@@ -84,7 +70,7 @@ def build_body(strip: Strip, before: Sequence[Body] = ()) -> Body:
     """Discretise a strip and its clamps; its nodes and unknowns follow those of the bodies ``before``."""
     mesh = discretise(strip)
     expansion = clamp(strip, mesh)
-    springs = None if strip.clamped else anchor(strip, mesh, expansion, ANCHORED)
+    springs = None if strip.clamped else anchor(strip, mesh, expansion)
     stiffness = pattern(mesh, expansion, springs)
     law = elastic_law(strip.material, strip.youngs_modulus, strip.poissons_ratio, strip.plane)
     first = before[0].strip if before else strip
@@ -120,9 +106,8 @@ def force_round_off(strip: Strip, mesh: Discretisation, law: Law) -> float:
 def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:
     """Matrix ``(2 n, m)`` from the unknowns, ordered along the strip, to the displacements that the clamps admit.
 
-    If the edge has no node at its middle, the rod's clamp sets the transverse displacement interpolated there from the
-    two adjacent nodes to zero. With three bilinear elements over the height the two displacements are opposite. At the end of an arc
-    the transverse direction is the section's there.
+    Without a node at the middle of the edge, the rod's clamp holds the displacement interpolated there from the two adjacent
+    nodes. At the end of an arc the transverse direction is the section's there.
     """
     n = len(mesh.nodes)
     factor = np.ones(2 * n)
@@ -143,9 +128,7 @@ def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:
             above = [2 * edge[k], 2 * edge[k] + 1]
             master[above] = 2 * edge[k - 1] + 1
             factor[above] *= y[k] / y[k - 1]
-    order = np.lexsort(
-        (np.round(mesh.places[:, 1] / strip.height, 9), np.round(mesh.places[:, 0] / strip.height, 9))
-    )
+    order = np.lexsort(np.round(mesh.places / strip.height, 9).T[::-1])
     along = (2 * order[:, None] + np.arange(2)).ravel()
     unknowns = along[(factor[along] != 0) & (master[along] == along)]
     column = np.full(2 * n, -1)

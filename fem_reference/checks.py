@@ -21,9 +21,8 @@ def require_positive(record: Any, *fields: str) -> None:
     """Require positive finite numbers, or None."""
     for field in fields:
         value = getattr(record, field)
-        require(
-            record, field, value is None or (isfinite(value) and value > 0), "must be positive and finite"
-        )
+        fits = value is None or (isfinite(value) and value > 0)
+        require(record, field, fits, "must be positive and finite")
 
 
 def require_finite(

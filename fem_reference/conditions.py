@@ -191,8 +191,7 @@ def require_held(
         for k in range(2 if joint.stiffness_of(end) == 0.0 else 3)
     ]
     free = null_space(np.array([np.zeros(3 * len(strips)), *rows]), rcond=1e-9).reshape(len(strips), -1)
-    loose = ", ".join(
-        sorted(name for name, number in numbers.items() if np.abs(free[number]).max(initial=0.0) > 1e-6)
-    )
+    moves = np.abs(free).max(axis=1, initial=0.0) > 1e-6
+    loose = ", ".join(sorted(strip.name for strip, loose in zip(strips, moves, strict=True) if loose))
     rule = f"must hold {loose}, with the pins that touch at the start"
     require(problem, "supports", not loose, rule, tuple(given for _, given in motions))

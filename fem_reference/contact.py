@@ -39,11 +39,7 @@ class Carrier:
 
     reference: Floats  # undeformed, relative to the model's origin, in the global frame, ``(m, 2)`` [m]
     rows: csr_matrix  # derivatives ``(2 m, 2 n)`` by the displacements, each in the frame of its strip
-
-    @cached_property
-    def transposed(self) -> csr_matrix:
-        """Transposed rows ``(2 n, 2 m)``."""
-        return csr_matrix(self.rows.T)
+    transposed: csr_matrix  # transposed rows ``(2 n, 2 m)``
 
     def points(self, u: Floats) -> Floats:
         """Positions ``(m, 2)`` at the nodal displacements ``u`` ``(n, 2)``."""
@@ -101,18 +97,12 @@ class Touch:
     pair: Pair
     at: Projection
     closed: bool = False  # whether the contact is active
-    armed: bool = (
-        True  # whether it may close: not after its node left over an end, until it is back on its side
-    )
+    armed: bool = True  # whether it may close: not while its node is over an end and not back on its side
     force: float = 0.0  # contact force lam, positive in compression; zero if open [N]
     multiplier: float = 0.0  # multiplier lam_0 of the augmented Lagrangian; zero for the penalty method [N]
-    direction: int = (
-        0  # 1 or -1 where the node slips along the strip's tangent or against it; 0 where it sticks
-    )
+    direction: int = 0  # 1 or -1 where the node slips along the tangent or against it; 0 where it sticks
     tangential: float = 0.0  # tangential force T on the strip along t; zero if open [N]
-    begin: Projection | None = (
-        None  # projection at the last accepted state, from which slip counts; None without friction
-    )
+    begin: Projection | None = None  # that of the last accepted state; None without friction
     slipped: float = 0.0  # sum of the slips up to there [m]
     dissipated: float = 0.0  # energy dissipated up to there [J]
 
@@ -154,9 +144,8 @@ class Touch:
     @property
     def vector(self) -> Floats:
         """Force ``-s lam n + T t`` ``(2,)`` of the node on the strip, in the global frame [N]."""
-        return np.asarray(
-            self.tangential * self.at.tangent - self.pair.contact.sign * self.force * self.at.normal
-        )
+        normal = self.pair.contact.sign * self.force * self.at.normal
+        return np.asarray(self.tangential * self.at.tangent - normal)
 
     @cached_property
     def slopes(self) -> Floats:

@@ -81,26 +81,20 @@ def _between(a: Accepted, b: Accepted, t: float) -> Accepted | None:
 
 
 def limit_point(a: Accepted, step: float) -> CriticalPoint | None:
-    """Search for a maximum of the load parameter beyond a state, starting with ``step``; None without one nearby.
-
-    The path is continued by displacement control: the displacement along the last rate is prescribed,
-    ``c . (u - u_a) = delta``, and the load parameter is an unknown. ``dt/ddelta = 1 / (c . v)`` vanishes at the limit.
-    """
+    """Maximum of the load parameter beyond a state, searched from ``step`` along its rate; None without one nearby."""
     model = a.state.model
     rate = a.rate(a.t, a.t + model.settings.min_step).u
     size = float(np.linalg.norm(rate))
     if not (np.isfinite(size) and size > 0):
         return None
+    # c . (u - u_a) = delta is prescribed, and dt/ddelta = 1 / (c . v) vanishes at the limit
     c = rate / size
 
     def evaluate(delta: float, near: State) -> tuple[float, State] | None:
         state = displacement_controlled(near, Control(origin=a.state.u, c=c, delta=delta))
         tangent = None if state is None else linearise(state)
-        rate = (
-            None
-            if tangent is None
-            else tangent.rate(tangent.state.t, tangent.state.t + model.settings.min_step)
-        )
+        t = 0.0 if state is None else state.t
+        rate = None if tangent is None else tangent.rate(t, t + model.settings.min_step)
         speed = 0.0 if rate is None else float(np.sum(c * rate.u))
         return None if state is None or not speed else (1 / speed, state)
 
@@ -175,12 +169,7 @@ def critical_point(near: Accepted, kind: str) -> CriticalPoint:
 
 
 def stable_branch(near: Accepted, limit: float) -> Accepted | None:
-    """State on a stable branch from a bifurcation, at a load parameter below ``limit``; None without one.
-
-    Equilibrium is sought at prescribed amplitudes of the mode, with both signs and successively halved. Of two stable
-    branches the one with lower energy at a common load parameter is returned; with equal energies, the one on which the strips
-    turn to the left.
-    """
+    """Stable branch of lower energy from a bifurcation, before ``limit``; of equal ones, that to the left; None without."""
     entries, vector, state = list[Accepted](), smallest_eigenpair(near)[1], near.state
     unit = _side(state, vector) * vector / np.sqrt(np.mean(vector**2))
     for sign in (1.0, -1.0):
@@ -218,11 +207,7 @@ def _side(state: State, vector: Floats) -> float:
 def potential(state: State, near: State) -> float:
     """Total potential energy; dead moments work on the turn from the state ``near``, less than half a turn away [J]."""
     model, poses = state.model, zip(state.poses, near.poses, strict=True)
-    turns = [
-        np.remainder(pose.motion[2] - other.motion[2] + np.pi, 2 * np.pi) - np.pi for pose, other in poses
-    ]
+    turns = [np.angle(np.exp(1j * (pose.motion[2] - other.motion[2]))) for pose, other in poses]
     work = np.sum(amount(model.loads, state.t) * state.u) + amount(model.moments, state.t) @ np.array(turns)
-    springs = sum(
-        tie.flexibility * force**2 / 2 for tie, force in zip(model.ties, state.tie_forces, strict=True)
-    )
+    springs = np.array([tie.flexibility for tie in model.ties]) @ state.tie_forces**2 / 2
     return float(sum(stored_energy(state)) + springs - work)

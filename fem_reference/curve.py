@@ -7,7 +7,6 @@ of the axis rotate the normal by up to ``F / (G A_e)``, depending on the positio
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -41,23 +40,19 @@ class ContactCurve:
 
     stations: Floats  # undeformed axial coordinates of the points, increasing, ``(m,)`` [m]
     slopes: csr_matrix  # from the points to the slopes of their spline at the stations, ``(m, m)`` [1/m]
+    spread: csr_matrix  # transposed `slopes`
     rows: csr_matrix  # weights ``(m, n)`` of the nodes in the points
     offsets: Floats  # offsets ``(q,)`` of the points in the moving average [m]
     kernel: Floats  # weights ``(q,)`` of these points
 
     def basis(self, zeta: float) -> Floats:
-        """Averaged cardinal splines and their first two derivatives at ``zeta``, ``(3, m)``."""
+        """Averaged cardinal splines and their derivatives at ``zeta``, ``(2, m)``."""
         k, factors = self.pieces(zeta)
-        first, both = int(k.min()), np.zeros((2, 3, self.stations.size))
+        first, both = int(k.min()), np.zeros((2, 2, self.stations.size))
         hot = np.eye(int(np.ptp(k)) + 2)[[k - first, k - first + 1]]
         part = slice(first, first + hot.shape[2])
-        both[..., part] = np.tensordot(factors.reshape(3, 2, 2, -1), hot, ((2, 3), (0, 1))).swapaxes(0, 1)
+        both[..., part] = np.tensordot(factors[:2].reshape(2, 2, 2, -1), hot, ((2, 3), (0, 1))).swapaxes(0, 1)
         return np.asarray(both[0] + (self.spread @ both[1].T).T)
-
-    @cached_property
-    def spread(self) -> csr_matrix:
-        """Transposed `slopes`."""
-        return csr_matrix(self.slopes.T)
 
     def at(self, zeta: float, X: Floats, D: Floats) -> Floats:
         """Position and first two derivatives ``(3, 2)`` of the curve with points X and slopes D at the stations."""
@@ -65,11 +60,8 @@ class ContactCurve:
         return np.asarray(factors.reshape(3, -1) @ np.concatenate([X[k], X[k + 1], D[k], D[k + 1]]))
 
     def pieces(self, zeta: float) -> tuple[Ints, Floats]:
-        """Spline intervals k ``(q,)`` around ``zeta``, and Hermite's polynomials there, times the kernel, ``(3, 4, q)``.
-
-        Rows: value, first and second derivative. Columns: factors of ``X_k``, ``X_k+1`` and the slopes at k and k + 1. Beyond
-        the ends the spline is continued along its tangents.
-        """
+        """Spline intervals k ``(q,)`` around ``zeta``, and Hermite's polynomials there, times the kernel, ``(3, 4, q)``."""
+        # rows: value, first and second derivative; columns: factors of X_k, X_k+1 and the slopes at k and k + 1
         s, places = self.stations, zeta + self.offsets
         inner = places
         leaves = bool(places[0] < s[0] or places[-1] > s[-1])  # the offsets increase
@@ -86,7 +78,7 @@ class ContactCurve:
         hermite[:, 2:] *= h
         hermite[1:] /= h
         hermite[2] /= h
-        if leaves:
+        if leaves:  # beyond the ends the spline goes on along its tangents
             beyond = places - inner
             hermite[0] += beyond * hermite[1]
             hermite[2] *= beyond == 0
@@ -116,7 +108,10 @@ def contact_curve(strip: Strip, mesh: Discretisation, contact: Contact) -> Conta
     offsets, kernel = averaging(spread, float(np.diff(stations).min()))
     # SciPy's equations for a spline of few stations are ill-conditioned if lengths are far from 1.
     slopes = cardinal_slopes(stations / strip.length) / strip.length
-    return ContactCurve(stations=stations, slopes=slopes, rows=rows, offsets=offsets, kernel=kernel)
+    spread = csr_matrix(slopes.T)
+    return ContactCurve(
+        stations=stations, slopes=slopes, spread=spread, rows=rows, offsets=offsets, kernel=kernel
+    )
 
 
 def averaging(spread: float, spacing: float) -> tuple[Floats, Floats]:
@@ -173,19 +168,13 @@ def project(curve: ContactCurve, X: Floats, point: Floats) -> Projection:
 
 
 def closest(curve: ContactCurve, Y: Floats, D: Floats) -> tuple[float, bool]:
-    """Coordinate of the point closest to the origin by Newton's method from the closest station, and whether it is stationary.
-
-    The curve is continued by one spacing beyond its ends, so that a point beyond an end still has a projection. Near a
-    centre of curvature the root is searched between the neighbouring stations.
-    """
+    """Coordinate of the point closest to the origin by Newton's method from the closest station, and whether it is stationary."""
     s = curve.stations
+    # the curve goes on by one spacing beyond its ends, so that a point beyond an end still has a projection
     low, high = 2 * s[0] - s[1], 2 * s[-1] - s[-2]
     k = int(np.argmin((Y**2).sum(axis=1)))
-    zeta, around, size = (
-        float(s[k]),
-        (s[k - 1] if k else low, s[k + 1] if k + 1 < s.size else high),
-        s[-1] - s[0],
-    )
+    around = (s[k - 1] if k else low, s[k + 1] if k + 1 < s.size else high)
+    zeta, size = float(s[k]), s[-1] - s[0]
 
     def slope(zeta: float) -> float:
         r, r1, _ = curve.at(zeta, Y, D)

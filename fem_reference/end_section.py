@@ -21,8 +21,7 @@ from scipy.sparse import csr_matrix, kron
 
 from fem_reference.arrays import Floats
 from fem_reference.contact import Carrier
-from fem_reference.mesh import Discretisation, edge_weights
-from fem_reference.sampling import section_points
+from fem_reference.mesh import Discretisation, edge_weights, section_points
 from fem_reference.stages import amount
 from fem_reference.strip import Strip
 
@@ -42,11 +41,6 @@ class EndSection:
     carrier: Carrier  # mean position, relative to the model's origin, and first moment m
     height: float  # height of the section [m]
     anchor_stiffness: float  # stiffness of the anchor's springs at this end; zero without an anchor [N/m]
-
-    @property
-    def columns(self) -> Floats:
-        """Derivatives ``(2 n, 4)`` of mean displacement and first moment with respect to the nodal displacements."""
-        return np.asarray(self.carrier.transposed.toarray())
 
     def pose(self, u: Floats) -> "Pose":
         """Motion of the section at the nodal displacements ``u`` ``(n, 2)``."""
@@ -91,11 +85,6 @@ class Tie:
     rates: tuple[float, ...] = (0.0,)  # change of the prescribed motion in every stage [m or rad]
     flexibility: float = 0.0  # the inverse of a spring's stiffness; zero for a rigid tie
 
-    @property
-    def grounded(self) -> bool:
-        """Whether the tie is a spring to the ground."""
-        return self.other is None and self.flexibility > 0
-
     def residual(self, poses: tuple[Pose, ...], t: float, force: float) -> float:
         """Motion less the prescribed one or the other end's, plus the flexibility times the ``force``; an angle is in [-pi, pi] [m or rad]."""
         target = amount(self.rates, t) if self.other is None else poses[self.other].motion[self.component]
@@ -125,9 +114,9 @@ def inner_rows(strip: Strip, mesh: Discretisation, at: float) -> tuple[csr_matri
     return csr_matrix(np.stack([shares, moments]) @ mesh.basis.probes(points.T)), float(heights[0])
 
 
-def anchor(strip: Strip, mesh: Discretisation, expansion: csr_matrix, end: str) -> csr_matrix:
-    """Stiffness ``(m, m)`` of springs `anchor_stiffness` on mean displacement and first moment of an end."""
-    columns = expansion.T @ kron(end_rows(strip, mesh, end)[0], np.eye(2)).T
+def anchor(strip: Strip, mesh: Discretisation, expansion: csr_matrix) -> csr_matrix:
+    """Stiffness ``(m, m)`` of springs `anchor_stiffness` on mean displacement and first moment of the start."""
+    columns = expansion.T @ kron(end_rows(strip, mesh, "start")[0], np.eye(2)).T
     return csr_matrix(anchor_stiffness(strip) * columns @ columns.T)
 
 

@@ -74,10 +74,8 @@ def _overlap(pair: Pair, number: int, last: Accepted, candidate: Accepted) -> fl
     if before.contact_set == after.contact_set:
         end, final = after.u, candidate.rate(before.t, after.t).u
     path = CubicHermiteSpline([before.t, after.t], [before.u, end], [first, final])
-    moved = (
-        np.hypot(*(pair.position(end, after.t) - pair.position(before.u, before.t)))
-        + span * np.abs(first).max()
-    )
+    way = pair.position(end, after.t) - pair.position(before.u, before.t)
+    moved = np.hypot(*way) + span * np.abs(first).max()
     size = pair.radius or pair.curve.stations[-1] / _PARTS
     count = int(np.clip(np.ceil(_PARTS * moved / size), 2, _SAMPLES))
     ahead = True

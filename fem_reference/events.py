@@ -63,36 +63,28 @@ def _about_to_change(state: State, touch: Touch) -> bool:
     return touch.gap <= _TOUCHING * touch.pair.length
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Event:
-    """A change of a contact within a step, as a value that is positive before and vanishes there."""
-
-    pair: int  # index of the contact
-    margin: Callable[[Accepted], float]  # the value
-    direction: int | None = None  # direction of the slip from there on; None for a touch and a release
+Event = tuple[int, Callable[[Accepted], float], int | None]
+"""A contact, a value that is positive before its change and vanishes there, and the direction of the slip from there on."""
 
 
 def first_event(last: Accepted, candidate: Accepted) -> tuple[Accepted, int | None] | None:
-    """State at the first event between an accepted state and the next one, in a scene with friction; None without one.
-
-    If other contacts change before, the second is the contact of the event, which is not the first one. Within a step shorter than
-    `_COINCIDENT` such changes count as simultaneous, and the event is not located.
-    """
+    """State at the first event between two accepted states, and a contact that changes before; None without one."""
     found = list[tuple[Accepted, int]]()
-    for event in _expected(last, candidate):
-        at = located(last, candidate.t, event.margin)
-        if at is not None and event.direction is not None:
+    for pair, margin, direction in _expected(last, candidate):
+        at = located(last, candidate.t, margin)
+        if at is not None and direction is not None:
             touches = list(at.state.touches)
-            touches[event.pair] = replace(touches[event.pair], direction=event.direction)
+            touches[pair] = replace(touches[pair], direction=direction)
             at = accept(at.state.touching(touches))
         if at is not None:
-            found.append((at, event.pair))
+            found.append((at, pair))
     if not found:
         return None
     at, pair = min(found, key=lambda one: one[0].t)
     now = revised(at.state).contact_set
     if all(a == b for k, (a, b) in enumerate(zip(at.state.contact_set, now, strict=True)) if k != pair):
         return at, None
+    # in a short step such changes count as simultaneous, and are not located
     return None if candidate.t - last.t < _COINCIDENT else (at, pair)
 
 
@@ -104,12 +96,12 @@ def _expected(last: Accepted, candidate: Accepted) -> Iterator[Event]:
     for pair, (before, after) in enumerate(zip(touches, candidate.state.touches, strict=True)):
         if before.closed != after.closed:
             if not _about_to_change(last.state, before):
-                yield Event(pair=pair, margin=partial(_apart, pair))
+                yield pair, partial(_apart, pair), None
         elif before.rubs and before.direction:
             if event := _rest(last, candidate, pair):
                 yield event
         elif before.rubs and after.direction:
-            yield Event(pair=pair, margin=partial(_grip, pair, after.direction), direction=after.direction)
+            yield pair, partial(_grip, pair, after.direction), after.direction
 
 
 def _apart(pair: int, at: Accepted) -> float:
@@ -132,11 +124,7 @@ def _rest(last: Accepted, candidate: Accepted, pair: int) -> Event | None:
         return sign * float(at.slip_rates(pair, forward=at is last)[0])
 
     goes_on = candidate.state.touches[pair].direction == sign
-    return (
-        None
-        if goes_on and not rate(candidate) < 0 < rate(last)
-        else Event(pair=pair, margin=rate, direction=0)
-    )
+    return None if goes_on and not rate(candidate) < 0 < rate(last) else (pair, rate, 0)
 
 
 def clearance(state: State) -> tuple[float, int]:

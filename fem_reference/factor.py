@@ -31,11 +31,11 @@ class Factor:
     negatives: Callable[[], int]  # the number of negative eigenvalues
 
 
-def factorise(band: Floats) -> Factor | None:
-    """Factorise a symmetric matrix in lower band storage ``(width + 1, m)``; None if it is singular."""
-    lower, failed = dpbtrf(band, lower=1)
+def factorise(band: Callable[[], Floats]) -> Factor | None:
+    """Factorise a symmetric matrix; None if it is singular. ``band`` makes its lower band storage ``(width + 1, m)`` anew."""
+    lower, failed = dpbtrf(band(), lower=1, overwrite_ab=1)
     if failed:
-        return _indefinite(band)
+        return _indefinite(band())
 
     def triangular(right: Floats, trans: str) -> Floats:
         return np.asarray(dtbtrs(lower, right, uplo="L", trans=trans)[0]).reshape(right.shape)
@@ -59,20 +59,25 @@ def _indefinite(band: Floats) -> Factor | None:
     lu = symmetric if accurate else _superlu(matrix)
     if lu is None:
         return None
+
+    def negatives() -> int:
+        if accurate:
+            return int((lu.U.diagonal() < 0).sum())
+        bound = 2 * band.shape[0] * float(np.abs(band).max())
+        return int(eigvals_banded(band, lower=True, select="v", select_range=(-bound, 0.0)).size)
+
     return Factor(
         half=lambda right: right,
         rest=lambda half: np.asarray(lu.solve(np.ascontiguousarray(half))),
         product=lambda a, b: np.asarray(a.T @ lu.solve(np.ascontiguousarray(b))),
-        negatives=lambda: int((lu.U.diagonal() < 0).sum()) if accurate else _count_negatives(band),
+        negatives=negatives,
     )
 
 
 def full(band: Floats) -> csc_matrix:
     """Symmetric matrix ``(m, m)`` from its lower band storage."""
-    lower = [entries[: band.shape[1] - k] for k, entries in enumerate(band)]
-    return csc_matrix(
-        diags([*lower[:0:-1], *lower], [*range(len(lower) - 1, 0, -1), *range(0, -len(lower), -1)])
-    )
+    below = diags([row[: band.shape[1] - k] for k, row in enumerate(band)], range(0, -len(band), -1))
+    return csc_matrix(below + below.T - diags(band[0]))
 
 
 def _superlu(matrix: csc_matrix, **options: object) -> SuperLU | None:
@@ -81,9 +86,3 @@ def _superlu(matrix: csc_matrix, **options: object) -> SuperLU | None:
         return splu(matrix, permc_spec="NATURAL", **options)
     except RuntimeError:  # SuperLU's word for an exactly singular matrix
         return None
-
-
-def _count_negatives(band: Floats) -> int:
-    """Count the negative eigenvalues of a matrix in lower band storage ``(width + 1, m)`` by computing them."""
-    bound = 2 * band.shape[0] * float(np.abs(band).max())
-    return int(eigvals_banded(band, lower=True, select="v", select_range=(-bound, 0.0)).size)

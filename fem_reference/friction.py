@@ -69,10 +69,7 @@ def slip_gradient(touch: Touch) -> Floats:
 
 
 def stiffness(touch: Touch) -> Floats:
-    """Derivative of the contact force in the columns: ``lam H``, and ``T G`` of friction, ``(3, 3)`` or ``(4, 4)``.
-
-    G is the derivative ``U G U^T du`` of the direction ``W^T t`` of the friction's force; ``W^T n = -s dg/du``.
-    """
+    """Derivative of the contact force in the columns: ``lam H`` and ``T G``, where ``U G U^T du`` changes ``W^T t``."""
     block = touch.force * touch.curvature
     if touch.rubs:
         zeta, theta, _ = _motion_gradients(touch.at)
@@ -100,11 +97,8 @@ def settled(touch: Touch) -> Touch:
     """Return the contact after its state was accepted: slip counts from there."""
     if touch.begin is None:
         return touch
-    return replace(
-        touch,
-        begin=touch.at,
-        slipped=touch.slipped + (slip(touch) if touch.closed and touch.direction else 0.0),
-    )
+    added = slip(touch) if touch.closed and touch.direction else 0.0
+    return replace(touch, begin=touch.at, slipped=touch.slipped + added)
 
 
 def force_before_slip(direction: int, force: float, last: float) -> float:

@@ -63,11 +63,8 @@ class PointLoad:
         """Forces ``(m, 2)`` on the mean displacements of the sections at ``stations`` ``(m,)``, in the global frame [N]."""
         at = np.array([self.at * strip.length])
         forces = np.zeros((stations.size, 2))
-        piece = next(
-            part
-            for part in _pieces(strip, stations)
-            if at <= stations[part.stop - 1] or part.stop == stations.size
-        )
+        pieces = _pieces(strip, stations)
+        piece = next((part for part in pieces if at <= stations[part.stop - 1]), pieces[-1])
         forces[piece] = np.outer(_shapes(stations[piece], at), self.force)
         return forces
 

@@ -84,9 +84,7 @@ class _March:
 
     def __init__(self, model: Model) -> None:
         start = accept(_start(model))
-        assert start is not None, (
-            "the undeformed stiffness is regular, since no strip can move without strain"
-        )
+        assert start is not None, "the undeformed stiffness is regular: no strip can move without strain"
         self.model, self.settings = model, model.settings
         self.track: tuple[Accepted, ...] = (start,)
         self.trial, self.order, self.failures = _FIRST_STEP, ORDER, 0
@@ -137,16 +135,17 @@ class _March:
         end = next((turn for turn in self.model.problem.turns if t + slack < turn < target - slack), target)
         return end if self.trial >= (end - t) * (1 - 1e-6) else t + self.trial
 
-    def end(self, status: Status, at: Accepted | None = None, pair: int | None = None) -> Status:
-        """End the path at a state, for a contact."""
-        self.track = (*self.track, at or self.last)
-        self.step.cause, self.step.pair, self.step.load_parameter = status, pair, self.last.t
-        return status
-
-    def end_critical(self, status: Status, point: CriticalPoint) -> Status:
-        """End the path at a critical point."""
-        self.step.critical.append(point)
-        self.step.cause, self.step.pair, self.step.load_parameter = status, None, point.load_parameter
+    def end(
+        self, status: Status, at: Accepted | CriticalPoint | None = None, pair: int | None = None
+    ) -> Status:
+        """End the path at a state, for a contact, or at a critical point."""
+        step = self.step
+        step.cause, step.pair = status, pair
+        if isinstance(at, CriticalPoint):
+            step.critical.append(at)
+            step.load_parameter = at.load_parameter
+        elif at is not None:
+            self.track, step.load_parameter = (*self.track, at), at.t
         return status
 
     def judge(self, candidate: Accepted, h: float) -> Status | None:
@@ -154,9 +153,8 @@ class _March:
         last, allowed = self.last, LARGEST_DEPARTURE
         distance = departure(last, candidate, displacement_tolerance(last.state))
         if not distance <= allowed:
-            return self.shorten(
-                h, Status.ANOTHER_BRANCH, reduction=max(0.1, min(0.5, 0.7 * allowed / distance))
-            )
+            reduction = max(0.1, min(0.5, 0.7 * allowed / distance))
+            return self.shorten(h, Status.ANOTHER_BRANCH, reduction=reduction)
         event = first_event(last, candidate)
         if event is not None:
             candidate, other = event
@@ -183,15 +181,11 @@ class _March:
         if near is None:
             return self.shorten(h, Status.ANOTHER_BRANCH)
         point, branch = critical_point(near, BIFURCATION), self.settings.branch
-        following = (
-            candidate
-            if branch == "primary"
-            else stable_branch(near, candidate.t)
-            if branch == "stable"
-            else None
-        )
+        following = candidate if branch == "primary" else None
+        if branch == "stable":
+            following = stable_branch(near, candidate.t)
         if following is None:
-            return self.end_critical(Status.BIFURCATION, point)
+            return self.end(Status.BIFURCATION, point)
         self.step.critical.append(point)
         self.accept(following, restart=following is not candidate)
         if following is not candidate:
@@ -211,11 +205,9 @@ class _March:
     ) -> Status | None:
         """Reject an attempt over a step ``h``; the path goes on. A high-order extrapolation may be the reason of the failure."""
         step = self.step
-        step.cause, step.pair, step.cutbacks = (
-            cause or step.cause,
-            step.pair if pair is None else pair,
-            step.cutbacks + 1,
-        )
+        step.cutbacks += 1
+        if cause is not None:
+            step.cause, step.pair = cause, pair
         self.failures += 1
         self.trial, self.order = reduction * h, max(self.order - 2, 1)
         return None
@@ -246,7 +238,7 @@ class _March:
             return None
         found = limit_point(last, max(self.trial, min_step))
         if found is not None and last.t <= found.load_parameter <= target:
-            return self.end_critical(Status.LIMIT_POINT, found)
+            return self.end(Status.LIMIT_POINT, found)
         return self.at_smallest_step(attempt, goal) if at_floor else None
 
     def approaches_fold(self) -> bool:
@@ -262,7 +254,7 @@ class _March:
         last, step = self.last, self.step
         limit = opening_limit(last)
         if limit is not None:
-            return self.end_critical(Status.LIMIT_POINT, limit)
+            return self.end(Status.LIMIT_POINT, limit)
         lost = slipped_off(last.state, attempt)
         if lost is None:
             return Status.CUTBACK_FLOOR
@@ -304,11 +296,7 @@ def slipped_off(before: State, attempt: Attempt) -> int | None:
 
 
 def after_slip(before: State, goal: float, number: int) -> Attempt | None:
-    """Equilibrium after a slip-off without the contact ``number``; None if the contact must be kept.
-
-    A clamped strip without another closed contact, support or joint springs back to rest, and all its contacts open. Every
-    other contact whose gap is smaller than the strip's height is closed in the initial guess.
-    """
+    """Equilibrium without a contact that slipped off; a strip that nothing holds springs back. None if it is kept."""
     model, lost = before.model, before.touches[number]
     if lost.pair.contact.keep or not lost.closed:
         return None
@@ -322,6 +310,7 @@ def after_slip(before: State, goal: float, number: int) -> Attempt | None:
     touches = list[Touch]()
     for touch in before.touches:
         high = model.problem.strips[touch.pair.strips[0]].largest_height
+        # the guess closes every other contact with a gap below the height
         near = touch.armed and touch.at.inside and abs(touch.gap) < high
         if touch is lost:
             touches.append(touch.opened(armed=False))
@@ -337,9 +326,8 @@ def _slid_without_friction(guess: State) -> State:
     """Return the equilibrium without friction, with slip in the directions that lead there; the guess without friction."""
     if not guess.rubbing:
         return guess
-    smooth = equilibrium(
-        guess.touching([replace(one, begin=None, direction=0, tangential=0.0) for one in guess.touches])
-    )
+    touches = [replace(one, begin=None, direction=0, tangential=0.0) for one in guess.touches]
+    smooth = equilibrium(guess.touching(touches))
     if smooth.status is not Status.CONVERGED:
         return guess
     pairs = zip(smooth.state.touches, guess.touches, strict=True)

@@ -23,6 +23,8 @@ EDGES = ("start", "end", "right", "left")
 
 _BATCH = 1024
 """Number of elements in a batch."""
+SECTION_LAYERS = 8
+"""Layers of Gauss points over the height by which a section of a user's mesh is integrated."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -65,15 +67,11 @@ class Discretisation:
     edges: dict[str, Ints]
     stations: Floats  # undeformed axial coordinates of the sections, increasing, ``(m,)`` [m]
     sections: csr_matrix  # weights ``(m, n)`` of the nodes in the section means; rows sum to one
-    basis: Any  # scikit-fem's scalar basis over the places, for `fem_reference.sampling`
+    basis: Any  # scikit-fem's scalar basis over the places
 
     @cached_property
     def products(self) -> tuple[Floats, Floats]:
-        """Products of the derivatives of two shape functions at the quadrature points on the reference square.
-
-        The first, ``(3 q, k (k + 1) / 2)``, are those of shape functions a <= b along the coordinates 0 and 0, 0 and 1 with 1 and 0, and
-        1 and 1. The second, ``(4 q, k k)``, are those of all shape functions along 0 and 0, 0 and 1, 1 and 0, and 1 and 1.
-        """
+        """Products of two shape functions' derivatives in the square, of a <= b ``(3 q, ...)``, and of all ``(4 q, k k)``."""
         G = self.gauss.slopes
         a, b = np.triu_indices(G.shape[2])
         every = np.einsum("Kqa,Lqb->KLqab", G, G)
@@ -147,19 +145,19 @@ def from_basis(
 
 def _points(element: Any, X: Floats, positions: Floats) -> tuple[Points, Floats]:
     """The points X ``(2, q)`` in elements whose nodes are at ``positions`` ``(e, k, 2)``, and the determinants ``(e, q)`` there."""
-    slopes = shape_slopes(element, X)
-    inverse, volumes = inverted(np.einsum("eaj,Kqa->jKeq", positions, slopes))
+    slopes = _shape_slopes(element, X)
+    inverse, volumes = _inverted(np.einsum("eaj,Kqa->jKeq", positions, slopes, order="C"))
     inverse = np.where(np.abs(inverse) > 1e-13 * np.abs(inverse).max(), inverse, 0.0)
     aligned = not (inverse[0, 1].any() or inverse[1, 0].any())
     return Points(slopes=slopes, inverse=inverse, aligned=aligned), volumes
 
 
-def shape_slopes(element: Any, X: Floats) -> Floats:
+def _shape_slopes(element: Any, X: Floats) -> Floats:
     """Derivatives ``(2, q, k)`` of the shape functions of a scikit-fem element at the points X ``(2, q)`` of the reference square."""
     return np.stack([element.lbasis(X, number)[1] for number in range(len(element.doflocs))], axis=-1)
 
 
-def inverted(J: Floats) -> tuple[Floats, Floats]:
+def _inverted(J: Floats) -> tuple[Floats, Floats]:
     """Inverse matrices and determinants of ``(2, 2, ...)``."""
     (a, b), (c, d) = J
     determinant = a * d - b * c
@@ -179,3 +177,25 @@ def edge_weights(element: str, along: Floats, traction: Floats | None = None) ->
 
 _MASS = np.array([[4.0, 2.0, -1.0], [2.0, 16.0, 2.0], [-1.0, 2.0, 4.0]]) / 30
 """Integrals of the products of two quadratic shape functions of a unit edge."""
+
+
+def gradient_at(mesh: Discretisation, u: Floats, points: Floats) -> Floats:
+    """``F = I + du/dX`` ``(2, 2, p)`` at the places ``points`` ``(p, 2)``; ValueError where one is not in the strip."""
+    containing = mesh.basis.mesh.element_finder()(*points.T)
+    local = mesh.basis.mapping.invF(points.T[:, :, None], tind=containing)[:, :, 0]
+    slopes, cells = _shape_slopes(mesh.basis.elem, local), mesh.cells[containing]
+    inverse, _ = _inverted(np.einsum("paj,Kpa->jKp", mesh.nodes[cells], slopes))
+    return np.asarray(np.eye(2)[:, :, None] + np.einsum("pai,Kpa,Kjp->ijp", u[cells], slopes, inverse))
+
+
+def section_points(
+    strip: Strip, nodes: Floats, edges: dict[str, Ints], stations: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Gauss points, shares that sum to one, and heights of the sections at ``stations`` ``(m,)``, section after section."""
+    layers = strip.mesh[1] if strip.mesh_file is None else SECTION_LAYERS
+    low, high = (np.interp(stations, *nodes[edges[name]].T) for name in ("right", "left"))
+    points, weights = np.polynomial.legendre.leggauss(3)
+    fractions = (np.arange(layers)[:, None] + (1 + points) / 2).ravel() / layers
+    y = low[:, None] + fractions * (high - low)[:, None]
+    x = np.broadcast_to(stations[:, None], y.shape)
+    return np.stack([x.ravel(), y.ravel()], axis=1), np.tile(weights / 2, layers) / layers, high - low

@@ -11,8 +11,7 @@ from scipy.sparse import coo_matrix, csr_matrix, kron
 from scipy.sparse.csgraph import connected_components
 
 from fem_reference.arrays import Floats, Ints
-from fem_reference.mesh import EDGES, Discretisation, edge_weights, from_basis, scalar_basis
-from fem_reference.sampling import section_points
+from fem_reference.mesh import EDGES, Discretisation, edge_weights, from_basis, scalar_basis, section_points
 from fem_reference.strip import Strip
 
 _ROUND_OFF = 1e-9
@@ -82,9 +81,8 @@ def _read(path: Path) -> Any:
 def _contents(mesh: Any) -> tuple[Floats, Ints, dict[str, Ints]]:
     """Corners ``(n, 2)``, quadrilaterals ``(e, 4)`` and the lines ``(l, 2)`` of each named edge."""
     points, used = mesh.points, np.zeros(len(mesh.points), dtype=bool)
-    _require(
-        points.ndim != 2 or points.shape[-1] not in (2, 3), "must hold nodes with two or three coordinates"
-    )
+    flat = points.ndim == 2 and points.shape[-1] in (2, 3)
+    _require(not flat, "must hold nodes with two or three coordinates")
     _require(~np.isfinite(points).all(axis=1), "node # must have finite coordinates")
     off = np.abs(points[:, 2:]).sum(axis=1) > _ROUND_OFF * np.ptp(points[:, :2], axis=0).max(initial=0.0)
     _require(off, f"node # must have z = 0, it has {points[np.argmax(off), -1]:g}" if off.any() else "")
@@ -94,10 +92,8 @@ def _contents(mesh: Any) -> tuple[Floats, Ints, dict[str, Ints]]:
         nodes, kind = np.asarray(block.data), block.type
         if not nodes.size:
             continue
-        _require(
-            nodes.min() < 0 or nodes.max() >= len(points),
-            f'cells of type "{kind}" must have nodes below {len(points)}',
-        )
+        rule = f'cells of type "{kind}" must have nodes below {len(points)}'
+        _require(nodes.min() < 0 or nodes.max() >= len(points), rule)
         if kind.startswith("quad"):
             used[nodes] = True
             _check_straight(points[:, :2], nodes)
@@ -105,9 +101,8 @@ def _contents(mesh: Any) -> tuple[Floats, Ints, dict[str, Ints]]:
         elif kind.startswith("line"):
             chosen = {name: sets[number] for name, sets in mesh.cell_sets.items() if sets[number] is not None}
             if tags is not None:
-                chosen |= {
-                    name: np.flatnonzero(tags[number] == tag) for name, (tag, size) in groups if size == 1
-                }
+                edges = {name: tag for name, (tag, dimension) in groups if dimension == 1}
+                chosen |= {name: np.flatnonzero(tags[number] == tag) for name, tag in edges.items()}
             for name in set(chosen) & set(EDGES):
                 lines.setdefault(name, []).append(nodes[np.asarray(chosen[name], dtype=np.int64), :2])
         else:

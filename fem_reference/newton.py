@@ -62,7 +62,7 @@ def iterate(state: State, control: Control | None = None) -> Attempt:
     its length (natural monotonicity test, Deuflhard, Newton Methods for Nonlinear Problems, 2004, section 3.3).
     """
     most = state.model.settings.max_iterations
-    base, last, damping = state, Correction(u=np.full((1, 2), np.inf), forces=np.zeros(0)), 1.0
+    base, last, size, damping = state, Correction(u=0 * state.u, forces=0 * state.forces), np.inf, 1.0
     for iteration in range(most + 1):
         attempt = converged(state)
         done = control is None or abs(control.missing(state)) <= displacement_tolerance(state)
@@ -77,10 +77,11 @@ def iterate(state: State, control: Control | None = None) -> Attempt:
         if correction is None:
             attempt = replace(attempt, status=Status.SINGULAR)
             break
-        if correction.size > _LARGEST_GROWTH * last.size and damping > _SMALLEST_DAMPING:
+        following = float(np.abs(correction.u).max())
+        if following > _LARGEST_GROWTH * size and damping > _SMALLEST_DAMPING:
             damping /= 2
         else:
-            base, last, damping = state, correction, 1.0
+            base, last, size, damping = state, correction, following, 1.0
         state = corrected(base, last, damping)
     return replace(attempt, iterations=iteration)
 
@@ -107,9 +108,8 @@ def converged(state: State) -> Attempt:
         if touch.closed and not (touch.at.stationary or touch.at.inside):
             return Attempt(status=Status.LOST_CONTACT, state=state, pair=number)
     force, length = round_off(state)
-    arms = [
-        model.sections[tie.section].height / 2 if tie.component == ROTATION else 1.0 for tie in model.ties
-    ]
+    heights = [model.sections[tie.section].height for tie in model.ties]
+    arms = [h / 2 if tie.component == ROTATION else 1.0 for tie, h in zip(model.ties, heights, strict=True)]
     limits = [
         *(force / touch.pair.penalty + model.length_round_off for touch in state.closed),
         *(force if touch.direction else length for touch in state.rubbing),
@@ -130,16 +130,12 @@ def round_off(state: State) -> tuple[float, float]:
 def equilibrium(guess: State, *, keep_set: bool = False) -> Attempt:
     """Find the equilibrium with unilateral contact at the load parameter of ``guess``; never raises.
 
-    Newton's method converges with a fixed set of closed contacts. Then contacts with tensile force are opened, penetrated
-    open contacts are closed, friction is mapped to its cone, and Newton's method is repeated, so that gaps of unconverged
-    iterates cause no change. A set that was tried before ends the iteration with `Status.CYCLING`. Augmented Lagrangian
-    steps follow when the set no longer changes. With ``keep_set`` the set of the guess is kept.
+    Newton's method converges with a fixed set of closed contacts before the set is revised and the method repeated, so that gaps of
+    unconverged iterates cause no change. Augmented Lagrangian steps follow. With ``keep_set`` the set of the guess is kept.
     """
-    state = (
-        guess
-        if keep_set
-        else guess.touching([_closed_if_penetrated(guess, touch) for touch in guess.touches])
-    )
+    state = guess
+    if not keep_set:
+        state = guess.touching([_closed_if_penetrated(guess, touch) for touch in guess.touches])
     tried, iterations, augmentations = [state.contact_set], 0, 0
     while True:
         attempt = iterate(state)
@@ -158,13 +154,11 @@ def equilibrium(guess: State, *, keep_set: bool = False) -> Attempt:
             state = following
             tried.append(state.contact_set)
             continue
-        deep = next(
-            (number for number, touch in enumerate(state.touches) if _exceeds_penetration(touch)), None
-        )
-        if deep is None:
+        deep = [number for number, touch in enumerate(state.touches) if _exceeds_penetration(touch)]
+        if not deep:
             return _verified(attempt)
         if augmentations == _MAX_AUGMENTATIONS:
-            return replace(attempt, status=Status.AUGMENTATION_LIMIT, pair=deep)
+            return replace(attempt, status=Status.AUGMENTATION_LIMIT, pair=deep[0])
         augmentations += 1
         state = state.touching(tuple(map(augmented, state.touches)))
 
@@ -206,7 +200,9 @@ def _verified(attempt: Attempt) -> Attempt:
     state, model, touches = attempt.state, attempt.state.model, list[Touch]()
     for number, touch in enumerate(state.touches):
         behind, inside = touch.gap < -model.length_round_off, touch.at.inside
-        if not inside and (touch.closed or (touch.armed and behind and touch.pair.contact.keep)):
+        # a node that goes round the end of an axis has left it; the ends of a thick strip are met
+        round_it = touch.armed and behind and touch.pair.contact.keep and not touch.pair.ends
+        if not inside and (touch.closed or round_it):
             return replace(attempt, status=Status.LOST_CONTACT, pair=number)
         if touch.closed and -touch.gap > _MAX_PENETRATION * touch.pair.length:
             return replace(attempt, status=Status.TOO_DEEP, pair=number)

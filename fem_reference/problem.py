@@ -87,7 +87,7 @@ class Pin:
         load_parameters = []
         for stage, (fractions, axes) in enumerate(self._ways):
             directions, turned = np.arctan2(*np.diff(axes)[::-1]), 0.0
-            bends = np.abs(np.remainder(np.diff(directions) + np.pi, 2 * np.pi) - np.pi)
+            bends = np.abs(np.angle(np.exp(1j * np.diff(directions))))
             for t, bend in zip(fractions[1:-1].tolist(), bends.tolist(), strict=True):
                 turned += bend
                 if turned >= TURN:
@@ -207,11 +207,6 @@ class SolidProblem:
     def pin(self, name: str) -> Pin | None:
         """Return the pin called ``name``; None for a strip's end."""
         return next((pin for pin in self.pins if pin.name == name), None)
-
-    @property
-    def length(self) -> float:
-        """Length of the longest strip [m]."""
-        return max(strip.length for strip in self.strips)
 
     @cached_property
     def turns(self) -> tuple[float, ...]:

@@ -152,11 +152,8 @@ class Result:
 
     def _repr_html_(self) -> str:
         """Return the status and the last value of every column as HTML."""
-        rows = [
-            f"<tr><td>{escape(name)}</td><td>{values[-1]:.6g}</td></tr>"
-            for name, values in self.table().items()
-            if len(values)
-        ]
+        last = [(escape(name), values[-1]) for name, values in self.table().items() if len(values)]
+        rows = [f"<tr><td>{name}</td><td>{value:.6g}</td></tr>" for name, value in last]
         heading = escape(f"{self.status.name}: {self.message}")
         return f"<h4>{heading}</h4><table><tbody>{''.join(rows)}</tbody></table>"
 
@@ -204,10 +201,13 @@ class Result:
             faint = 0.35 + 0.65 * (k + 1) / reached if k >= 0 else 1.0
             for kind, cells in self.mesh_cells.items():
                 outlines = list(points[cells[:, OUTLINES[kind]]])
-                faces = PolyCollection(
-                    outlines, facecolors="none", edgecolors=colour, linewidths=0.4, alpha=faint
-                )
-                axes.add_collection(faces)
+                style: dict[str, Any] = {
+                    "facecolors": "none",
+                    "edgecolors": colour,
+                    "linewidths": 0.4,
+                    "alpha": faint,
+                }
+                axes.add_collection(PolyCollection(outlines, **style))
             axes.update_datalim(points)
         for pin in self.model.problem.pins:
             axes.plot(*np.array(pin.path).T, color="0.5", linewidth=0.8, linestyle=":")

@@ -6,6 +6,7 @@ from time import perf_counter
 import numpy as np
 
 from fem_reference.arrays import Floats, Ints
+from fem_reference.assembly import deformation_gradient
 from fem_reference.ends import nearest_end
 from fem_reference.events import SLIP_OFF
 from fem_reference.march import Step, march
@@ -14,7 +15,7 @@ from fem_reference.observe import section_means
 from fem_reference.problem import SolidProblem
 from fem_reference.result import ContactHistory, Result, SolveError, SupportHistory
 from fem_reference.settings import Settings
-from fem_reference.state import Reaction, State, reactions, spring_forces
+from fem_reference.state import Reaction, State, reactions, tie_reactions
 from fem_reference.status import Status
 
 EVENTS = (Status.LIMIT_POINT, Status.BIFURCATION, Status.LINE_CONTACT, Status.END_CONTACT)
@@ -90,7 +91,10 @@ def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
         reached=steps[-1].load_parameter,
         contacts={pair.name: _contact(states, steps, number) for number, pair in enumerate(model.pairs)},
         supports=_histories([reactions(state) for state in states], reactions(steps[-1].state)),
-        springs=_histories([spring_forces(state) for state in states], spring_forces(steps[-1].state)),
+        springs=_histories(
+            [tie_reactions(state, springs=True) for state in states],
+            tie_reactions(steps[-1].state, springs=True),
+        ),
         tips={body.strip.name: _tips(model, body.strip.name, states) for body in model.bodies},
         newton_iterations=np.array([step.iterations for step in done], dtype=np.int64),
         cutbacks=sum(step.cutbacks for step in steps),
@@ -120,7 +124,8 @@ def _outcome(model: Model, last: Step) -> tuple[Status, str]:
             end, contact = nearest_end(touched, last.state), touched.contact
             pair, comma = f": {contact.node} meets the {end} of {contact.strip}", ""
     cause = "" if last.cause is status else f" because {last.cause.value}"
-    squeezed = min(body.least_volume(last.state.u[body.part]) for body in model.bodies)
+    gradients = [deformation_gradient(body.mesh, last.state.u[body.part]) for body in model.bodies]
+    squeezed = min(float(np.linalg.det(F.T).min()) for F in gradients)
     if status is Status.LIMIT_POINT and squeezed < _SMALL_STRAIN:
         cause += f"; an element is compressed to {squeezed:.2g} of its area: refine the mesh, or the strain is beyond the comparison"
     preposition = "at" if status in EVENTS else "after"

@@ -148,27 +148,23 @@ def reactions(state: State) -> dict[str, Reaction]:
     found = dict[str, Reaction]()
     for body in state.model.bodies:
         for end in body.strip.clamped:
-            edge, frame, middle = body.mesh.edges[end], body.strip.frame, body.middle(end)
+            edge, frame, nodes = body.mesh.edges[end], body.strip.frame, body.mesh.nodes
+            middle = nodes[edge[[0, -1]]].mean(axis=0)
             forces = state.residual[body.part][edge]
-            turning = moment(body.mesh.nodes[edge] + state.u[body.part][edge] - middle, forces)
+            turning = moment(nodes[edge] + state.u[body.part][edge] - middle, forces)
             found[f"{body.strip.name}.{end}"] = (
                 frame @ forces.sum(axis=0),
                 turning,
                 body.offset + frame @ middle,
             )
-    return found | _tie_reactions(state, grounded=False)
+    return found | tie_reactions(state, springs=False)
 
 
-def spring_forces(state: State) -> dict[str, Reaction]:
-    """Forces and moments of the springs to the ground by end. They act at the mean of the section."""
-    return _tie_reactions(state, grounded=True)
-
-
-def _tie_reactions(state: State, *, grounded: bool) -> dict[str, Reaction]:
-    """Sums of the ties' forces at the ends that a support or, if ``grounded``, a spring holds."""
+def tie_reactions(state: State, *, springs: bool) -> dict[str, Reaction]:
+    """Forces and moments by end of the supports, or of the ``springs`` to the ground, at the means of sections."""
     forces, places = dict[str, Floats](), dict[str, Floats]()
     for tie, value in zip(state.model.ties, state.tie_forces, strict=True):
-        if tie.other is None and tie.grounded == grounded:
+        if tie.other is None and (tie.flexibility > 0) == springs:
             node = state.model.sections[tie.section].node
             forces.setdefault(node, np.zeros(3))[tie.component] = value
             places[node] = state.poses[tie.section].position
@@ -176,18 +172,17 @@ def _tie_reactions(state: State, *, grounded: bool) -> dict[str, Reaction]:
 
 
 def imbalance(state: State) -> float:
-    """Largest component of the sum of all external forces and moments [N].
-
-    External are the reactions of clamps, supports and springs, the forces of the pins and the dead loads. Moments refer to the start
-    of the first strip and are divided by the length of the longest one.
-    """
+    """Largest component of the sum of all external forces, and of their moment about the first strip's start over L [N]."""
     model, nodal = state.model, amount(state.model.loads, state.t)
     total, turning = np.zeros(2), float(amount(model.moments, state.t).sum())
     for body in model.bodies:
         loads = nodal[body.part] @ body.strip.frame.T
         total += loads.sum(axis=0)
         turning += moment(body.offset + (body.mesh.nodes + state.u[body.part]) @ body.strip.frame.T, loads)
-    for force, free_moment, place in (*reactions(state).values(), *spring_forces(state).values()):
+    for force, free_moment, place in (
+        *reactions(state).values(),
+        *tie_reactions(state, springs=True).values(),
+    ):
         total += force
         turning += free_moment + moment(place, force)
     for touch in state.closed:

@@ -40,11 +40,6 @@ class Correction:
     forces: Floats  # change of the forces of the constraints ``(c,)``, see `State.forces`
     t: float = 0.0  # change of the load parameter
 
-    @property
-    def size(self) -> float:
-        """Largest component of the displacements [m]."""
-        return float(np.abs(self.u).max())
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Border:
@@ -197,8 +192,8 @@ class Tangent:
     def _count(self, chosen: NDArray[np.bool_]) -> int:
         """Index with the contacts ``chosen`` among the closed ones.
 
-        The Hessian is the Schur complement of a matrix over du, its part ``y = U^T du`` in the columns with the multiplier z, and the
-        forces of the constraints. By Haynsworth's theorem the other complement S counts its negative eigenvalues, one for every multiplier.
+        Of a matrix over du, ``y = U^T du`` with the multiplier z, and the forces of the constraints, the Hessian is one Schur complement.
+        By Haynsworth's theorem the other one, S, counts its negative eigenvalues, with one for every multiplier.
         """
         A, N = self.border.A.copy(), self.border.N
         kept = np.append(chosen, np.ones(N.shape[1] - chosen.size, dtype=bool))

@@ -80,13 +80,10 @@ def accept(state: State, last: Accepted | None = None) -> Accepted | None:
 
 
 def _dissipated(last: Accepted, found: Accepted, pair: int) -> float:
-    """Energy ``integral T d xi`` that a contact dissipates between two states, where slip and force are cubic polynomials [J].
-
-    A contact that slips and opens in between dissipates until its force is zero: to first order in the step, slip goes on at its rate, and
-    the force falls to zero at its rate.
-    """
+    """Energy ``integral T d xi`` that a contact dissipates between two states by cubic polynomials [J]."""
     before, after, span = last.state.touches[pair], found.state.touches[pair], found.t - last.t
     if before.closed and not after.closed and before.direction:
+        # slip goes on at its rate until the force has fallen to zero at its rate
         slip, fall = last.slip_rates(pair, forward=True)
         if not fall * before.tangential < 0:
             return 0.0
@@ -161,8 +158,8 @@ def root(
 ) -> tuple[float, Item] | None:
     """Place and item where a value that is positive at ``low`` vanishes up to ``end``; None where it stays positive.
 
-    Regula falsi in Illinois' form. ``evaluate`` has a place and the item of the nearest place before. A place for which it returns
-    None, since nothing converges, counts as one beyond the root. If the value does not vanish, the last place before is the answer.
+    Regula falsi in Illinois' form. ``evaluate`` has a place and the item of the nearest place before. Where nothing converges, it returns
+    None, which counts as beyond the root. If the value does not vanish, the last place before is the answer.
     """
     (x, value, item), high, beyond, side = low, end, -inf, 0
     vanished = _VANISHED * value

@@ -24,7 +24,7 @@ class Along:
     ``start, end`` (e,): angle of the undeformed axis at both ends.
     ``gauge, gyration`` (2, e): radius of gyration ``sqrt(EI/EA)``, in proportion to the height, and `gauge`,
         EA over this radius, in proportion to the width; at both ends. Both are linear between them.
-    ``ratio`` (e,): GA/EA.
+    ``ratio`` (e,): GA/EA, infinite where the elements do not shear.
     ``resultants`` (stages, 2, d, e): resultants of the loads, ``P(s) = int_0^s q ds`` from the start of an
         element: coefficients of the powers 1 to d of the part of its length.
     """
@@ -39,7 +39,9 @@ class Along:
         self.start = np.array([beam.direction(a) for beam, a, _ in spans])
         self.end = np.array([beam.direction(b) for beam, _, b in spans])
         self.gauge, self.gyration = np.array([_sections(*span) for span in spans]).transpose(2, 1, 0)
-        self.ratio = np.array([beam.section.GA / beam.section.EA for beam, _, _ in spans])
+        sheared = (ELEMENTS[beam.element].sheared for beam, _, _ in spans)
+        ratios = (beam.section.GA / beam.section.EA for beam, _, _ in spans)
+        self.ratio = np.array([r if s else np.inf for r, s in zip(ratios, sheared, strict=True)])
         degree = max((len(load.force) for load in loads), default=0)
         resultant = np.zeros((stages, 2, degree, len(spans)))
         first: dict[str, int] = {}
@@ -58,12 +60,7 @@ class Along:
         return total
 
     def course(self, elements: Array, part: Array, resultant: Array, resultant_rate: Array) -> Course:
-        """What varies, at parts (s, p) of the lengths of elements (s,).
-
-        ``elements`` (s,): global numbers of the elements. ``part`` (s, p): parts of the lengths, from 0 at
-        the start of an element to 1. ``resultant, resultant_rate`` (2, d, s): coefficients of the resultants
-        of all loads together along these elements, and their derivatives in the load parameter.
-        """
+        """What varies at parts (s, p) of the lengths of elements (s,), from resultants (2, d, s) and their rates."""
         length = self.length[elements, None]
         gauge, gyration = self.gauge[:, elements, None], self.gyration[:, elements, None]
         wide, high = gauge[0] + (gauge[1] - gauge[0]) * part, gyration[0] + (gyration[1] - gyration[0]) * part

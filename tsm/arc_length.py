@@ -1,8 +1,9 @@
 """Arc-length control: the load parameter is an unknown and may turn back.
 
-A step goes a given distance along the tangent of the path, measured in displacements and rotations only (Crisfield 1981), and
-returns to it on the plane across the tangent (Riks 1972). With the unknowns x, the load parameter t, the unbalanced force f, its
-derivatives K in x and f_t in t, and the part tau of the path's tangent in x::
+A step goes a given distance along the tangent of the path, measured in displacements and rotations only
+(Crisfield 1981), and returns to it on the plane across the tangent (Riks 1972). With the unknowns x, the load
+parameter t, the unbalanced force f, its derivatives K in x and f_t in t, and the part tau of the path's
+tangent in x::
 
     [ K    f_t ] [ dx ]     [ f ]
     [ tau   0  ] [ dt ] = - [ tau . (x - x_predicted) ]
@@ -23,17 +24,16 @@ from tsm.contact_set import initial_state
 from tsm.elements.properties import Array
 from tsm.events import Event, EventKind
 from tsm.friction import regripped
-from tsm.margins import Margin, margins
+from tsm.margins import Margin, broken, margins
 from tsm.model import Model
 from tsm.newton import Newton
-from tsm.path import Point
-from tsm.result import Result, collect
+from tsm.path import SMALLEST, Point
+from tsm.result import Result
 from tsm.root import find_root
-from tsm.search import broken
 from tsm.settings import Settings
-from tsm.solve import SolveError
+from tsm.solve import ended
 from tsm.status import Status
-from tsm.step import SMALLEST, Step
+from tsm.step import Step
 from tsm.structure import Structure
 from tsm.system import Drive
 
@@ -56,7 +56,8 @@ def trace(
     structure : Structure
         What to solve; its loads, prescribed displacements and pins scale with the load parameter.
     arc_length : float
-        Length of a step: root of the sum of squares of displacements over 0.3 L and rotations over 0.7 rad, L the longest beam.
+        Length of a step: root of the sum of squares of displacements over 0.3 L and rotations over 0.7 rad, L
+        the longest beam.
     steps : int
         Number of steps.
     settings : Settings, optional
@@ -67,8 +68,8 @@ def trace(
     Returns
     -------
     Result
-        One entry per step; `load_parameter` need not increase. `events` holds the limit points, located where the load
-        parameter is stationary along the path.
+        One entry per step; `load_parameter` need not increase. `events` holds the limit points, located where
+        the load parameter is stationary along the path.
 
     Raises
     ------
@@ -85,22 +86,14 @@ def trace(
         raise ValueError(f"stages = {structure.stages}: arc-length control follows a single stage, use solve")
     begin = time.perf_counter()
     model = Model(structure)
-    path, status = _Path(model, settings or Settings()), Status.COMPLETED
+    path = _Path(model, settings or Settings())
     taken: list[Step] = []
-    while status is Status.COMPLETED and len(taken) < steps:
-        step = (
-            path.advance(arc_length)
-            if path.status is Status.CONVERGED
-            else Step(equilibrium=path.here.equilibrium, status=path.status)
-        )
-        if step.status is Status.CONVERGED:
-            taken.append(step)
-        else:
-            status = step.status
-    result = collect(model, taken, status, time.perf_counter() - begin)
-    if throw and status is not Status.COMPLETED:
-        raise SolveError(result)
-    return result
+    status = path.status
+    while status is Status.CONVERGED and len(taken) < steps:
+        step = path.advance(arc_length)
+        status = step.status
+        taken += [step] * (status is Status.CONVERGED)
+    return ended(model, taken, status, begin, throw=throw)
 
 
 class _Direction(NamedTuple):

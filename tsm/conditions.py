@@ -18,11 +18,10 @@ if TYPE_CHECKING:
 def held_components(
     model: Model, supports: tuple[Support, ...]
 ) -> tuple[dict[str, tuple[int, Array]], dict[int, float]]:
-    """Return what the supports hold, and the prescribed values at load parameter 1 by degree of freedom.
+    """Return the node and the components (3,) that each support holds and none before it, and the prescribed values.
 
-    Returns ``supports``, by supported end, the node and the components (3,) that the support holds and no
-    support before it at the joint; ``prescribed``, displacements and rotations by degree of freedom. Raises
-    ValueError if two supports at one joint prescribe different values.
+    The values are those at load parameter 1, by degree of freedom. Raises ValueError if two supports at one joint
+    prescribe different ones.
     """
     held: dict[str, tuple[int, Array]] = {}
     prescribed: dict[int, float] = {}

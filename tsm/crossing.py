@@ -1,7 +1,7 @@
 """Crossings: within one step, a node goes through a beam and on past the beam's end, or a round pin through an end and on.
 
-After such a step the node no longer projects onto the beam, or is clear of its end, so that the end of the step does
-not show the missed contact. All points are assumed to move on straight lines in the step.
+After such a step the node no longer projects onto the beam, or is clear of its end, so that the end of the
+step does not show the missed contact. All points are assumed to move on straight lines in the step.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from tsm.ends import clearance
 from tsm.events import ROUND_OFF, EventKind
 from tsm.model import Model
 from tsm.pairs import PairModel
-from tsm.predictor import extrapolate
+from tsm.path import extrapolate
 from tsm.projection import Projection
 from tsm.root import find_root
 from tsm.state import State

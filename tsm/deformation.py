@@ -18,24 +18,17 @@ from tsm.newton import Equilibrium
 class Deformation:
     """The most deformed element at every accepted step, between the prescribed load parameters too; exact elements do not count.
 
-    Attributes
-    ----------
-    load_parameter : ndarray, shape (n,)
-        Load parameter of every accepted step.
-    turn : ndarray, shape (n,)
-        Largest angle by which an element bends between its ends [rad]. For an element in contact the angle is at least
-        ``F min(a, b) l/EI``, the bend under a constant moment of the contact force, with the distances a and b of the contact from the
-        ends of the element. Of a curved or tapered beam, or one with a load along it, the angle between the ends of a segment.
-    strain : ndarray, shape (n,)
-        Section force, or contact force inside the element, over the smaller of EA and GA; over EA where the element does not shear.
-    bearable : float
-        Least turn up to which the elements are an approximation [rad].
+    Turn is the largest angle by which an element bends between its ends [rad]. For an element in contact the
+    angle is at least ``F min(a, b) l/EI``, the bend under a constant moment of the contact force, with the
+    distances a and b of the contact from the ends of the element. Of a curved or tapered beam, or one with a
+    load along it, it is the angle between the ends of a segment. Strain is the section force, or contact
+    force inside the element, over the smaller of EA and GA; over EA where the element does not shear.
     """
 
-    load_parameter: Array
-    turn: Array
+    load_parameter: Array  # load parameter of every accepted step; shape (n,)
+    turn: Array  # turn, strain: shape (n,)
     strain: Array
-    bearable: float
+    bearable: float  # least turn up to which the elements are an approximation [rad]
 
 
 def deformation(model: Model, equilibria: Sequence[Equilibrium]) -> Deformation | None:

@@ -13,8 +13,8 @@ limit-point   the load parameter is stationary along the path
 bifurcation   another branch crosses the path, which goes on unstable
 ============= ==============================================================================
 
-The first three events change the set of closed contacts, slip and stick the state of a contact with friction. A
-pass-through changes neither; its load parameter is interpolated. The others are located, see `tsm.margins`.
+The first three events change the set of closed contacts, slip and stick the state of a contact with friction.
+A pass-through changes neither; its load parameter is interpolated. The others are located, see `tsm.margins`.
 """
 
 from __future__ import annotations
@@ -70,10 +70,11 @@ class Event:
     force : float
         Contact force, before the event.
     released : float
-        Potential energy (strain energy less the work of the loads) that is released in the jump after a slip-off.
+        Potential energy (strain energy less the work of the loads) that is released in the jump after a
+        slip-off.
     stage : int
-        Number of the stage of the load, from 1. An event at the load parameter at which a stage begins belongs to that stage if it
-        happens because the load goes on.
+        Number of the stage of the load, from 1. An event at the load parameter at which a stage begins
+        belongs to that stage if it happens because the load goes on.
     """
 
     kind: EventKind

@@ -1,7 +1,8 @@
 """Falls: the motion of a structure from a lost contact, or from a critical point, to the equilibrium where it rests.
 
-There may be no equilibrium nearby. The structure therefore moves against a viscous drag, in steps that each lower
-its potential and may be as short as necessary. Beams and pins that the structure meets on the way become contacts.
+There may be no equilibrium nearby. The structure therefore moves against a viscous drag, in steps that each
+lower its potential and may be as short as necessary. Beams and pins that the structure meets on the way
+become contacts.
 """
 
 from __future__ import annotations
@@ -50,9 +51,9 @@ class Fall:
     def beside(self, critical: Point, ahead: float) -> tuple[Point, float] | Status:
         """Return the point of least potential beside a critical one, and the potential that the fall there releases.
 
-        The structure is pushed along its mode, one way and the other. Of two points with the same potential it is the
-        one on the mode's positive side, see `mode_shape`. Returns FALLING if the structure finds no rest,
-        REST_UNKNOWN if it falls onto contacts with friction.
+        The structure is pushed along its mode, one way and the other. Of two points with the same potential
+        it is the one on the mode's positive side, see `mode_shape`. Returns FALLING if the structure finds no
+        rest, REST_UNKNOWN if it falls onto contacts with friction.
         """
         newton, shape = self.newton, mode_shape(critical)
         if shape is None:
@@ -75,8 +76,8 @@ class Fall:
     def after(self, event: Point, state: State) -> tuple[Point, float] | Status:
         """Return the point after a slip-off, and the released potential; contacts whose force would become tensile are released.
 
-        ``state``: the configuration of the slip-off without the lost contact. Returns FALLING if the structure finds no
-        rest, LOST_CONTACT if a contact opens that must persist.
+        ``state``: the configuration of the slip-off without the lost contact. Returns FALLING if the
+        structure finds no rest, LOST_CONTACT if a contact opens that must persist.
         """
         model = self.newton.model
         energy = began = self.newton.potential(event.state)
@@ -111,8 +112,8 @@ class Fall:
     def rest(self, state: State, energy: float) -> Point | None:
         """Find the point that the structure reaches against a drag which is reduced from step to step; None if there is none.
 
-        ``state``: configuration at the start of the fall, without the lost contact and therefore out of equilibrium.
-        ``energy``: potential of this configuration with the lost contact.
+        ``state``: configuration at the start of the fall, without the lost contact and therefore out of
+        equilibrium. ``energy``: potential of this configuration with the lost contact.
         """
         newton, model, pace = self.newton, self.newton.model, _FIRST_PACE
         over, resistance = _before(model, state), _resistance(model)

@@ -1,8 +1,8 @@
 """The follower of the equilibrium path: it predicts, corrects, looks for events, and accepts.
 
-A step goes to the next prescribed load parameter, or less far after a cut-back. Newton's method starts from the
-prediction of the path. If an event lies inside the step, the step ends at the event. The contact is then opened or
-closed, and the march goes on from there.
+A step goes to the next prescribed load parameter, or less far after a cut-back. Newton's method starts from
+the prediction of the path. If an event lies inside the step, the step ends at the event. The contact is then
+opened or closed, and the march goes on from there.
 """
 
 from __future__ import annotations
@@ -16,25 +16,22 @@ from itertools import count
 import numpy as np
 
 from tsm.contact_set import crowded, initial_state, rearm
-from tsm.critical import CriticalKind, critical_point, locate_bifurcation
+from tsm.critical import CriticalKind, critical_point, locate_bifurcation, mechanism
 from tsm.crossing import crossing, on_held_end, overlapping, through_end
 from tsm.elements.properties import Array
-from tsm.energy import spent
+from tsm.energy import rolled, spent
 from tsm.events import Event, EventKind, passes
 from tsm.fall import Fall
 from tsm.friction import grips, regripped
-from tsm.margins import Margin, margins
-from tsm.mechanism import mechanism
+from tsm.margins import Margin, Search, broken, margins
 from tsm.model import Model
 from tsm.newton import Newton
-from tsm.path import FOLLOWED, Point, Track
-from tsm.rolling import rolled
-from tsm.search import Search, broken
+from tsm.path import FOLLOWED, SMALLEST, Point, StepControl, Track, allowed
 from tsm.settings import Settings
 from tsm.stages import stage_of
 from tsm.state import UNDECIDED, State
 from tsm.status import Status
-from tsm.step import NEAR, SMALLEST, Step, StepControl, allowed, ends
+from tsm.step import NEAR, Step, ends
 from tsm.system import Drive
 
 _STRAIGHT = 0.02
@@ -54,10 +51,8 @@ class Follower:
         self.model, self.branch = model, settings.branch
         self.newton = Newton(model, settings)
         self.control = StepControl()
-        self.target, self.turned = (
-            0.0,
-            -1.0,
-        )  # next prescribed load parameter, and the last corner of a pin's path
+        self.target = 0.0  # next prescribed load parameter
+        self.turned = -1.0  # last corner of a pin's path
         start = Point(self.newton, self.newton.solve(initial_state(model)))
         self.track = Track(start)
         self.log = Step(equilibrium=start.equilibrium)  # since the last yielded step
@@ -106,7 +101,10 @@ class Follower:
         t = self.track.last.t
         left, step = self.target - t, min(self.control.step, self.track.room())
         goal = self.target if left <= step * (1 + 1e-6) else t + step
-        status = self._attempt(goal) if step >= SMALLEST else self.control.refuse()
+        status = self.control.refuse()
+        if step >= SMALLEST:
+            status = self._turn_corner()
+            status = self._reach(goal) if status is Status.CONVERGED else status
         if status is Status.CONVERGED or status is not self.control.failure:
             return status
         self.log.cutbacks += 1
@@ -117,17 +115,12 @@ class Follower:
         status = self.control.verdict(self.track.folds())
         return self._meet_limit_point() if status is Status.LIMIT_POINT else status
 
-    def _attempt(self, goal: float) -> Status:
-        """Go to a load parameter or to the first event before it, past a corner where one is."""
-        turned = self._turn_corner()
-        return self._reach(goal) if turned is Status.CONVERGED else turned
-
     def _turn_corner(self) -> Status:
         """Go on as the load does, at the start, where a path has a corner and where a stage begins.
 
-        Contacts with friction may slip or stick from there. A stage begins just after the load parameter at which the
-        last one ends, so that all rates are its own. The path has a kink there, and no state before it serves for a
-        prediction.
+        Contacts with friction may slip or stick from there. A stage begins just after the load parameter at
+        which the last one ends, so that all rates are its own. The path has a kink there, and no state before
+        it serves for a prediction.
         """
         here, t = self.track.last, self.track.last.t
         goes_on = t == self.turned or not (self.model.rubbed or self.model.stages > 1)
@@ -188,7 +181,7 @@ class Follower:
             return found if isinstance(found, Status) else self._switch(*found)
         if search.pulls_at_first():
             return self.control.failure
-        return self._advance(reached) if self.newton.balanced(reached.equilibrium) else Status.UNBALANCED
+        return self._advance(reached)
 
     def _search(self, goal: float) -> Search:
         return Search(self.track.last, self.margins, goal, self._solve, self._measure, self.control)
@@ -202,9 +195,7 @@ class Follower:
             self.control.fail(equilibrium.status)
             return None
         reached = Point(self.newton, equilibrium)
-        reached.unexplained_behind = left = (
-            0.0 if last.on_chords else last.unexplained(last.state, reached.state)
-        )
+        reached.behind = left = self.track.unexplained(last, reached)
         if left > FOLLOWED or self.track.strays(start, reached.state):
             self.control.refuse(allowed(left) if left > FOLLOWED else 1 / 2)
             return None
@@ -213,8 +204,7 @@ class Follower:
     def _advance(self, reached: Point) -> Status:
         """Accept a point if the step has no event, has followed the path and has passed no critical point."""
         last, track = self.track.last, self.track
-        behind = 0.0 if last.on_chords else reached.unexplained(last.state, reached.state)
-        unexplained = max(reached.unexplained_behind, behind)
+        unexplained = max(reached.behind, track.unexplained(reached, reached))
         fitting = allowed(unexplained)
         if unexplained > FOLLOWED:
             return self.control.refuse(fitting)
@@ -222,10 +212,10 @@ class Follower:
             return self._meet_bifurcation(reached) if unexplained <= _STRAIGHT else self.control.refuse()
         if self.model.rubbed:
             more = spent(track, reached, self._drive(reached.t))
-            part = 1 / 2 if more is None else self._search(reached.t).dips([*more.between, reached])
+            part = 1 / 2 if more is None else self._search(reached.t).dips([*more[1], reached])
             if more is None or part is not None:
                 return self.control.refuse(part or 1 / 2)
-            self.log.spent = self.log.spent + more.total
+            self.log.spent = self.log.spent + more[0]
         self.log.events += passes(self.model, last.equilibrium, reached.equilibrium)
         self._accept(reached)
         self.control.grow(reached.t - last.t, fitting)

@@ -1,8 +1,9 @@
 """Slip and stick of contacts with friction: the rates of the slips, and the state in which a contact goes on.
 
-A contact without force, or whose force lies on the edge of the cone ``|F_t| <= mu F_n``, may stick or slip. Its next
-state follows from rates: those of the structure with the contact in that state, as the load parameter grows. Stick
-is admissible if the force stays in the cone, slip if the surfaces slip the way in which the friction was taken.
+A contact without force, or whose force lies on the edge of the cone ``|F_t| <= mu F_n``, may stick or slip.
+Its next state follows from rates: those of the structure with the contact in that state, as the load
+parameter grows. Stick is admissible if the force stays in the cone, slip if the surfaces slip the way in
+which the friction was taken.
 """
 
 from __future__ import annotations
@@ -26,7 +27,8 @@ _STILL = 1e-9
 """Slip rate, in longest beams per whole load, that counts as zero."""
 _FLAT = 1e-6
 """Rate at which a force leaves its cone, in ``EI/L^2`` per whole load, that counts as zero. Where a slip ends, the
-force moves along the cone. A slip at the rate `_STILL` moves the force of a stick by up to EA times this rate, which
+force moves along the cone. A slip at the rate `_STILL` moves the force of a stick by up to EA times this
+rate, which
 counts as zero where no other state is admissible."""
 _MOST = 4096
 """Combinations of states that are tried: six contacts without force."""
@@ -62,9 +64,9 @@ def slip_rate(point: Point, rates: Rates, k: int) -> float:
 def regripped(point: Point, drive: Drive, last: State) -> Point | Status:
     """Equilibrium whose contacts with friction slip or stick as the load parameter grows, after a state `last`.
 
-    Where a slip ends, its rate is zero, and the force of the stick that follows moves along the cone: its rate out
-    of the cone is round-off. Returns JAMMED if no state of the contacts is admissible, TWO_SLIPS if a contact
-    without force could slip either way.
+    Where a slip ends, its rate is zero, and the force of the stick that follows moves along the cone: its
+    rate out of the cone is round-off. Returns JAMMED if no state of the contacts is admissible, TWO_SLIPS if
+    a contact without force could slip either way.
     """
     model, now = point.model, grips(point.state)
     here = {k: traction_at(point, k) for k, _ in now}

@@ -1,7 +1,8 @@
 """LAPACK's routines, as SciPy compiled them.
 
-Importing SciPy's linear algebra takes longer than solving a scene, and the routines are in one of its files: that file is loaded
-alone. Where SciPy keeps them elsewhere, or is imported already, they are taken from the public `scipy.linalg.lapack`: they are the same.
+Importing SciPy's linear algebra takes longer than solving a scene, and the routines are in one of its files:
+that file is loaded alone. Where SciPy keeps them elsewhere, or is imported already, they are taken from the
+public `scipy.linalg.lapack`: they are the same.
 """
 
 from __future__ import annotations

@@ -16,7 +16,9 @@ from tsm.state import State, Touch
 from tsm.status import Status
 from tsm.system import Assembler, Drag, Linearisation
 
-LONGEST, _LONGEST_WHOLE = 1.0, 1.4
+MAX_ITERATIONS = 25
+"""Iterations before a step is given up."""
+_LONGEST, _LONGEST_WHOLE = 1.0, 1.4
 """Largest Newton step, over 0.3 L and 0.7 rad; the second value holds where no contact passes from element to element."""
 _RISE, _SHORTEST = 10.0, 0.1
 """Merit test of exact elements. An iteration that raises the residual tenfold is halved, at most three times. A stricter test refuses
@@ -71,16 +73,16 @@ def _scales(model: Model) -> tuple[Array, Array, float]:
 class Newton:
     """Newton's method on forces, contact positions and directions together.
 
-    The norm is the largest scaled entry of the residual: forces over ``EI/L^2``, moments over ``EI/L``, positions over L/1000. L is the
-    longest beam, so that no scale can vanish. An iteration has converged if its norm is below `tolerance`. It has also converged if the
-    last two norms are below the round-off of the residual, ``4 eps (EA L/l0 + EI/l0^2)``, and ``4 eps k_c L`` for a contact of
-    stiffness k_c, or the round-off of the forces that the beams carry.
+    The norm is the largest scaled entry of the residual: forces over ``EI/L^2``, moments over ``EI/L``,
+    positions over L/1000. L is the longest beam, so that no scale can vanish. An iteration has converged if
+    its norm is below `tolerance`. It has also converged if the last two norms are below the round-off of the
+    residual, ``4 eps (EA L/l0 + EI/l0^2)``, and ``4 eps k_c L`` for a contact of stiffness k_c, or the
+    round-off of the forces that the beams carry.
     """
 
     def __init__(self, model: Model, settings: Settings) -> None:
         self.model = model
         self.assembler = Assembler(model)
-        self.max_iterations = settings.max_iterations
         self.integration_tolerance = settings.integration_tolerance
         self.tolerance = settings.tolerance
         self.scale, self.per_step, self.noise = _scales(model)
@@ -88,7 +90,7 @@ class Newton:
         self.per_unknown = self.per_step + np.where((kind > 2) & (kind < 6), 1 / model.units, 0.0)
         if model.springs is not None:
             self.noise = max(self.noise, model.springs.noise(model.extent, model.least_force))
-        self.longest = _LONGEST_WHOLE if model.whole else LONGEST
+        self.longest = _LONGEST_WHOLE if model.whole else _LONGEST
 
     def apart(self, one: State, other: State) -> float:
         """Size of the motion from one state to another, the one measure of how far they are apart."""
@@ -108,23 +110,6 @@ class Newton:
         if self.model.along.loaded and self.model.rods:
             work += self.model.rods.load_work(state)
         return self.assembler.energy(state) - work
-
-    def balanced(self, equilibrium: Equilibrium) -> bool:
-        """Whether support reactions, pin forces and loads are in balance."""
-        model, system = self.model, equilibrium.system
-        held = np.zeros(model.dof_count)
-        held[model.fixed] = system.nodal[model.fixed]
-        pushed = [force for k, force in system.forces.items() if model.pairs[k].pin is not None]
-        loads = model.loads.at(equilibrium.state.load_parameter)
-        total = (held + loads).reshape(-1, 3)[:, :2].sum(axis=0) + np.sum(pushed, axis=0, initial=0.0)
-        along = model.along.total(equilibrium.state.load_parameter) if model.along.loaded else np.zeros(2)
-        total += along
-        if model.springs is not None:
-            total = total + model.springs.pull(equilibrium.state.q)
-        largest = max((float(np.hypot(*force)) for force in pushed), default=0.0) + float(np.abs(loads).max())
-        largest += max(map(abs, along.tolist()))
-        noise = max(self.noise, self.tolerance) * model.force_scale + system.noise
-        return bool(np.abs(total).max() <= 1e-8 * largest + len(model.coordinates) * noise)
 
     def size(self, motion: Array) -> float:
         """Largest entry of a motion, in largest Newton steps; nan inside does not count."""
@@ -152,9 +137,9 @@ class Newton:
         taken: tuple[State, Array, Linearisation] | None = None
         residuals: list[float] = []
         owners: list[tuple[int, ...]] = []
-        for iteration in range(self.max_iterations + 1):
+        for iteration in range(MAX_ITERATIONS + 1):
             system = self.assembler.linearise(state, drag)
-            residual, left = self.norm(system), self.max_iterations - iteration
+            residual, left = self.norm(system), MAX_ITERATIONS - iteration
             risen = taken is not None and self.assembler.internal and not residual <= _RISE * residuals[-1]
             if risen and part > _SHORTEST and left:
                 part /= 2

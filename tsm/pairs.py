@@ -1,8 +1,8 @@
 """Beams and contact pairs in the numbering of a model, and the equations of a contact.
 
-Friction acts on a face at the distance ``lever`` from the axis, and a round pin of radius ``roll`` rolls on it; both are positive on the right.
-With the mean tangent T, its direction t at the angle phi, the section's angle theta, the shear angle ``psi = phi - theta`` and the mean turn
-theta'::
+Friction acts on a face at the distance ``lever`` from the axis, and a round pin of radius ``roll`` rolls on
+it; both are positive on the right. With the mean tangent T, its direction t at the angle phi, the section's
+angle theta, the shear angle ``psi = phi - theta`` and the mean turn theta'::
 
     F_t = F . t,   F_n = side F . n                     force on the beam along T and across it
     C = lever F_t                                       couple on the axis
@@ -10,9 +10,9 @@ theta'::
     slip:   F_t = sigma mu F_n
     stick:  (A + A*)/2 (s - s*) + lever (psi - psi*) + roll (phi - phi*) = 0
 
-What friction dissipates is ``F_t v``: the power of the node less that of the strain energy. The starred values are those in the held
-place. On the axis, under a sharp pin, the row is ``s = s*``. What the mean of A leaves out where a contact rolls, `tsm.rolling` takes into the
-held place.
+What friction dissipates is ``F_t v``: the power of the node less that of the strain energy. The starred
+values are those in the held place. On the axis, under a sharp pin, the row is ``s = s*``. What the mean of A
+leaves out where a contact rolls, `tsm.energy` takes into the held place.
 """
 
 from __future__ import annotations
@@ -138,8 +138,9 @@ class PairModel:
     def face(self, here: Here) -> tuple[Vector, Vector]:
         """Normal of the contact surface, to the right, and its direction times ``|T|``.
 
-        The surface is the envelope of circles with the offset o as radius about the points of the axis. With the direction t of T, its right
-        normal n, ``S = o'/|T|`` and ``C = sqrt(1 - S^2)``, its normal is ``C n - S t`` and its direction ``C t + S n``.
+        The surface is the envelope of circles with the offset o as radius about the points of the axis. With
+        the direction t of T, its right normal n, ``S = o'/|T|`` and ``C = sqrt(1 - S^2)``, its normal is ``C
+        n - S t`` and its direction ``C t + S n``.
         """
         Tx, Ty = here.tangent
         size = (Tx * Tx + Ty * Ty) ** 0.5
@@ -148,7 +149,7 @@ class PairModel:
         return ((C * Ty - S * Tx) / size, (-C * Tx - S * Ty) / size), (C * Tx + S * Ty, C * Ty - S * Tx)
 
     def rows(self, grip: Grip | None, force: Any, here: Here, unit: float) -> tuple[Any, Any, Any]:
-        """Vector from the axis to the surface, and the last row of a contact: the force is normal to the surface, or leans in slip, or sticks.
+        """Vector from the axis to the surface, and the last row: the force is normal to the surface, leans, or sticks.
 
         With the lean c, which is 0 without friction, ``F . (T - c n)``; in stick `unit` times `slid`.
         """
@@ -168,7 +169,7 @@ class PairModel:
         return Place(here.arc, here.shear, here.direction, size + self.lever * here.turn)
 
     def slid(self, here: Place, held: Place) -> Any:
-        """Path of the face along the node since it was held, by the trapezium: ``(A + A*)/2 (s - s*) + lever (psi - psi*) + roll (phi - phi*)``."""
+        """Path of the face along the node since it was held, by the trapezium, see the module's text."""
         rolled = self.lever * (here.shear - held.shear) + self.roll * unwind(here.direction - held.direction)
         return (here.stretch + held.stretch) / 2 * (here.arc - held.arc) + rolled
 

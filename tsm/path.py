@@ -13,20 +13,41 @@ The decision therefore depends on the path, and not on the prescribed load param
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from tsm.contact import handed_over
+from tsm.contact_set import owned
 from tsm.elements.properties import Array
+from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
-from tsm.predictor import extrapolate
+from tsm.pairs import PairModel
 from tsm.stability import index
-from tsm.state import State
+from tsm.state import State, Touch
+from tsm.status import Status
 from tsm.system import Drive
 
 FOLLOWED = 0.35
 """The bound c. A limit point is approached by a factor of (1 + 2 c)^2 = 2.9 a step."""
+SMALLEST = 1e-12
+"""Floor of the load step, as a part of the whole load."""
+_SAFE = 0.8
+"""Safety factor: next step over the step that the tangents would still allow."""
+_SHORTEST = 0.1
+"""Shortest part of a refused step that is tried next."""
+_NAMED = {
+    Status.NOT_FINITE,
+    Status.SINGULAR_TANGENT,
+    Status.INACCURATE,
+    Status.TWO_CONTACTS,
+    Status.PING_PONG,
+    Status.JAMMED,
+}
+"""Failures that are reported by their own status instead of the general status of a step at its floor."""
 _LONGEST = 1.0
 """Longest step whatever its tangents are, in largest Newton steps (0.3 L, 0.7 rad); the farthest equilibrium
 from its prediction where no tangent is usable. With 2 instead of 1, one random pin in a hundred ends on another branch."""
@@ -34,15 +55,12 @@ _PROMISED = 0.8
 """Longest step at the last speed, in the same measure: most of the longer ones would be refused."""
 _RESOLVED = 1e-8
 """Smaller motions, in the same measure, are round-off, as of a column that stays straight: it moves along itself only."""
-_MEMORY, _ON_CHORDS = 3, 4
-"""Points in the prediction, a polynomial in the load parameter through their states and tangents; the second value
-holds where no tangent is usable."""
+_MEMORY = 4
+"""Points in the prediction, a polynomial in the load parameter through their states and usable tangents."""
 _BEFORE_KINK = 1
 """Points before a contact passed from element to element that the prediction still uses: the path has a kink there."""
-_AHEAD = 1e-6
-"""Part of a step at which a state along the tangent stands for the tangent."""
-_NEAR = 1e-3
-"""Part of a step up to which this state is near."""
+_AHEAD = 1e-2
+"""Part of a step ahead of a state at which another one states its tangent; a shorter one has fewer digits."""
 _SHORTEST = 1e-6
 """Step of the load parameter below which the tangent alone predicts: the others would be round-off."""
 _FOLD = 100.0
@@ -63,7 +81,7 @@ class Rates(NamedTuple):
 class Point:
     """An equilibrium with what the path has there; each is computed once."""
 
-    unexplained_behind = 0.0  # part of the step to here that the tangent at its start does not explain
+    behind = 0.0  # part of the step to here that the tangent at its start does not explain
 
     def __init__(self, newton: Newton, equilibrium: Equilibrium) -> None:
         self.newton, self.model, self.equilibrium = newton, newton.model, equilibrium
@@ -131,16 +149,6 @@ class Point:
             return self.newton.prescribed(self.state, t)
         return self.newton.update(self.state, (t - self.t) * rates.unknowns, self.system, t=t)
 
-    def unexplained(self, before: State, after: State) -> float:
-        """Part of a step that the tangent here does not explain, ``|q_B - q_A - h q'|/|q_B - q_A|``."""
-        begin, end = before.load_parameter, after.load_parameter
-        rates = self.rates(self.newton.assembler.drive(begin, end))
-        if rates is None:
-            return 0.0
-        step = self.newton.motion(before, after, self.state)
-        size, left = self.newton.size(step), self.newton.size(step - (end - begin) * rates.motion)
-        return left / size if min(left, size) > _RESOLVED else 0.0
-
 
 class Track:
     """The path up to its last point."""
@@ -150,7 +158,7 @@ class Track:
         self.index = (
             max(point.index, 0) if point.equilibrium.converged else 0
         )  # of the last point that has one
-        # states, each with one a little ahead of it along its tangent if there is any; all have the same contacts
+        # states with the same contacts, each after one ahead of it along its tangent if there is any
         self.history: list[tuple[State, ...]] = [(point.state,)]
 
     def accept(self, point: Point) -> None:
@@ -163,26 +171,34 @@ class Track:
     def _remembered(self, point: Point) -> list[tuple[State, ...]]:
         """Earlier states that serve for the prediction beyond a point."""
         kept: list[tuple[State, ...]] = []
-        kinks, memory = 0, _ON_CHORDS if point.on_chords else _MEMORY
-        for state, *ahead in reversed(self.history[1 - memory :]):
+        kinks = 0
+        for *ahead, state in reversed(self.history[1 - _MEMORY :]):
             kinks += _owners(state) != _owners(point.state)
             if kinks > _BEFORE_KINK and not point.on_chords:
                 break
-            step = point.t - state.load_parameter
-            near = (one for one in ahead if one.load_parameter - state.load_parameter <= _NEAR * step)
-            kept += [(state, *near)] * (step > 0)
+            kept += [(*ahead, state)] if state.load_parameter < point.t else []
         return kept[::-1]
 
     def predicted(self, t: float) -> State:
         """State at t from the last states and their tangents, or along the last tangent."""
-        last, step = self.last, t - self.last.t
-        if not last.on_chords:
-            if len(self.history) == 1 or step < _SHORTEST:
-                return last.predicted(t)
-            if self.history[-1][-1].load_parameter - last.t > _NEAR * step or len(self.history[-1]) == 1:
-                self.history[-1] = (last.state, last.predicted(last.t + _AHEAD * step))
-        states = [state for near in self.history for state in near]
-        return self.newton.prescribed(extrapolate(last.model, states, t), t)
+        last, step, history = self.last, t - self.last.t, self.history
+        steady = not last.on_chords and last.speed < _FOLD  # a nearly singular tangent leads anywhere
+        if steady and step >= _SHORTEST and len(history[-1]) == 1:
+            history[-1] = (last.predicted(last.t + _AHEAD * step), last.state)
+        if (len(history) == 1 and not last.on_chords) or (steady and step < _SHORTEST):
+            return last.predicted(t)
+        states = [state for near in history if len(near) == 1 + steady for state in near]
+        return self.newton.prescribed(extrapolate(last.model, states, t, tangents=steady), t)
+
+    def unexplained(self, by: Point, reached: Point) -> float:
+        """Part of the step to a point that the tangent at one of its ends does not explain; 0 where none is usable."""
+        last, newton = self.last, self.newton
+        rates = None if last.on_chords else by.rates(newton.assembler.drive(last.t, reached.t))
+        if rates is None:
+            return 0.0
+        step = newton.motion(last.state, reached.state, by.state)
+        size, left = newton.size(step), newton.size(step - (reached.t - last.t) * rates.motion)
+        return left / size if min(left, size) > _RESOLVED else 0.0
 
     def strays(self, predicted: State, reached: State) -> bool:
         """Whether an equilibrium lies too far away, or too far from its prediction where no tangent is usable."""
@@ -221,3 +237,104 @@ def limit_load(before: tuple[float, float], last: tuple[float, float]) -> float:
 
 def _owners(state: State) -> list[int]:
     return [touch.element for touch in state.touches if touch is not None]
+
+
+def _weighted(weights: Sequence[float], values: Iterable[Any]) -> Any:
+    return sum(weight * value for weight, value in zip(weights, values, strict=True))
+
+
+def extrapolate(model: Model, history: list[State], t: float, *, tangents: bool = False) -> State:
+    """State at t by the polynomial through earlier states, all with the same closed contacts.
+
+    With `tangents`, every other one lies ahead of the next along the tangent there, which the polynomial has too.
+    """
+    for group in model.groups:
+        history = group.alike(history)
+    times = [state.load_parameter for state in history]
+    if tangents and len(times) > 1:
+        history, times = history[len(times) % 2 :], times[len(times) % 2 :]
+        weights = _hermite(times[1::2], times[::2], t)
+    else:
+        weights = [math.prod(part) for _, part, _ in _lagrange(times, t)]
+    last = history[-1]
+    moved = replace(last, load_parameter=t, q=_weighted(weights, [state.q for state in history]))
+    if last.profile:
+        angle = _weighted(weights, [state.profile.angle for state in history if state.profile])
+        moved = replace(moved, profile=replace(last.profile, angle=angle))
+    trails = zip(*(state.touches for state in history), strict=True)
+    touches = [
+        _touch(pair, weights, trail) if all(trail) else None
+        for pair, trail in zip(model.pairs, trails, strict=True)
+    ]
+    return owned(model, handed_over(model, moved, tuple(touches)))
+
+
+def _lagrange(times: list[float], t: float) -> Iterator[tuple[float, list[float], list[float]]]:
+    """For each time, the factors of Lagrange's polynomial at t, and the terms of its derivative at the time."""
+    for n, time in enumerate(times):
+        others = [other for k, other in enumerate(times) if k != n]
+        yield (
+            time,
+            [(t - other) / (time - other) for other in others],
+            [1 / (time - other) for other in others],
+        )
+
+
+def _hermite(times: list[float], ahead: list[float], t: float) -> list[float]:
+    """Weights of the states ahead and at some times, in turn."""
+    weights = []
+    for (time, part, slope), later in zip(_lagrange(times, t), ahead, strict=True):
+        bell = math.prod(part) ** 2
+        along = (t - time) * bell / (later - time)
+        weights += [along, bell * (1 - 2 * (t - time) * sum(slope)) - along]
+    return weights
+
+
+def _touch(pair: PairModel, weights: list[float], trail: Sequence[Touch]) -> Touch:
+    """Extrapolated contact, on the element that owned it last."""
+    last = trail[-1]
+    arc = _weighted(weights, map(pair.arc_position, trail))
+    place = last.element - pair.target.first
+    xi = (arc - pair.target.arcs[place]) / pair.target.lengths[place]
+    x, y = (_weighted(weights, [touch.force[c] for touch in trail]) for c in range(2))
+    return replace(last, xi=xi, force=(x, y), angle=_weighted(weights, [touch.angle for touch in trail]))
+
+
+def allowed(unexplained: float) -> float:
+    """Return the fraction of a step that its tangents would explain; `unexplained` is the fraction that they do not explain."""
+    return _SAFE * FOLLOWED / max(unexplained, 1e-9)
+
+
+class StepControl:
+    """Length of the next load step: it grows while the path is followed, and is cut back where an attempt fails."""
+
+    def __init__(self) -> None:
+        self.step, self.failure, self.part = (
+            1.0,
+            Status.CONVERGED,
+            1 / 2,
+        )  # why the last attempt failed, and what to try next
+
+    def fail(self, status: Status, part: float = 1 / 2) -> Status:
+        """Give up an attempt; the fraction `part` of its step is tried next."""
+        self.failure, self.part = status, min(max(part, _SHORTEST), 1 / 2)
+        return status
+
+    def refuse(self, part: float = 1 / 2) -> Status:
+        """Give up a step that is too long, whatever was found at its end."""
+        return self.fail(Status.ITERATION_LIMIT, part)
+
+    def cut_back(self, left: float) -> bool:
+        """Shorten the step, of which `left` was tried at most; return whether it is at its floor."""
+        self.step = min(self.step, left) * self.part
+        return self.step < SMALLEST
+
+    def grow(self, taken: float, fitting: float) -> None:
+        """Lengthen the step after one that was taken and could have been `fitting` times as long."""
+        self.step = min(max(min(2.0, fitting) * taken, self.step if fitting >= 1 else 0.0), 1.0)
+
+    def verdict(self, folds: bool) -> Status:
+        """Status that explains why no step succeeds; `folds` if the speed of the path shows a limit point."""
+        if self.failure in _NAMED:
+            return self.failure
+        return Status.LIMIT_POINT if folds else Status.CUTBACK_FLOOR

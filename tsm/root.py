@@ -20,10 +20,10 @@ def find_root(
 ) -> Answer | None:
     """Find where a function changes its sign, by inverse quadratic interpolation or bisection (Chandrupatla 1997).
 
-    ``evaluate``: value of the function, and data that belong to it; None where it has no value. ``before, after``:
-    argument and value on both sides of the root, of opposite signs. ``small``: absolute value that counts as zero.
-    ``apart``: width of the bracket at which the search ends for a function that jumps. Returns the data at the root,
-    or just past a jump; None where the function has no value.
+    ``evaluate``: value of the function, and data that belong to it; None where it has no value. ``before,
+    after``: argument and value on both sides of the root, of opposite signs. ``small``: absolute value that
+    counts as zero. ``apart``: width of the bracket at which the search ends for a function that jumps.
+    Returns the data at the root, or just past a jump; None where the function has no value.
     """
     (other, g), (last, f) = before, after  # the root lies between them
     sign = 1.0 if g > 0 else -1.0

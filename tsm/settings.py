@@ -18,18 +18,16 @@ class Settings:
     ----------
     tolerance : float
         Bound on the scaled residual, see `Newton`.
-    max_iterations : int
-        Newton iterations before a step is cut back.
     integration_tolerance : float
-        Bound on the estimated integration error inside exact elements: the largest error of positions over the longest beam, of
-        angles, and of forces over ``EI/L^2``.
+        Bound on the estimated integration error inside exact elements: the largest error of positions over
+        the longest beam, of angles, and of forces over ``EI/L^2``.
     branch : {"stop", "stable", "primary"}
-        Continuation at a critical point. With ``stop`` the path ends there, with the kind of the point as status. With ``stable`` it
-        turns to the stable branch of least energy. With ``primary`` it goes on along the unstable branch, if there is one.
+        Continuation at a critical point. With ``stop`` the path ends there, with the kind of the point as
+        status. With ``stable`` it turns to the stable branch of least energy. With ``primary`` it goes on
+        along the unstable branch, if there is one.
     """
 
     tolerance: float = 1e-10
-    max_iterations: int = 25
     integration_tolerance: float = 1e-9
     branch: Literal["stop", "stable", "primary"] = "stop"
 
@@ -38,7 +36,5 @@ class Settings:
             value = getattr(self, field)
             if not (math.isfinite(value) and least < value < 1):
                 raise ValueError(f"Settings.{field} = {value!r}: must lie between {least:g} and 1")
-        if self.max_iterations < 1:
-            raise ValueError(f"Settings.max_iterations = {self.max_iterations!r}: must be at least 1")
         if self.branch not in BRANCHES:
             raise ValueError(f"Settings.branch = {self.branch!r}: must be one of {', '.join(BRANCHES)}")

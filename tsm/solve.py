@@ -82,7 +82,8 @@ def solve(
     Returns
     -------
     Result
-        Result with the status COMPLETED. Without `throw`, a solution that stopped returns a partial result with the reason as status.
+        Result with the status COMPLETED. Without `throw`, a solution that stopped returns a partial result
+        with the reason as status.
 
     Raises
     ------
@@ -114,11 +115,14 @@ def solve(
         steps.append(step)
         if watch is not None:
             watch(step)
-    status = steps[-1].status
-    if status is Status.CONVERGED:
-        status = Status.COMPLETED
+    return ended(model, steps, steps[-1].status, begin, throw=throw)
+
+
+def ended(model: Model, steps: list[Step], status: Status, begin: float, *, throw: bool) -> Result:
+    """Result of a solution that began at a time; if it stopped and is to raise, it raises."""
+    status = Status.COMPLETED if status is Status.CONVERGED else status
     result = collect(model, steps, status, time.perf_counter() - begin)
-    if throw and result.status is not Status.COMPLETED:
+    if throw and status is not Status.COMPLETED:
         raise SolveError(result)
     return result
 

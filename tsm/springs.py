@@ -106,11 +106,9 @@ class Springs:
 
     def pull(self, q: Array) -> Array:
         """Force (2,) that the springs to the ground exert on the structure."""
-        total = np.zeros(2)
-        for axis in range(2):
-            own = self.ground % 3 == axis
-            total[axis] = -self.ground_stiffness[own] @ q[self.ground[own]]
-        return total
+        held = np.bincount(self.ground % 3, self.ground_stiffness * q[self.ground], minlength=3)
+        pull: Array = -held[:2]
+        return pull
 
     def noise(self, extent: float, force: float) -> float:
         """Round-off of the residual in parts of `force`, for displacements up to `extent` and rotations up to 1."""

@@ -5,8 +5,9 @@ The energy's Hessian, bordered by the contacts, is a symmetric matrix K::
     [ A   B ]   A: band of the beams
     [ B^T D ]   D: the contacts' forces, arc positions and angles
 
-A contact force is the Lagrange multiplier of a constraint on a position. With m multipliers, the Hessian over the variations that the
-closed contacts admit has ``negatives(K) - m`` negative eigenvalues (Haynsworth 1968). The same holds with a flexibility at the contact.
+A contact force is the Lagrange multiplier of a constraint on a position. With m multipliers, the Hessian over
+the variations that the closed contacts admit has ``negatives(K) - m`` negative eigenvalues (Haynsworth 1968).
+The same holds with a flexibility at the contact.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from tsm.elements.properties import Array
 from tsm.groups import ExactGroup
 from tsm.groups.layout import OWN
 from tsm.groups.rods import RodBalance
-from tsm.groups.variation import Bordered, modes_at_least, variation
+from tsm.groups.variation import modes_at_least, variation
 from tsm.inertia import Symmetric, negatives
 from tsm.state import State
 from tsm.system import Assembler, Linearisation
@@ -38,8 +39,8 @@ UNDEFINED = -1
 def index(assembler: Assembler, state: State, system: Linearisation) -> int:
     """Number of negative eigenvalues of the energy's Hessian over the variations that supports and closed contacts admit.
 
-    A contact that is closed without force admits variations to one side only. The index is then defined only if it is the same with the
-    contact open, where the structure is no mechanism.
+    A contact that is closed without force admits variations to one side only. The index is then defined only
+    if it is the same with the contact open, where the structure is no mechanism.
 
     The number is a lower bound for an exact element with more than a few hundred modes. It is -1, not
     defined, for a singular tangent, for numbers that are not finite, and for more than 1,500 unknowns whose
@@ -99,9 +100,9 @@ def _freed(symmetric: Symmetric, idle: list[int]) -> Symmetric:
 def mode(assembler: Assembler, state: State, system: Linearisation) -> tuple[Array, float] | None:
     """Null vector of a tangent near a critical point, and the smallest singular value, which is 0 there.
 
-    The units are longest beams, radians and ``EI/L^2``; in them the vector is 1 at most. A column and a row are added to
-    the tangent, which makes it regular. They converge to the null vectors (Govaerts 2000). None where the tangent has two
-    null vectors at once, or numbers that are not finite.
+    The units are longest beams, radians and ``EI/L^2``; in them the vector is 1 at most. A column and a row
+    are added to the tangent, which makes it regular. They converge to the null vectors (Govaerts 2000). None
+    where the tangent has two null vectors at once, or numbers that are not finite.
     """
     from scipy.sparse.linalg import splu
 
@@ -186,31 +187,29 @@ def _with_variation(
     ``symmetric``: units of the unknowns, and how many forces of contacts are unknown.
     """
     model, (group, balance), (units, multipliers) = assembler.model, exact, symmetric
-    mixed = len(model.groups) > 1
-    known = system.tangent.groups[group.number] if mixed or "tangent" in system.__dict__ else None
-    second = variation(group, state, balance, known.transfer if known else None)
-    border, aside, before = model.border, model.border_dofs, 36 * len(model.closed)
+    tangent, border, aside, before = system.tangent, model.border, model.border_dofs, 36 * len(model.closed)
+    rods = tangent.groups[group.number]
+    second = variation(group, state, balance, rods.transfer)
     moments = [part.moments for part in second.bordered]
     angles = [part.slots.count(-1) - part.moments for part in second.bordered]
     right = np.zeros((model.equations + 1, border + sum(angles) + sum(moments)))
     corner = np.eye(right.shape[1])
+    right[:, :border], corner[:border, :border] = tangent.right, tangent.corner
     values = second.tangent.reshape(len(second.tangent), -1).T
-    closed = [part.tangent.ravel() for part in system.tangent.groups[: group.number]] if mixed else []
+    closed = [part.tangent.ravel() for part in tangent.groups[: group.number]]
     flat = np.concatenate([*closed, values.ravel(), assembler.spring_values])
     band = np.bincount(assembler.scatter, flat, assembler.band_size + 1)[:-1].reshape(model.banded, -1)
-    there = slice(before, before + values.size if mixed else None)
-    if mixed:
-        tangent = system.tangent
-        flat = (values - tangent.groups[group.number].tangent).ravel()
-        right[:, :border], corner[:border, :border] = tangent.right, tangent.corner
     if aside:
-        added = np.bincount(assembler.scatter_right[there], flat, assembler.size + 1)[:-1]
+        there = assembler.scatter_right[before : before + values.size]
+        added = np.bincount(there, (values - rods.tangent).ravel(), assembler.size + 1)[:-1]
         right[:, :border] += added.reshape(-1, border)
     spare = border
     for part in second.bordered:
-        own, spare = _columns(part, aside, spare)
-        if mixed:
-            right[:, own] = corner[own] = corner[:, own] = 0.0
+        own = np.array(part.slots) + aside
+        new = np.array(part.slots) < 0
+        own[new] = spare + np.arange(np.count_nonzero(new))
+        spare += int(np.count_nonzero(new))
+        right[:, own] = corner[own] = corner[:, own] = 0.0
         right[model.equation[group.dofs[:, part.element], None], own] = part.matrix[:OWN, OWN:]
         corner[own[:, None], own] = part.matrix[OWN:, OWN:]
     for pair, touch in zip(model.pairs, state.touches, strict=True):
@@ -233,12 +232,3 @@ def _with_variation(
         units=units[: model.banded],
         multipliers=multipliers + sum(moments),
     )
-
-
-def _columns(part: Bordered, aside: int, spare: int) -> tuple[Array, int]:
-    """Places of an element's unknowns in the border, and the next free one."""
-    own = np.array(part.slots) + aside
-    new = np.array(part.slots) < 0
-    count = int(np.count_nonzero(new))
-    own[new] = np.arange(spare, spare + count)
-    return own, spare + count

@@ -40,7 +40,7 @@ class Grip(NamedTuple):
     """State of a closed contact with friction."""
 
     slip: int  # sign of the slip rate, 0 in stick
-    held: Place | None  # place at which the row of stick is zero, see `tsm.rolling`; None in slip
+    held: Place | None  # place at which the row of stick is zero, see `tsm.energy`; None in slip
 
 
 UNDECIDED = Grip(slip=0, held=None)
@@ -49,27 +49,13 @@ UNDECIDED = Grip(slip=0, held=None)
 
 @dataclass(frozen=True, kw_only=True)
 class Touch:
-    """A closed contact.
+    """A closed contact."""
 
-    Attributes
-    ----------
-    element : int
-        Global number of the element that owns the contacting node.
-    xi : float
-        Position on the element, 0 to 1 from end i to end j.
-    force : tuple of float
-        Force on the beam (x, y).
-    angle : float
-        Angle of the section from the x axis, used by exact elements only.
-    grip : Grip or None
-        Slip or stick, None without friction.
-    """
-
-    element: int
-    xi: float
-    force: tuple[float, float]
-    angle: float = 0.0
-    grip: Grip | None = None
+    element: int  # global number of the element that owns the contacting node
+    xi: float  # position on the element, 0 to 1 from end i to end j
+    force: tuple[float, float]  # force on the beam (x, y)
+    angle: float = 0.0  # angle of the section from the x axis, used by exact elements only
+    grip: Grip | None = None  # slip or stick, None without friction
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,24 +69,14 @@ class Profile:
 
 @dataclass(frozen=True, kw_only=True)
 class State:
-    """A configuration at one load parameter.
-
-    Attributes
-    ----------
-    load_parameter : float
-        Load parameter.
-    q : ndarray, shape (dofs,)
-        Displacements ``(u, v, theta)`` of the nodes, then internal force (x, y) and moment at the start of the exact elements.
-    touches : tuple of Touch or None
-        One entry per contact pair, None where it is open.
-    armed : tuple of bool
-        One entry per contact pair: whether an open one may close, its node being on the stated side.
-    profile : Profile or None
-        Angles inside the exact elements, None without such elements.
-    """
+    """A configuration at one load parameter."""
 
     load_parameter: float
+    # displacements ``(u, v, theta)`` of the nodes, then internal force (x, y) and moment at the start of the
+    # exact elements; shape (dofs,)
     q: Array
-    touches: tuple[Touch | None, ...]
-    armed: tuple[bool, ...]
-    profile: Profile | None = None
+    touches: tuple[Touch | None, ...]  # by contact pair, None where it is open
+    armed: tuple[
+        bool, ...
+    ]  # by contact pair: whether an open one may close, its node being on the stated side
+    profile: Profile | None = None  # angles inside the exact elements, None without such elements

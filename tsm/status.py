@@ -40,4 +40,3 @@ class Status(Enum):
         "a contact opened or closed under arc-length control, which follows a fixed set of contacts"
     )
     CHATTER = "contact opened and closed again and again at one load parameter"
-    UNBALANCED = "the support reactions do not balance the contact forces"

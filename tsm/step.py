@@ -1,4 +1,4 @@
-"""Accepted steps, the log of the march between two of them, and the length of the next one."""
+"""Accepted steps, and the log of the march between two of them."""
 
 from __future__ import annotations
 
@@ -14,27 +14,12 @@ from tsm.events import Event, EventKind, normal_force
 from tsm.margins import Margin, applied
 from tsm.model import Model
 from tsm.newton import Equilibrium
-from tsm.path import FOLLOWED, Point
+from tsm.path import Point
 from tsm.state import State
 from tsm.status import Status
 
 NEAR = 1e-9
 """Distance in the load parameter below which a corner of a pin's path coincides with a prescribed load parameter."""
-SMALLEST = 1e-12
-"""Floor of the load step, as a part of the whole load."""
-_SAFE = 0.8
-"""Safety factor: next step over the step that the tangents would still allow."""
-_SHORTEST = 0.1
-"""Shortest part of a refused step that is tried next."""
-_NAMED = {
-    Status.NOT_FINITE,
-    Status.SINGULAR_TANGENT,
-    Status.INACCURATE,
-    Status.TWO_CONTACTS,
-    Status.PING_PONG,
-    Status.JAMMED,
-}
-"""Failures that are reported by their own status instead of the general status of a step at its floor."""
 
 
 @dataclass(kw_only=True)
@@ -60,7 +45,8 @@ class Step:
     index : int
         Index of the equilibrium, see `tsm.stability`.
     spent : ndarray, shape (1 + pairs,)
-        Work of pins, supports and loads up to here, then the dissipation of every pair, see `tsm.energy`; empty without friction.
+        Work of pins, supports and loads up to here, then the dissipation of every pair, see `tsm.energy`;
+        empty without friction.
     """
 
     equilibrium: Equilibrium
@@ -125,43 +111,3 @@ def ends(load_parameters: list[float], turns: tuple[float, ...], begin: float) -
     apart = [t for t, n in zip(ahead, places, strict=True) if load_parameters[n] > t + NEAR]
     begins = [t for t in ahead if t == round(t) and t not in load_parameters]
     return sorted({*load_parameters, *apart, *begins})
-
-
-def allowed(unexplained: float) -> float:
-    """Return the fraction of a step that its tangents would explain; `unexplained` is the fraction that they do not explain."""
-    return _SAFE * FOLLOWED / max(unexplained, 1e-9)
-
-
-class StepControl:
-    """Length of the next load step: it grows while the path is followed, and is cut back where an attempt fails."""
-
-    def __init__(self) -> None:
-        self.step, self.failure, self.part = (
-            1.0,
-            Status.CONVERGED,
-            1 / 2,
-        )  # why the last attempt failed, and what to try next
-
-    def fail(self, status: Status, part: float = 1 / 2) -> Status:
-        """Give up an attempt; the fraction `part` of its step is tried next."""
-        self.failure, self.part = status, min(max(part, _SHORTEST), 1 / 2)
-        return status
-
-    def refuse(self, part: float = 1 / 2) -> Status:
-        """Give up a step that is too long, whatever was found at its end."""
-        return self.fail(Status.ITERATION_LIMIT, part)
-
-    def cut_back(self, left: float) -> bool:
-        """Shorten the step, of which `left` was tried at most; return whether it is at its floor."""
-        self.step = min(self.step, left) * self.part
-        return self.step < SMALLEST
-
-    def grow(self, taken: float, fitting: float) -> None:
-        """Lengthen the step after one that was taken and could have been `fitting` times as long."""
-        self.step = min(max(min(2.0, fitting) * taken, self.step if fitting >= 1 else 0.0), 1.0)
-
-    def verdict(self, folds: bool) -> Status:
-        """Status that explains why no step succeeds; `folds` if the speed of the path shows a limit point."""
-        if self.failure in _NAMED:
-            return self.failure
-        return Status.LIMIT_POINT if folds else Status.CUTBACK_FLOOR

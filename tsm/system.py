@@ -226,7 +226,7 @@ class Assembler:
         corner[model.border_dofs :, : model.border_dofs] = below[model.border_dofs :, bordered]
 
     def solve(self, system: Linearisation, *more: Array) -> Array | None:
-        """Newton step (equations + contact unknowns,), then the solutions for further right-hand sides, as columns; None if the tangent is singular."""
+        """Newton step and the solutions for further right-hand sides, as columns; None if the tangent is singular."""
         model = self.model
         banded, border, count = model.banded, model.border, 1 + len(more)
         rhs = np.empty((banded, count + border), order="F")

@@ -90,11 +90,12 @@ class Follower:
                 yield self._row()
             if finish > begin:
                 way, before = (end - start) / (finish - begin), self.velocity
+                turns = np.linalg.norm(way - before) > _SAME_DIRECTION * np.linalg.norm(before)
                 self.start, self.begin, self.velocity = start, begin, way
                 if self.rod.friction:
                     if not self.state.touches and self._touching(finish) == self.t:
                         self._touch(self.t)
-                    elif self.state.touches and np.linalg.norm(way - before) > _SAME_DIRECTION * np.linalg.norm(before):  # fmt: skip
+                    elif self.state.touches and turns:
                         self._turn()
                     yield self._row()
                 self._along(finish)

@@ -175,7 +175,8 @@ def elements(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> tuple[Arra
     to[..., 0, turn], to[..., 1, turn] = VALUES, SLOPES
     to[..., 2, 2] = to[..., 3, 3] = 1.0
     to[..., 4, 4], to[..., 4, 5], to[..., 5, 4], to[..., 5, 5] = -share / 2.0, share / 2.0, 1.0 - x, x
-    first, second, stored = _at_points(there, share * extent / 2.0, *(coefficients @ by.T for by in (VALUES, SLOPES)))  # fmt: skip
+    theta, bent = coefficients @ VALUES.T, coefficients @ SLOPES.T
+    first, second, stored = _at_points(there, share * extent / 2.0, theta, bent)
     gradient = np.einsum("egi,egis->es", first * WEIGHTS[:, None], to)
     rows, weighted = (len(x), -1, size), second * WEIGHTS[:, None, None]
     hessian = to.reshape(rows).swapaxes(1, 2) @ (weighted @ to).reshape(rows)

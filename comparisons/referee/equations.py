@@ -95,8 +95,9 @@ def _add_parts(layout: Layout, z: Array, g: Array, k: Array) -> None:
     hessian[:, :2, 2:] = hessian[:, 2:, :2].swapaxes(1, 2)
     np.add.at(g, local[:, 2:], by[..., 0].real.T)
     np.add.at(k, (local[:, :, None], local[:, None, :]), hessian)
-    shifts, extents = layout.shifts(z), layout.extents(z)
-    g[layout.forces] += np.ravel([_apart(layout, *item, shifts) for item in zip(layout.parts, extents, strict=True)])  # fmt: skip
+    shifts = layout.shifts(z)
+    for part, extent in zip(layout.parts, layout.extents(z), strict=True):
+        g[part.force : part.force + 2] += _apart(layout, part, extent, shifts)
 
 
 def _at_side(given: Any, sizes: Array) -> tuple[Any, ...]:

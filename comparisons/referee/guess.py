@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.grip import Grip
-from comparisons.referee.layout import NONE, Layout
+from comparisons.referee.layout import NONE, Layout, Part
 from comparisons.response import ContactHistory, Response
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 
@@ -96,7 +96,7 @@ def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotati
     z = np.zeros(layout.unknowns)
     for touch in layout.touches:
         z[touch.arc] = answer.arcs[touch.spec.pair] / layout.length
-    turns = _rotations(layout, answer)
+    turns = _rotations(layout, answer, z)
     _set_displacements(layout, answer, turns, z)
     _balance(layout, answer, turns, z)
     turns = _rotations(layout, answer, z)
@@ -108,36 +108,39 @@ def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotati
     return z, turns
 
 
-def _rotations(layout: Layout, answer: AnswerState, z: Array | None = None) -> list[Rotations]:
+def _rotations(layout: Layout, answer: AnswerState, z: Array) -> list[Rotations]:
     """Rotations of all beams, with multiples of 2 pi, so that beams agree with prescribed rotations and, at joints, with each other."""
-    turns = [_rotation(layout, answer, number, z) for number in range(len(layout.scene.beams))]
     known: dict[int, float] = {
         k: float(layout.given[item.numbers[2]])
         for k, item in enumerate(layout.stations)
         if item.numbers[2] < 0
     }
-    own = [[part for part in layout.parts if part.beam == number] for number in range(len(turns))]
-    ends = [(parts[0].first, parts[-1].last) for parts in own]
+    own: list[list[tuple[Part, Array]]] = [[] for _ in layout.scene.beams]
+    for part, extent in zip(layout.parts, layout.extents(z), strict=True):
+        own[part.beam].append((part, extent))
+    turns = [_rotation(layout, answer, parts, z) for parts in own]
+    ends = [(parts[0][0].first, parts[-1][0].last) for parts in own]
     left = list(range(len(turns)))
     while left:
         number = next((b for b in left if any(k in known for k in ends[b])), left[0])
         left.remove(number)
         arc, theta = turns[number]
-        both = dict(zip(ends[number], (theta[0], theta[-1]), strict=True))
-        shift = next((known[k] - turn for k, turn in both.items() if k in known), 0.0)
+        both = list(zip(ends[number], (theta[0], theta[-1]), strict=True))
+        shift = next((known[k] - turn for k, turn in both if k in known), 0.0)
         whole = 2.0 * math.pi * round(shift / (2.0 * math.pi))
         turns[number] = arc, theta + whole
-        known = {k: float(turn + whole) for k, turn in both.items()} | known
+        for k, turn in both:
+            known.setdefault(k, float(turn + whole))
     return turns
 
 
-def _rotation(layout: Layout, answer: AnswerState, number: int, z: Array | None) -> Rotations:
-    """Angles of the axis' chords from the undeformed direction, less the shear of the forces in z, extrapolated to the ends.
+def _rotation(layout: Layout, answer: AnswerState, own: list[tuple[Part, Array]], z: Array) -> Rotations:
+    """Angles of a beam's chords from the undeformed direction, less the shear of the forces in z, extrapolated to the ends.
 
     ``r' = d1 + (N/EA) d1 + (Q/GA) d2`` gives ``r' - n/GA = (1 + N/EA - N/GA) d1``. In strong shear the factor of d1 is negative; its
     sign is the one that agrees with N.
     """
-    beam, rod = layout.scene.beams[number], layout.rod(number)
+    beam, rod = layout.scene.beams[own[0][0].beam], own[0][0].rod
     arc, line = answer.axes[beam.name]
     pieces, extents = np.diff(line, axis=0) @ (1.0, 1.0j) / complex(*beam.direction), np.diff(arc)
     long = (np.abs(pieces) > 0.0) & (extents > 0.0)
@@ -145,18 +148,16 @@ def _rotation(layout: Layout, answer: AnswerState, number: int, z: Array | None)
         return np.array([0.0, rod.length]), np.zeros(2)
     s, way = (arc[:-1] + arc[1:])[long] / (2.0 * layout.length), pieces[long] / extents[long]
     way = way * np.exp(-1.0j * rod.angle(s)) if rod.turn else way
-    theta = np.angle(way)
-    for part, (first, last) in () if z is None else zip(layout.parts, layout.extents(z), strict=True):
-        if z is not None and part.beam == number and np.any(rod.greatest.shear):
-            _, stretch, shear = rod.flexibility(s)
-            x, y = rod.force(part.piece, part.constant(z), s)
-            force = (x + 1.0j * y) * np.exp(-1.0j * rod.angle(s))
-            along = way - shear * force
-            size = np.abs(along)
-            d1 = along / np.where(size > 0.0, size, 1.0)
-            factor = (stretch - shear) * (d1 * force.conjugate()).real
-            d1 = np.where(np.abs(1.0 + factor - size) <= np.abs(1.0 - factor + size), d1, -d1)
-            theta = np.where((s >= first) & (s <= last) & (size > 0.0), np.angle(d1), theta)
+    theta, (_, stretch, shear) = np.angle(way), rod.flexibility(s)
+    for part, (first, last) in own if np.any(shear) else ():
+        x, y = rod.force(part.piece, part.constant(z), s)
+        force = (x + 1.0j * y) * np.exp(-1.0j * rod.angle(s))
+        along = way - shear * force
+        size = np.abs(along)
+        d1 = along / np.where(size > 0.0, size, 1.0)
+        factor = (stretch - shear) * (d1 * force.conjugate()).real
+        d1 = np.where(np.abs(1.0 + factor - size) <= np.abs(1.0 - factor + size), d1, -d1)
+        theta = np.where((s >= first) & (s <= last) & (size > 0.0), np.angle(d1), theta)
     theta = np.unwrap(theta)
     slope = np.append(np.diff(theta) / np.diff(s), 0.0)[[0, max(len(s) - 2, 0)]]
     ends = theta[[0, -1]] + slope * ([0.0, rod.length] - s[[0, -1]])

@@ -181,10 +181,6 @@ class Layout:
         """How friction holds the contacts, by pair; none without friction."""
         return {touch.spec.pair: touch.grip for touch in self.touches if touch.grip is not None}
 
-    def rod(self, beam: int) -> Rod:
-        """Return the rod of a beam."""
-        return next(part.rod for part in self.parts if part.beam == beam)
-
     def touch(self, pair: str) -> Touch:
         """Return the closed contact of a pair."""
         return next(item for item in self.touches if item.spec.pair == pair)
@@ -233,7 +229,9 @@ class Layout:
         for part in self.parts:
             for end, sign in enumerate((-1.0, 1.0)):
                 there, rod = self.stations[(part.first, part.last)[end]], part.rod
-                phi, offset, slope = (NONE, 0.0, 0.0) if (touch := there.touch) is None else (touch.angle, touch.offset, touch.slope)  # fmt: skip
+                phi, offset, slope = NONE, 0.0, 0.0
+                if there.touch is not None:
+                    phi, offset, slope = there.touch.angle, there.touch.offset, there.touch.slope
                 numbers.append((part.force, part.force + 1, *there.numbers[:2], part.arcs[end], phi))
                 sizes.append((sign, *rod.axes[:, 0], rod.curvature, rod.turn, offset, slope))
         return np.array(numbers), np.array(sizes).T
@@ -307,7 +305,8 @@ def lay_out(
             parts.append(Part(number, first, last, (arc, arc_after), numbers.free(2)[0], rod, piece))
     return Layout(
         scene=scene, load_parameter=load_parameter, length=length, force=force, stations=tuple(stations),
-        parts=tuple(parts), hinges=tuple(hinges), given=np.array(numbers.given[::-1]), unknowns=numbers.unknowns,
+        parts=tuple(parts), hinges=tuple(hinges), given=np.array(numbers.given[::-1]),
+        unknowns=numbers.unknowns,
     )  # fmt: skip
 
 

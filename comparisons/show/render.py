@@ -73,9 +73,10 @@ def _panel(series: Series, t: float, factor: float) -> Panel:
 
 def write_picture(panels: list[Panel], stress_label: str, path: Path) -> None:
     """Write the picture of `panels`; `NoOpenGLError` if it cannot be drawn."""
-    with tempfile.TemporaryDirectory() as folder, replacing(path) as temporary:
+    with tempfile.TemporaryDirectory() as folder:
         (picture,) = _drawn(Film([panels], Scale.of(panels, stress_label)), Path(folder))
-        temporary.write_bytes(picture.read_bytes())
+        with replacing(path) as temporary:
+            temporary.write_bytes(picture.read_bytes())
 
 
 def write_film(shown: Film, folder: Path, count: Count = uncounted) -> list[Path]:

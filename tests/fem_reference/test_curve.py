@@ -13,14 +13,17 @@ def curve_through(stations, offsets=(0.0,), kernel=(1.0,)):
     rows = eye_array(stations.size, format="csr")
     slopes = cardinal_slopes(stations)
     kernel, offsets = np.array(kernel), np.array(offsets)
-    return ContactCurve(stations=stations, slopes=slopes, rows=rows, offsets=offsets, kernel=kernel)
+    values = {"slopes": slopes, "spread": slopes.T, "rows": rows, "offsets": offsets, "kernel": kernel}
+    return ContactCurve(stations=stations, **values)
 
 
 def test_curve_is_twice_continuously_differentiable():
     curve = curve_through(np.linspace(0, 1, 11), *averaging(0.1, 0.1))
     scale = np.array([1.0, 1 / 0.1, 1 / 0.01])[:, None]
+    splines = np.eye(11), curve.slopes.toarray()
     for station in curve.stations[1:-1]:
-        before, after = curve.basis(np.nextafter(station, 0)), curve.basis(np.nextafter(station, 1))
+        before, after = (curve.at(np.nextafter(station, side), *splines) for side in (0, 1))
+        np.testing.assert_allclose(curve.basis(station), curve.at(station, *splines)[:2], atol=1e-12)
         np.testing.assert_allclose(before / scale, after / scale, atol=1e-11)
 
 

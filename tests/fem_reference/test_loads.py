@@ -28,6 +28,20 @@ SMALL = 1e-6 * EI
 KEPT = {"clamped": ("start",)}
 
 
+def test_the_axis_has_a_point_at_a_moment_between_two_sections():
+    """At .29 of a strip of length 2, on the line through a free strip's sections that a moment turns with its hinge."""
+    hinge, spring = (
+        support(motion=(0.0, 0.0, None)),
+        fr.Spring(strip=STRIP, end="start", stiffness=(0, 0, EI)),
+    )
+    moment = fr.PointLoad(strip=STRIP, at=0.29, moment=1e-6 * EI)
+    result = fr.solve(held(hinge, spring, moment, end=(2.0, 0.0), mesh=(8, 1)), loads(1))
+    stations, line = fr.axis_stations(result, STRIP), fr.axis_line(result, STRIP, -1)
+    (at,) = np.flatnonzero(np.abs(stations - 0.58) < 1e-12)
+    assert len(stations) == len(line) == 18
+    assert line[at] == pytest.approx([0.58, 1e-6 * (0.58 + 0.58**2 / 2)], abs=1e-10)
+
+
 def test_a_face_contact_is_on_the_face_of_the_taper():
     """A sharp pin touches the inclined face at the start; below it, it is refused."""
 

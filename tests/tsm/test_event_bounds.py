@@ -15,14 +15,14 @@ from tests.tsm.structures import SECTION, beam, cantilever
 # no structure brings these decisions to their bounds: the notes name mutants that survive every solution
 from tsm.contact_set import initial_state, rearm
 from tsm.crossing import crossing
-from tsm.events import EventKind
-from tsm.margins import Margin
+from tsm.events import EventKind, normal_force
+from tsm.margins import WATCHES, Margin, Watch, broken
 from tsm.model import Model
 from tsm.newton import Newton
 from tsm.projection import arc_position, slide
 from tsm.root import find_root
 from tsm.scales import joined_extents, sizes_of
-from tsm.search import broken
+from tsm.status import Status
 
 
 def open_states(*path):
@@ -80,6 +80,22 @@ def test_a_margin_is_broken_below_round_off():
 
     for value, breaks in ((1e-3, False), (0.0, False), (-1e-11, False), (-1e-9, True), (-1e-7, True)):
         assert bool(broken([margin(1.0)], [margin(value)])) == breaks
+
+
+def test_a_new_event_is_a_row(monkeypatch):
+    """A contact that may carry so much and no more: the path ends where it does, located like every event."""
+    most = Watch(
+        EventKind.LINE_CONTACT,
+        lambda point, k: point.state.touches[k] is not None,
+        lambda point, k, _: 1.0 - normal_force(point.model, point.equilibrium, k) / 0.5,
+        lambda *_: Status.LINE_CONTACT,
+    )
+    rows = (row for row in WATCHES if row.kind is not most.kind)
+    monkeypatch.setattr("tsm.margins.WATCHES", (*rows, most))
+    path = ((0.8, 0.0), (0.8, 0.3))
+    result = tsm.solve(cantilever(path), [0.5, 1.0], throw=False)
+    assert result.status is Status.LINE_CONTACT
+    assert result.events[-1].force == pytest.approx(0.5, rel=1e-11)
 
 
 def test_no_contact_is_so_stiff_that_a_large_residual_is_round_off():

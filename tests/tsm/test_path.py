@@ -19,6 +19,13 @@ SECTION = tsm.Section(EA=EA, GA=GA, EI=1.0)
 PRIMARY, STABLE = tsm.Settings(branch="primary"), tsm.Settings(branch="stable")
 
 
+def test_the_main_scene_takes_two_iterations_a_load_parameter():
+    """The path is predicted by Hermite's polynomial: 144 iterations without the tangents."""
+    scene = load_scene("ks-cantilever")
+    result = tsm.solve(to_structure(scene, element="mixed", elements=10), np.array(scene.times))
+    assert result.newton_iterations.sum() <= 105
+
+
 def critical():
     """Load at which a clamped Reissner column buckles, EI = L = 1: ``P (1 + P (1/GA - 1/EA)) = (pi/2)^2``."""
     c = 1.0 / GA - 1.0 / EA

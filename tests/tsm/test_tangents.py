@@ -12,6 +12,16 @@ from tests.tsm.structures import KS, KS_PATH, as_mixed, cantilever, hook, leanin
 from tsm.model import Model
 from tsm.newton import Newton
 
+
+def moving_end(element):
+    """A cantilever that the end of another beam presses down, which a support moves."""
+    plain = cantilever(element=element, elements=2)
+    other = replace(plain.beams[0], name="up", start=(0.8, 0.5), end=(0.8, 0.0))
+    ends = (tsm.Support(beam="up", end=end, uy=-0.1, rotation=0.0) for end in ("start", "end"))
+    contact = tsm.ContactPair(node="up.end", beam="b", side="left")
+    return replace(plain, beams=(*plain.beams, other), supports=(*plain.supports, *ends), contacts=(contact,))
+
+
 SCENES = {
     "varying, on a face": lambda: pushed(offset=0.04, end_offset=0.02),
     "varying mixed": lambda: as_mixed(pushed(offset=0.03)),
@@ -38,6 +48,14 @@ SCENES = {
         radius=0.03,
         friction=0.3,
     ),
+    "beside a moving clamp": lambda: cantilever(
+        ((0.3, -0.01), (0.3, 0.01)),
+        elements=2,
+        supports=(tsm.Support(beam="b", end="start", uy=-0.03, rotation=-0.05),),
+        friction=0.2,
+    ),
+    "under a moving end": lambda: moving_end("exact"),
+    "mixed under a moving end": lambda: moving_end("mixed"),
     "near a node": lambda: replace(pushed(), beams=(hook().beams[0].divided(0.504133),)),
 }
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
@@ -13,15 +12,13 @@ _PIECES, _ROUNDS = 8, 3
 """Pieces with a linear curvature each, and rounds of the iteration, each of which gains two powers of the length."""
 
 
-class PointForce(NamedTuple):
-    """Force (x, y) of a contact on element number `element`, at xi."""
-
-    element: int
-    xi: float
-    force: tuple[float, float]
-
-
-def deflected_axes(p: Properties, x: Array, force: Array, contacts: Sequence[PointForce], xi: Array) -> Array:
+def deflected_axes(
+    p: Properties,
+    x: Array,
+    force: Array,
+    contacts: Sequence[tuple[int, float, tuple[float, float]]],
+    xi: Array,
+) -> Array:
     """Positions along the axes of elements from their ends i: the rod's equations between their end states.
 
     The element gives the internal force n; sections turn by phi, t and n_ are their directions::
@@ -32,8 +29,8 @@ def deflected_axes(p: Properties, x: Array, force: Array, contacts: Sequence[Poi
     corrections therefore close the axis: a and b fit the rotation of end j and the direction of the chord, and a factor close to one
     fits the length of the chord.
 
-    ``x, force`` (6, elements): displacements of the elements and nodal forces on them. ``contacts``: contact
-    forces on the elements. ``xi`` (m,): positions along the elements, as parts of the length. Returns
+    ``x, force`` (6, elements): displacements of the elements and nodal forces on them. ``contacts``: number of
+    the element, place xi and force on it. ``xi`` (m,): positions along the elements, as parts of the length. Returns
     (elements, m, 2).
     """
     dx, dy = p.dx0 + x[3] - x[0], p.dy0 + x[4] - x[1]
@@ -41,11 +38,11 @@ def deflected_axes(p: Properties, x: Array, force: Array, contacts: Sequence[Poi
     first, last = unwind(x[2] - turn)[:, None], unwind(x[5] - turn)[:, None]
     chord = (dx + 1j * dy)[:, None]
     stations = np.unique(
-        np.concatenate([np.linspace(0, 1, _PIECES + 1), xi, [contact.xi for contact in contacts]])
+        np.concatenate([np.linspace(0, 1, _PIECES + 1), xi, [place for _, place, _ in contacts]])
     )
     n = np.repeat(-(force[0] + 1j * force[1])[:, None], len(stations) - 1, axis=1)
-    for contact in contacts:
-        n[contact.element, stations[:-1] >= contact.xi] -= complex(*contact.force)
+    for element, place, (Fx, Fy) in contacts:
+        n[element, stations[:-1] >= place] -= complex(Fx, Fy)
     n *= np.abs(chord) / chord
     inverse = p.l0[:, None] / p.EI[:, None]
     r, b = stations * np.abs(chord) + 0j, np.zeros_like(first)

@@ -14,7 +14,7 @@ Vector = tuple[Any, Any]
 
 
 class Here(NamedTuple):
-    """What a contact sees of its beam. The numbers may be complex, or arrays of them: rows are differentiated by complex steps."""
+    """What a contact sees of its beam, in numbers or in arrays with complex steps."""
 
     arc: Any  # arc position on the beam
     tangent: Vector  # mean tangent T, per undeformed length
@@ -29,10 +29,10 @@ class Here(NamedTuple):
 class ContactLaw:
     """A contact law.
 
-    Every function takes the constants `Properties` of the touched element first. ``x`` are the element's six displacements,
-    ``lever = x_i - x_c`` the vector from the contacting node to the element's end i, ``xi`` in [0, 1] the position on the element,
-    ``force`` the force on the beam, ``side`` +1 where the node comes from the right and -1 from the left, ``offset`` the distance of the
-    contact surface from the axis.
+    Every function takes the constants `Properties` of the touched element first. ``x`` are the element's six
+    displacements, ``lever = x_i - x_c`` the vector from the contacting node to the element's end i, ``xi`` in
+    [0, 1] the position on the element, ``force`` the force on the beam, ``side`` +1 where the node comes from
+    the right and -1 from the left, ``offset`` the distance of the contact surface from the axis.
     """
 
     # ``(p, x, lever, xi, force, side, offset) -> (gradient, tangent)`` over element (6), node (2) and the
@@ -72,12 +72,14 @@ def crossing(
     forces: tuple[Any, Any],
     slips: tuple[tuple[float, float], tuple[float, float]],
 ) -> tuple[Array, Array]:
-    """Coupling of two contacts on one element, over force (2) and arc position of the first, then of the second: each dents it at the other.
+    """Coupling of two contacts on one element, over force (2) and arc position of both: each dents it at the other.
 
-    ``cross``: deflection at the first by a unit force at the second, derivatives in both positions, and the second ones. ``slips``: sign
-    of the third row and lean c of the force. Without friction (-1, 0), it is the gradient and Hessian of ``-C F_1 . F_2``. In slip (1, c)
-    the row has the slope of the other contact's dent across the leaning force ``F' = (F_x - c F_y, F_y + c F_x)``; in stick (0, 0) it
-    has none. The couples on a face do not dent the element at the other contact here, and the force along the beam dents it as if it were across.
+    ``cross``: deflection at the first by a unit force at the second, derivatives in both positions, and the
+    second ones. ``slips``: sign of the third row and lean c of the force. Without friction (-1, 0), it is the
+    gradient and Hessian of ``-C F_1 . F_2``. In slip (1, c) the row has the slope of the other contact's dent
+    across the leaning force ``F' = (F_x - c F_y, F_y + c F_x)``; in stick (0, 0) it has none. The couples on
+    a face do not dent the element at the other contact here, and the force along the beam dents it as if it
+    were across.
     """
     C, dx, de, dxx, dxe, dee = cross
     slope, bend = (dx / l0, de / l0), ((dxx, dxe), (dxe, dee))

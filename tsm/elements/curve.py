@@ -10,8 +10,9 @@ from tsm.elements.properties import Properties, chord_rotation, tangent_of, unwi
 class Curve:
     """Deflected centre line ``r(xi) = x_i + xi d + w(xi) perp(d)`` of an element, d its chord.
 
-    ``w(xi) = xi (1 - xi) ((1 - xi) tan s_i - xi tan s_j)`` with the end slopes ``s_i, s_j`` of the centre line from
-    the chord: the rotations from the chord plus the shear strain of the element, ``w' = theta + gamma``.
+    ``w(xi) = xi (1 - xi) ((1 - xi) tan s_i - xi tan s_j)`` with the end slopes ``s_i, s_j`` of the centre
+    line from the chord: the rotations from the chord plus the shear strain of the element, ``w' = theta +
+    gamma``.
     """
 
     def __init__(self, p: Properties, x: Any) -> None:

@@ -1,7 +1,7 @@
 """Contact law with the force as an unknown. It does not divide by a distance to a node, so it has no critical area.
 
-The unknowns are the force F on the beam and the material position xi in [0, 1] of the contact on the element. The contact adds to the
-energy of the touched element the Lagrangian ::
+The unknowns are the force F on the beam and the material position xi in [0, 1] of the contact on the element.
+The contact adds to the energy of the touched element the Lagrangian ::
 
     L = -F . (p(xi) - x_c) - C(xi) F.F/2
 
@@ -12,15 +12,15 @@ energy of the touched element the Lagrangian ::
     sigma = -side: -1 for a node from the right (side 1), +1 for one from the left (side -1)
     C(xi) = l0^3/(3 EI (1 + Phi)) (z^3 + Phi/4 z^2 + Phi (1 + Phi)/4 z),  z = xi (1 - xi)
 
-p is a point of the centre line or surface, without the deflection ``C F`` by the contact force itself. Three conditions hold where L is
-stationary:
+p is a point of the centre line or surface, without the deflection ``C F`` by the contact force itself. Three
+conditions hold where L is stationary:
 
 - the node lies on the deflected centre line, ``p + C F = x_c``;
 - the force is normal to the mean of the two tangents at the contact, ``F . p' + C' F.F/2 = 0``;
 - the beam carries the nodal loads that are equivalent to F.
 
-C and w vanish at both ends of the element, so a beam node is a point like any other. The functions ``tan s_i`` and ``tan s_j`` in w
-make the slope continuous from element to element, up to the true shear kink.
+C and w vanish at both ends of the element, so a beam node is a point like any other. The functions ``tan
+s_i`` and ``tan s_j`` in w make the slope continuous from element to element, up to the true shear kink.
 """
 
 from __future__ import annotations
@@ -50,14 +50,7 @@ LEVER[[6, 8, 7, 9], [8, 6, 9, 7]] = -1
 def response(
     p: Properties, x: Any, lever: Any, xi: Any, force: Any, side: float, offset: float
 ) -> tuple[Array, Array]:
-    """Gradient and Hessian of the contact's Lagrangian.
-
-    ``lever``: ``x_i - x_c``, from the contacting node to the element's end i. ``xi``: material position on
-    the element. ``force``: force on the beam. ``side``: +1 where the node comes from the right, -1 from the
-    left. ``offset``: distance of the contact surface from the axis. Returns ``gradient`` (11,), with respect
-    to element (6), node (2), force (2) and arc position ``xi l0``; ``tangent`` (11, 11), its derivative,
-    symmetric.
-    """
+    """Gradient (11,) of the Lagrangian by element, node, force and arc position, and its Hessian, see `ContactLaw`."""
     gradient, hessian = _sharp(p, x, xi, force)
     tangent = -(hessian @ _SPREAD).reshape(11, 11) - LEVER
     if offset:
@@ -74,10 +67,9 @@ def response(
 
 
 def _sharp(p: Properties, x: Any, xi: Any, force: Any) -> tuple[Array, Array]:
-    """First and second derivatives of ``F . (p(xi) - x_i) + C(xi) F.F/2`` without offset in chord, end rotations, force and xi.
+    """Derivatives (7,) of ``F . (p - x_i) + C F.F/2`` without offset by ``dx, dy, theta_i, theta_j``, force and xi.
 
-    Returns ``gradient`` (7,), with respect to ``dx, dy, theta_i, theta_j`` of the element, force (2) and xi;
-    ``hessian`` (28,), upper triangle of its derivative, row by row.
+    The second ones (28,) are the upper triangle, row by row.
     """
     curve = Curve(p, x)
     dx, dy, (Fx, Fy) = curve.dx, curve.dy, force
@@ -115,9 +107,9 @@ def _sharp(p: Properties, x: Any, xi: Any, force: Any) -> tuple[Array, Array]:
 def _surface(p: Properties, x: Any, xi: Any, force: Any) -> Array:
     """Gradient (7, ...) of ``F . m(phi + psi)``, to second order in the slope psi of the load's own dent; in the order of `_sharp`.
 
-    `m` is the unit normal at the slope angle phi of the unloaded curve, ``psi = b F.m`` with ``b = C'/(2 l0)``; with
-    ``A = F.m``, ``T = F.t`` the expression is ``A - b A T - b^2 A^3/2``, whose derivative in b vanishes, as it must, where
-    the force is normal to the loaded curve.
+    `m` is the unit normal at the slope angle phi of the unloaded curve, ``psi = b F.m`` with ``b = C'/(2
+    l0)``; with ``A = F.m``, ``T = F.t`` the expression is ``A - b A T - b^2 A^3/2``, whose derivative in b
+    vanishes, as it must, where the force is normal to the loaded curve.
     """
     phi, by = Curve(p, x).slope_angle(xi)
     b, db = (value / (2 * p.l0) for value in compliance(p, xi)[1:])
@@ -135,8 +127,8 @@ def _surface(p: Properties, x: Any, xi: Any, force: Any) -> Array:
 def cross_compliance(p: Properties, xi: Any, eta: Any) -> tuple[Any, Any, Any, Any, Any, Any]:
     """Deflection at xi by a unit force at eta, both ends clamped.
 
-    Simply supported, less what clamping takes away: with ``x = min, b = 1 - max`` of both, ``z = xi (1 - xi)``,
-    ``m = 1 - 2 xi`` (z', m' at eta)::
+    Simply supported, less what clamping takes away: with ``x = min, b = 1 - max`` of both, ``z = xi (1 -
+    xi)``, ``m = 1 - 2 xi`` (z', m' at eta)::
 
         C12 = l0^3/(12 EI) (2 x b (1 + Phi/2 - b^2 - x^2) - z z' (3 + m m'/(1 + Phi)))
 

@@ -1,22 +1,24 @@
 """Coulomb friction in the contact law whose force and arc position are unknowns.
 
-Friction acts at a face at the distance h from the axis. Its force F on the beam, with the components F_t along the mean tangent T of the
-loaded centre line and ``F_n = side F.n >= 0`` across it, is on the axis the force F and the couple ``M = side h F_t``, which acts on the
-section. The element's response to both at xi, its ends held, is ::
+Friction acts at a face at the distance h from the axis. Its force F on the beam, with the components F_t
+along the mean tangent T of the loaded centre line and ``F_n = side F.n >= 0`` across it, is on the axis the
+force F and the couple ``M = side h F_t``, which acts on the section. The element's response to both at xi,
+its ends held, is ::
 
     r     = p(xi) + C F_n n + A F_t t + K M n           point of the axis
     theta = phi(xi) - gamma + K F_n + R M               rotation of the section
     E     = (C F_n^2 + A F_t^2 + R M^2)/2 + K F_n M     strain energy
 
-Here n and t are the normal and tangent of the unloaded curve p, which has the slope angle phi and the shear strain gamma; C is the
-compliance of `mixed_contact`, and with ``z = xi (1 - xi)`` ::
+Here n and t are the normal and tangent of the unloaded curve p, which has the slope angle phi and the shear
+strain gamma; C is the compliance of `mixed_contact`, and with ``z = xi (1 - xi)`` ::
 
     A = z l0/EA,    K = l0^2/(2 EI (1 + Phi)) z^2 (1 - 2 xi),    R = l0/(EI (1 + Phi)) z (1 + Phi - 3 z)
 
-Without friction a force has no component along the beam, and ``C F`` is the same as ``C F_n n``. The nodal loads are
-``F . dp/dx + M dtheta/dx + dE/dx``, and the mean tangent is ``T = dp/ds + (dC/ds F_n n + ..)/2 + M rho n``, with the slope rho that a unit couple
-makes. These parts are such that ``F . T + M theta' = d(F . p + M theta + E)/ds``. So the work of the node less the nodal work and the change of E
-is F_t times the slip of `tsm.pairs`: what friction dissipates.
+Without friction a force has no component along the beam, and ``C F`` is the same as ``C F_n n``. The nodal
+loads are ``F . dp/dx + M dtheta/dx + dE/dx``, and the mean tangent is ``T = dp/ds + (dC/ds F_n n + ..)/2 + M
+rho n``, with the slope rho that a unit couple makes. These parts are such that ``F . T + M theta' = d(F . p +
+M theta + E)/ds``. So the work of the node less the nodal work and the change of E is F_t times the slip of
+`tsm.pairs`: what friction dissipates.
 """
 
 from __future__ import annotations
@@ -48,12 +50,7 @@ class Loaded(NamedTuple):
 
 
 def response(loaded: Loaded, lever: Vector, rows: tuple[Any, Any, Any], l0: float) -> tuple[Array, Array]:
-    """Residual of a contact with friction and its derivative.
-
-    ``lever``: ``x_i - x_c``, from the contacting node to the element's end i. ``rows``: vector from the axis to
-    the surface, and the last row. Returns ``residual`` (11,), rows of element (6), node (2), force (2) and arc
-    position; ``tangent`` (11, 11), its derivative, not symmetric.
-    """
+    """Residual (11,) and its derivative, see `Friction`; ``rows``: vector from axis to surface, and the last row."""
     (rx, ry), (px, py, last) = loaded.place, rows
     stacked = np.array([*(-load for load in loaded.nodal), -rx - px, -ry - py, last])
     force = plain(loaded.force)
@@ -72,7 +69,8 @@ def by_arc(values: Any, l0: float) -> Array:
 def load(p: Properties, x: tuple[Any, ...], xi: Any, force: Vector, lever: float, start: float) -> Loaded:
     """The element, whose end i has the arc position `start`, under a contact's force and couple, see the module's text.
 
-    Solution, margins and energies ask for the same one in turn. The derivatives with the arc position take the axes n and t of the unloaded curve with them, which turn by its curvature.
+    Solution, margins and energies ask for the same one in turn. The derivatives with the arc position take
+    the axes n and t of the unloaded curve with them, which turn by its curvature.
     """
     dx, dy, theta_i, theta_j, Fx, Fy, part = varied((x[3] - x[0], x[4] - x[1], x[2], x[5], *force, xi))
     curve, l0 = Curve(p, (0.0, 0.0, theta_i, dx, dy, theta_j)), p.l0

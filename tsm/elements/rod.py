@@ -1,15 +1,16 @@
 """The Reissner rod between two contacts, by Gauss collocation.
 
-The internal force is ``n(s) = n - P(s)``: n is constant between two contacts, and ``P' = q`` is the load per length. With phi the angle of
-the section's normal, ``N, Q = n(s) . d_1, n(s) . d_2`` along and across it, the flexibilities ``e, u, b = 1/EA, 1/GA, 1/EI``, the natural
-curvature k0, and ``g = e - u``::
+The internal force is ``n(s) = n - P(s)``: n is constant between two contacts, and ``P' = q`` is the load per
+length. With phi the angle of the section's normal, ``N, Q = n(s) . d_1, n(s) . d_2`` along and across it, the
+flexibilities ``e, u, b = 1/EA, 1/GA, 1/EI``, the natural curvature k0, and ``g = e - u``::
 
     phi' = b m + k0,   m' = f = -Q (1 + g N),   r' = (1 + e N) d_1 + u Q d_2
 
-The inner unknowns are the angles at p Gauss nodes, with one equation each. The values at the ends are superconvergent, of order 2p. No
-equation is divided by the length h, which may be zero or negative.
+The inner unknowns are the angles at p Gauss nodes, with one equation each. The values at the ends are
+superconvergent, of order 2p. No equation is divided by the length h, which may be zero or negative.
 
-The inner equations are eliminated while some data of the ends are held. The choice of these data decides the conditioning:
+The inner equations are eliminated while some data of the ends are held. The choice of these data decides the
+conditioning:
 
 - With the angle and the moment at the start, the inner problem is an initial value problem. It is regular under compression, but
   exponentially ill-conditioned under strong tension.
@@ -30,8 +31,8 @@ from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array, cosine, sine
 
 INPUTS = 9
-"""Number of inputs: angle and moment at the start, angle at the end, force x and y, length, the constant 1 for the inner residual; where a
-course varies, then the arc position of the start and the load parameter."""
+"""Number of inputs: angle and moment at the start, angle at the end, force x and y, length, the constant 1
+for the inner residual; where a course varies, then the arc position of the start and the load parameter."""
 ARC, LOAD = 7, 8
 """The last two inputs."""
 

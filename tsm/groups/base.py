@@ -158,8 +158,8 @@ class ElementGroup(ABC):
     ) -> Projection:
         """Closest point by Newton's method from an arc position within element e of the pair's beam.
 
-        The axis goes on along its tangents beyond the ends of the beam. ``dent``: displacement (2,) of the axis by
-        contacts, at a position on an element.
+        The axis goes on along its tangents beyond the ends of the beam. ``dent``: displacement (2,) of the
+        axis by contacts, at a position on an element.
         """
         target, steep = pair.target, pair.side * pair.steep
         node = np.array(self.model.node_position(pair, state.q, state.load_parameter))

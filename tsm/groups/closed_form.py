@@ -9,7 +9,7 @@ import numpy as np
 
 from tsm.contact_block import ContactBlock
 from tsm.elements import beam as beam_element
-from tsm.elements.axis import PointForce, deflected_axes
+from tsm.elements.axis import deflected_axes
 from tsm.elements.contact_law import Here
 from tsm.elements.curve import Curve
 from tsm.elements.mixed_contact import REDUCE
@@ -197,7 +197,7 @@ class ClosedFormGroup(ElementGroup):
         x, places = state.q[model.dofs[:, elements]], model.place[elements]
         p = Properties(*(np.asarray(values)[elements] for values in model.properties))
         contacts = [
-            PointForce(touch.element - beam.first, touch.xi, touch.force)
+            (touch.element - beam.first, touch.xi, touch.force)
             for k, pair in self.pairs
             if (touch := state.touches[k]) is not None and pair.target is beam and pair.slot >= 0
         ]

@@ -1,11 +1,13 @@
 """A contact that cuts an exact element: what it sees of the rod there, and the derivatives of its rows.
 
-The tangent vector of the rod jumps at a contact with its force F. The contact sees the mean of both sides, which is the tangent vector under
-the force ``n - F/2``, and the mean turn, which is that under the moment ``m - C/2`` with the couple C of the friction on a face.
+The tangent vector of the rod jumps at a contact with its force F. The contact sees the mean of both sides,
+which is the tangent vector under the force ``n - F/2``, and the mean turn, which is that under the moment ``m
+- C/2`` with the couple C of the friction on a face.
 """
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -22,6 +24,12 @@ from tsm.state import Touch
 
 if TYPE_CHECKING:
     from tsm.groups.rods import Rods
+
+_NODAL = [0, 1, 2, 6, 7, 8]
+"""Unknowns of an element that are its nodes'."""
+_BLOCK = np.zeros((8 + CUT, 8))
+_BLOCK[[8, 9], [6, 7]] = -1
+_NONE = [0.0] * 8
 
 
 class Section(NamedTuple):
@@ -52,6 +60,8 @@ class Cut(NamedTuple):
         ``unit``: unit of the row of a stick. ``selectors`` (8, n): derivatives of what is `at` the contact.
         The last two are without friction left out.
         """
+        if not self.pair.pair.offset and not self.pair.rubs and self.section.course is None:
+            return np.array([_NONE, _NONE, self._by_hand()]) @ selectors
         moved = varied(self.at)
         pair, here, couple = self.pair, *seen(self.pair, self.section, moved, self.at)
         rows = [*pair.rows(self.touch.grip, moved[3:5], here, unit)]
@@ -63,9 +73,18 @@ class Cut(NamedTuple):
         by: Array = derivatives(stacked) @ selectors
         return by
 
+    def _by_hand(self) -> list[float]:
+        """Derivatives of ``F . T`` by what is `at` a sharp pin on a uniform rod, for speed."""
+        (stretch, shear, *_), (angle, nx, ny, Fx, Fy, *_), (Tx, Ty) = self.section, self.at, self.here.tangent
+        c, s, g, mx, my = math.cos(angle), math.sin(angle), stretch - shear, nx - Fx / 2, ny - Fy / 2
+        turn, gq, along = 1 + g * (mx * c + my * s), g * (mx * s - my * c), g * (Fx * c + Fy * s)
+        bx, by = shear * Fx + along * c, shear * Fy + along * s
+        turned = Fy * (turn * c - gq * s) - Fx * (gq * c + turn * s)
+        return [turned, bx, by, Tx - bx / 2, Ty - by / 2, 0.0, 0.0, 0.0]
+
 
 class CutElement(NamedTuple):
-    """Tangent of an element with contacts over n columns: its unknowns, those of the contacts, the load parameter, the inner residual."""
+    """Tangent of an element over n columns: its own and its contacts' unknowns, load parameter, inner residual."""
 
     element: int  # counted over the exact elements
     pairs: tuple[int, ...]  # its contact pairs in order of arc position
@@ -134,8 +153,8 @@ def enter(part: CutElement, group: Rods, contacts: ContactBlock) -> None:
         contacts.by_load[pair.slots] = tangent[rows, -2]
         for other, columns in own:
             contacts.corner[slots, contacts.slots(other)] = tangent[rows, columns]
-        block = np.zeros((8 + CUT, 8))
-        block[8:, :6], block[8:10, 6:8] = tangent[rows, [0, 1, 2, 6, 7, 8]], -np.eye(2)
+        block = _BLOCK.copy()
+        block[8:, :6] = tangent[rows, _NODAL]
         contacts.blocks[k] = int(group.elements[part.element]), block
         if pair.node >= 0:
             for i in range(2):

@@ -28,8 +28,8 @@ _AT_ONCE = 4
 _FALL = 100.0
 """Expected ratio of the errors with two nodes more."""
 _UNRESOLVED = 1.0
-"""Estimated error with a fixed number of nodes at which the mesh is too coarse: the error of a bent cantilever is then 3e-3. Boundary layers
-under strong tension exceed it, though their elements hardly turn."""
+"""Estimated error with a fixed number of nodes at which the mesh is too coarse: the error of a bent
+cantilever is then 3e-3. Boundary layers under strong tension exceed it, though their elements hardly turn."""
 _SAMPLES = 33
 """Points of an element in the search for the nearest one."""
 _POINTS, _LINES = 100, 60

@@ -1,9 +1,10 @@
 """Exact elements: the rod's equations are integrated from contact to contact.
 
-An element is cut at its contacts. Its unknowns are the nodes' displacements, the internal force n and moment m at its start, and
-for every contact the force F, the arc position and the section's angle there; between cuts the force is n less the contact
-forces before. Its equations are arrival at the end node and, at every cut, position and direction of the contact and arrival of
-the angle. The angles inside the segments are eliminated (`tsm.elements.rod`) and kept in the state.
+An element is cut at its contacts. Its unknowns are the nodes' displacements, the internal force n and moment
+m at its start, and for every contact the force F, the arc position and the section's angle there; between
+cuts the force is n less the contact forces before. Its equations are arrival at the end node and, at every
+cut, position and direction of the contact and arrival of the angle. The angles inside the segments are
+eliminated (`tsm.elements.rod`) and kept in the state.
 """
 
 from __future__ import annotations
@@ -104,8 +105,8 @@ class Rods(ElementGroup):
         self.near, self.far = model.coordinates[model.element_nodes[elements].T].transpose(0, 2, 1)
         self.angles, self.length = np.stack([along.start, along.end])[:, elements], along.length[elements]
         self.natural = along.curvature[elements]
-        zero = np.zeros((len(elements), 1))
-        self.flexibility = along.course(elements, zero, *np.zeros((2, 2, 0, len(elements)))).flexibility
+        unloaded = np.zeros((2, 2, 0, len(elements)))
+        self.flexibility = along.course(elements, 0 * self.length[:, None], *unloaded).flexibility
         self._constants: dict[Cuts, _Owned] = {}
         self.memo: tuple[State, RodShape, dict[int, Projection]] | None = None
 
@@ -123,12 +124,11 @@ class Rods(ElementGroup):
 
     def section(self, element: int, arc: Any, load_parameter: float) -> Section:
         """Section of an element at an arc position within it."""
-        if self.varies:
-            course = self.course(np.array([element]), np.array([[arc]]), load_parameter)
-            stretch, shear, bend = (value.item() for value in course.flexibility)
-            return Section(stretch, shear, bend, float(self.natural[element]), course)
-        stretch, shear, bend = (value[element, 0].item() for value in self.flexibility)
-        return Section(stretch, shear, bend, 0.0, None)
+        place = np.array([element]), np.array([[arc]])
+        course = self.course(*place, load_parameter) if self.varies else None
+        own = course.flexibility if course else (value[element] for value in self.flexibility)
+        stretch, shear, bend = (value.item() for value in own)
+        return Section(stretch, shear, bend, float(self.natural[element]), course)
 
     def _owned(self, cuts: Cuts) -> _Owned:
         if cuts not in self._constants:
@@ -160,19 +160,17 @@ class Rods(ElementGroup):
                 force[0, s, 0] = force[0, s - 1, 0] - touch.force[0]
                 force[1, s, 0] = force[1, s - 1, 0] - touch.force[1]
             length[s] = self.length[element] - begin[s]
-        segments = self.placed(
-            Segments(
-                flexibility,
-                force,
-                length[:, None],
-                profile.angle,
-                force,
-                place.owner,
-                begin[:, None],
-                curvature,
-            ),
-            state.load_parameter,
+        whole = (
+            flexibility,
+            force,
+            length[:, None],
+            profile.angle,
+            force,
+            place.owner,
+            begin[:, None],
+            curvature,
         )
+        segments = self.placed(Segments(*whole), state.load_parameter)
         field = rod.field(segments)
         gain, *vector = field.sums[:, :, 0] * length
         cuts: dict[int, Cut] = {}
@@ -253,32 +251,20 @@ class Rods(ElementGroup):
         condensed_residual[ROWS] = transfer[:, :, 6].T
         if self.varies:
             by_load[ROWS] = transfer[:, :, rod.LOAD].T
-        cut = tuple(
-            cut_element(
-                e,
-                {k: entry.cuts[k] for k in pairs},
-                condensed.transfer[first[e] :],
-                self.model.stick_stiffness,
-            )
-            for e, pairs in profile_of(state).cuts
-        )
-        for part in cut:
-            e, own = part.element, part.tangent[:OWN]
+        cut, unit = [], self.model.stick_stiffness
+        for e, pairs in profile_of(state).cuts:
+            part = cut_element(e, {k: entry.cuts[k] for k in pairs}, condensed.transfer[first[e] :], unit)
+            own = part.tangent[:OWN]
             tangent[e], by_load[:, e], condensed_residual[:, e] = own[:, :OWN], own[:, -2], own[:, -1]
             enter(part, self, contacts)
+            cut.append(part)
         if self.varies:
             by_load[6:8] = -self._resultant(state, rate=True)
-        return RodTangent(
-            condensed_residual,
-            tangent.reshape(len(first), -1).T,
-            by_load,
-            cut,
-            condensed.inner,
-            condensed.transfer,
-        )
+        flat = tangent.reshape(len(first), -1).T
+        return RodTangent(condensed_residual, flat, by_load, tuple(cut), condensed.inner, condensed.transfer)
 
-    def inputs(self, tangent: RodTangent, state: State, change: Change) -> Array:
-        """Change (s, inputs) of the inputs of the segments; `residual` is 1 to remove the residual inside, 0 to follow a path."""
+    def inside(self, tangent: RodTangent, state: State, change: Change) -> Array:
+        """Change (s, p) of the inner angles with all other unknowns; `residual` is 1 to remove the residual inside."""
         place, x = layout(len(self.length), profile_of(state).cuts), change.dofs[self.dofs]
         inputs = np.zeros((len(place.owner), tangent.inner.shape[2]))
         inputs[:, :5] = x[COLUMNS][:, place.owner].T
@@ -287,11 +273,7 @@ class Rods(ElementGroup):
             own = (x[:, part.element], change.contacts[part.slots], [change.load, change.residual])
             first = place.first[part.element]
             inputs[first : first + len(part.inputs)] = part.inputs @ np.concatenate(own)
-        return inputs
-
-    def inside(self, tangent: RodTangent, state: State, change: Change) -> Array:
-        """Change (s, p) of the inner angles that follows from a change of all other unknowns at a state."""
-        inside: Array = (tangent.inner @ self.inputs(tangent, state, change)[:, :, None])[:, :, 0]
+        inside: Array = (tangent.inner @ inputs[:, :, None])[:, :, 0]
         return inside
 
     def turning(self, state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> Array:
@@ -324,7 +306,7 @@ class Rods(ElementGroup):
         return at_end
 
     def load_work(self, state: State) -> Any:
-        """Work of the loads, as large as they are at the state, on the displacements to it: with ``P' = q`` it is ``[P . u] - int P . (r' - r_0') ds``."""
+        """Work of the loads of a state on the displacements to it: ``[P . u] - int P . (r' - r_0') ds`` with ``P' = q``."""
         entry, own, t = self.enter(state), np.arange(len(self.length)), state.load_parameter.real
         segments, table = entry.segments, collocation(_UNDEFORMED_ORDER)
         arc = segments.begin + segments.length * collocation(segments.angle.shape[1]).c
@@ -340,7 +322,7 @@ class Rods(ElementGroup):
         )
 
     def load_power(self, state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> float:
-        """Work of the loads at rates of all degrees of freedom and of the contacts' unknowns: a complex step of `load_work`, which holds the loads."""
+        """Work of the loads at rates of all unknowns: a complex step of `load_work`, which holds the loads."""
         step, profile = 1j * STEP, profile_of(state)
         inside = self.turning(state, tangent, dofs, contacts).reshape(profile.angle.shape)
         touches = tuple(

@@ -1,7 +1,7 @@
 """The deflected axis of exact elements between their Gauss nodes, and the angles inside.
 
-When contacts move, open or close, the elements are cut again and the angles interpolated. Where the integration is not accurate enough, they
-take more Gauss nodes.
+When contacts move, open or close, the elements are cut again and the angles interpolated. Where the
+integration is not accurate enough, they take more Gauss nodes.
 """
 
 from __future__ import annotations
@@ -60,30 +60,17 @@ class Stations(NamedTuple):
     forces: Array  # axial force, shear force and moment; shape (c, 2, 3)
 
 
-class RodShape:
-    """Polynomials of angle, moment and position in every segment.
+class RodShape(NamedTuple):
+    """Polynomials of angle, moment and position in every segment."""
 
-    ``first, last`` (r,): first and last segment of every element. ``arc, length`` (s,): arc position of the
-    start within the element, and undeformed length, of every segment. ``force`` (2, s): internal force at the
-    start of every segment. ``start`` (4, s) or (6, s): position (x, y), angle and moment at the start of
-    every segment, and the internal force where it varies. ``rates`` (4, s, p) or (6, s, p): their derivatives
-    in the arc position at the Gauss nodes.
-    """
-
-    def __init__(
-        self,
-        first: Array,
-        last: Array,
-        arc: Array,
-        length: Array,
-        force: Array,
-        start: Array,
-        rates: Array,
-    ) -> None:
-        self.first, self.last, self.arc, self.length, self.force = first, last, arc, length, force
-        self.order = rates.shape[2]
-        risen = start[:, :, None] + rates @ collocation(self.order).once.T * length[:, None]
-        self.values = np.concatenate([start[:, :, None], risen], axis=2)
+    first: Array  # first, last: first and last segment of every element; shape (r,)
+    last: Array
+    arc: Array  # arc position of the start of every segment within the element; shape (s,)
+    length: Array  # undeformed length of every segment; shape (s,)
+    force: Array  # internal force at the start of every segment; shape (2, s)
+    # position (x, y), angle and moment, and the internal force where it varies, at the start and the Gauss nodes;
+    # shape (4, s, p + 1) or (6, s, p + 1)
+    values: Array
 
     def at(self, element: int, arc: Array) -> Station:
         """Stations of an element, counted over the exact ones, at arc positions (m,) within it."""
@@ -103,7 +90,9 @@ class RodShape:
 
     def within(self, segment: int, sigma: Array) -> Station:
         """Stations at parts sigma (m,) of a segment."""
-        x, y, angle, moment, *varying = self.values[:, segment] @ interpolation(self.order, sigma).T
+        x, y, angle, moment, *varying = (
+            self.values[:, segment] @ interpolation(self.values.shape[2] - 1, sigma).T
+        )
         force = np.empty((len(sigma), 2))
         force[:] = np.array(varying).T if varying else self.force[:, segment]
         return Station(np.array([x, y]).T, angle, moment, force)
@@ -124,7 +113,9 @@ def plain_shape(group: Rods, state: State, entry: Entry | None = None) -> RodSha
         force = force - group.course(segments.owner, segments.begin, state.load_parameter).resultant[:, :, 0]
         start, rates = np.concatenate([start, force]), np.concatenate([rates, -segments.course.load])
     arc, length = segments.begin[:, 0], segments.length[:, 0]
-    return RodShape(place.first, place.last, arc, length, force, start, rates)
+    risen = start[:, :, None] + rates @ collocation(rates.shape[2]).once.T * length[:, None]
+    values = np.concatenate([start[:, :, None], risen], axis=2)
+    return RodShape(place.first, place.last, arc, length, force, values)
 
 
 def turning(entry: Entry) -> Array:
@@ -219,8 +210,9 @@ def _sampled(group: Rods, shape: RodShape, state: State, cuts: Cuts, order: int)
 def truncation(group: Rods, entry: Entry) -> float:
     """Estimated error of the integration, in positions over the longest beam's length and in angles.
 
-    At the ends of a segment the error is the product of two interpolation errors, of the solution and of the influence of an error inside;
-    both are measured by the last two Legendre coefficients of moment and tangent vector, and both integrations divide by p.
+    At the ends of a segment the error is the product of two interpolation errors, of the solution and of the
+    influence of an error inside; both are measured by the last two Legendre coefficients of moment and
+    tangent vector, and both integrations divide by p.
     """
     segments, values = entry.segments, entry.field.values
     order = values.shape[2]
@@ -235,10 +227,10 @@ def truncation(group: Rods, entry: Entry) -> float:
 
 
 def deflected(group: Rods, state: State) -> tuple[RodShape, dict[int, Projection]]:
-    """Deflected axis, as accurate between the Gauss nodes as at the ends of the segments; of the last state kept, with the points found on it.
+    """Deflected axis, as accurate between the Gauss nodes as at the ends of the segments, and points found on it.
 
-    With p Gauss nodes the ends of a segment have order 2p, but the polynomial between them has order p. The polynomial is therefore
-    computed again with 2p nodes between the same ends.
+    With p Gauss nodes the ends of a segment have order 2p, but the polynomial between them has order p. The
+    polynomial is therefore computed again with 2p nodes between the same ends.
     """
     if group.memo is None or group.memo[0] is not state:
         entry = group.enter(state)

@@ -4,10 +4,11 @@ Between two loads the force n is constant and the positions follow from it, so a
 
     n . (r_j - r_i) + G,   G(phi_i, phi_j, n, h) = ext over phi(s) of  int EI phi'^2/2 - N - N^2/2EA - Q^2/2GA ds
 
-and a contact ``- F . (r + reach nu - x_c)``. The modes of a segment whose angles are held at both ends, under constant n, solve
-``EI eta'' = f_phi eta``: none where ``- f_phi h^2/EI < pi^2`` everywhere (Sturm). Longer segments are divided, so every mode
-shows in the matrix; each component of n and F takes one negative eigenvalue of it, and the rest is the index. The rows of
-`tsm.groups.exact` say the same in another form, which is not symmetric.
+and a contact ``- F . (r + reach nu - x_c)``. The modes of a segment whose angles are held at both ends, under
+constant n, solve ``EI eta'' = f_phi eta``: none where ``- f_phi h^2/EI < pi^2`` everywhere (Sturm). Longer
+segments are divided, so every mode shows in the matrix; each component of n and F takes one negative
+eigenvalue of it, and the rest is the index. The rows of `tsm.groups.exact` say the same in another form,
+which is not symmetric.
 """
 
 from __future__ import annotations
@@ -82,8 +83,8 @@ class _Pieces(NamedTuple):
 def modes_at_least(balance: RodBalance) -> int:
     """Modes of the segments between held angles, by Sturm's comparison with the least of the falling coefficient; 0 where few pieces do.
 
-    A segment pressed so hard that it takes more than `_MOST` pieces has this many negative eigenvalues at least, less those that the
-    arrival of its end takes away.
+    A segment pressed so hard that it takes more than `_MOST` pieces has this many negative eigenvalues at
+    least, less those that the arrival of its end takes away.
     """
     segments, field = balance.entry.segments, balance.entry.field
     falling = -field.slope * _square(segments)
@@ -103,11 +104,7 @@ def _square(segments: Segments) -> Array:
 
 
 def variation(group: Rods, state: State, balance: RodBalance, transfer: Array | None = None) -> Variation:
-    """Second variation at a state in equilibrium.
-
-    ``balance``: their residual there. ``transfer`` (s, 4, 7), optional: transfer of the segments, see
-    `rod.Condensed`, where it is known.
-    """
+    """Second variation at a state in equilibrium, from the transfer of the segments where it is known."""
     pieces = _pieces(group, state, balance, transfer)
     place, pairs = balance.entry.place, dict(profile_of(state).cuts)
     begin = np.cumsum(pieces.counts) - pieces.counts
@@ -199,11 +196,12 @@ def _hessians(
 ) -> Array:
     """Hessians of G over the inputs of segments, (s, 6, 6), or (s, 7, 7) with the arc position of the start where a course varies.
 
-    ``ends`` (4, s): angles, then moments, at both ends. ``eliminated``: 1 where the moment at the start is that
-    with which the angle arrives; 0 for the Hessian of ``G*(m, phi_j, n, h) - m phi_i``, whose extremum in m is G,
-    with the moment as an input; it is regular at ``h = 0``. With ``H = m^2/2EI + k0 m + N + N^2/2EA + Q^2/2GA`` it is
-    ``dG/dh = - H(a + h)`` and ``dG/da = H(a) - H(a + h)``. Along the arc H changes with what it has at both ends, and
-    explicitly by ``(1/EI)' m^2/2 + (1/EA)' N^2/2 + (1/GA)' Q^2/2 - q . r'``.
+    ``ends`` (4, s): angles, then moments, at both ends. ``eliminated``: 1 where the moment at the start is
+    that with which the angle arrives; 0 for the Hessian of ``G*(m, phi_j, n, h) - m phi_i``, whose extremum
+    in m is G, with the moment as an input; it is regular at ``h = 0``. With ``H = m^2/2EI + k0 m + N +
+    N^2/2EA + Q^2/2GA`` it is ``dG/dh = - H(a + h)`` and ``dG/da = H(a) - H(a + h)``. Along the arc H changes
+    with what it has at both ends, and explicitly by ``(1/EI)' m^2/2 + (1/EA)' N^2/2 + (1/GA)' Q^2/2 - q .
+    r'``.
     """
     course, by = segments.course, transfer[:, :, [0, 1, 2, 3, 4, 5, *([rod.ARC] if segments.course else [])]]
     with np.errstate(all="ignore"):
@@ -297,7 +295,8 @@ def _stations(counts: tuple[int, ...], short: tuple[bool, ...], width: int) -> t
 def _surface(cut: Cut, selectors: Array) -> Array:
     """Second derivatives of ``- reach F . nu``, where F is parallel to nu, the normal of the surface, to the right of the beam.
 
-    With beta the angle of its direction tau, ``d nu = tau d beta`` and ``d^2 nu = tau d^2 beta - nu d beta^2``.
+    With beta the angle of its direction tau, ``d nu = tau d beta`` and ``d^2 nu = tau d^2 beta - nu d
+    beta^2``.
     """
     pair, force, reach = cut.pair, np.array(cut.touch.force), cut.pair.reach_at(cut.here.arc)
     normal, along = np.array(pair.face(cut.here))

@@ -13,7 +13,7 @@ from tsm import Settings, Structure
 from tsm.contact_set import initial_state
 from tsm.model import Model
 from tsm.newton import Newton
-from tsm.predictor import extrapolate
+from tsm.path import extrapolate
 from tsm.projection import arc_position
 from tsm.state import State
 from tsm.status import Status
@@ -63,7 +63,7 @@ class _March:
 
     def __init__(self, structure: Structure, tolerance: float) -> None:
         self.model = Model(structure)
-        self.newton = Newton(self.model, Settings(tolerance=tolerance, max_iterations=_ITERATIONS))
+        self.newton = Newton(self.model, Settings(tolerance=tolerance))
         self.elements = structure.beams[0].elements
         self.l0 = structure.beams[0].length / self.elements
 

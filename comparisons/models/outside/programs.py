@@ -226,7 +226,7 @@ def outside(name: str, taken: Container[str] = ()) -> Model | None:
         return None
     model = read_program(Path(name)) if name.endswith(SUFFIX) else ADAPTERS.get(name) or _USED.get(name)
     model = model or loaded(offered()[name], Model)
-    if model.name in taken:
+    if model.name in taken or model is not ADAPTERS.get(model.name, model):
         raise ProgramFileError(name, f'program.name = "{model.name}": must not be the name of a model')
     _USED[model.name] = model
     return model

@@ -1,5 +1,7 @@
 """The rod under a pin with Coulomb friction: integration from the clamp, the elastica, balances, limits, states."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -46,7 +48,7 @@ def checked(points, friction, lost=1e-13, **given):
     assert all(event.before is not event.after for event in path.events)
     kept = path.work - [stored(path, k) for k in range(len(path.work))] - path.dissipated
     slipped = [e.load_parameter for e in path.events if e.after is SLIPPED]
-    for before, after, first, last in zip(kept[:-1], kept[1:], path.load_parameter[:-1], path.load_parameter[1:], strict=True):  # fmt: skip
+    for (first, before), (last, after) in pairwise(zip(path.load_parameter, kept, strict=True)):
         if any(first < t <= last for t in slipped):
             assert after >= before - lost * work
         elif np.isfinite(after):

@@ -10,7 +10,7 @@ import pytest
 from comparisons.exact import rod_under_pin
 from comparisons.models import solve
 from comparisons.models.options import Options
-from comparisons.referee import Verdict, certify
+from comparisons.referee import Distance, Verdict, certify
 from comparisons.response import Response, Sections
 from comparisons.scene import ContactSpec, PinMove, PinSpec, Scene, StageSpec, load_scene
 from tests.comparisons.referee.forged import bent, contact, scene_of, stated
@@ -47,6 +47,13 @@ def test_the_error_of_an_answer_is_judged_to_five_digits():
     refused = certify(response, scene, at=[-1], allowance=1e-6)
     assert refused.verdict is Verdict.NOT_AN_EQUILIBRIUM
     assert "allowed 0.0001 %" in refused.reason
+
+
+def test_round_off_chooses_no_name():
+    sizes = dict.fromkeys(("arc_position", "tip", "shape", "displacement"), 0.0) | {"force": 1e-3}
+    found = Distance(sizes=sizes | {"reaction": 1e-3 + 1e-12}, where={"force": PAIR}, scales=(1.0, 1.0, 1.0))
+    assert found.line() == "force off by 0.1 % (pin->cantilever)"
+    assert replace(found, sizes=sizes | {"reaction": 1.1e-3}).largest == ("reaction", 1.1e-3)
 
 
 def bent_more(response: Response) -> Response:

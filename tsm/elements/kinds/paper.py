@@ -1,25 +1,30 @@
 """The elements of the paper, corrected and as printed. Their contact force is a stiffness times a deflection and normal to the chord.
 
-The basic system is simply supported on the chord, with the element edge forces ``S = [N, M_i, M_j, Y_c]`` ([P] (3)). The contact point
-has the distances a and b from the ends, measured on the chord as parts of l0. The nodal forces are ``U = J S``, with J the transposed
-derivative of the basic deformations. The tangent is ``J (dS/dv) J^T + dJ S + J (dS/da) da``. [P] does not state its last part, which
-makes Newton's method quadratic while the node slides. The tangent is not symmetric.
+The basic system is simply supported on the chord, with the element edge forces ``S = [N, M_i, M_j, Y_c]``
+([P] (3)). The contact point has the distances a and b from the ends, measured on the chord as parts of l0.
+The nodal forces are ``U = J S``, with J the transposed derivative of the basic deformations. The tangent is
+``J (dS/dv) J^T + dJ S + J (dS/da) da``. [P] does not state its last part, which makes Newton's method
+quadratic while the node slides. The tangent is not symmetric.
 
-The stiffness has powers of a and b in its denominators. The paper calls the loss of accuracy beside a node the critical area.
+The stiffness has powers of a and b in its denominators. The paper calls the loss of accuracy beside a node
+the critical area.
 
-The second element has another basic system, a cantilever clamped at end i. Its frame has x along the tangent at end i and y across it. The
-element edge forces ``[Y_j, Y_c, M_j]`` belong to the deflections y_j of end j and y_c of the contact point and to the rotation of end j, all
-measured from the tangent at end i ([P] (7), Fig. 4). [P] prints no J. To first order in the rotations, this frame is the frame of the chord
-turned by theta_i, so that ::
+The second element has another basic system, a cantilever clamped at end i. Its frame has x along the tangent
+at end i and y across it. The element edge forces ``[Y_j, Y_c, M_j]`` belong to the deflections y_j of end j
+and y_c of the contact point and to the rotation of end j, all measured from the tangent at end i ([P] (7),
+Fig. 4). [P] prints no J. To first order in the rotations, this frame is the frame of the chord turned by
+theta_i, so that ::
 
     [y_j, y_c, theta_j]_cantilever = T [theta_i, theta_j, y_c]_chord,    T = [[-l0, 0, 0], [-a, 0, 1], [-1, 1, 0]]
 
-and ``S = T^T K T v``. In exact arithmetic this is the element of [P] (5); only the round-off differs. Transformation and stiffness are
-therefore applied one after the other, as the basic system states them, and not multiplied out.
+and ``S = T^T K T v``. In exact arithmetic this is the element of [P] (5); only the round-off differs.
+Transformation and stiffness are therefore applied one after the other, as the basic system states them, and
+not multiplied out.
 
-The matrices as printed are to see what their misprints do, see tsm/elements/errata.md. Each is the corrected matrix except for the misprinted
-entries, which mix dimensions: what these elements do depends on the unit of length. Lengths on the chord are measured as in the corrected
-elements, as parts of l0, so that the misprints are the only difference.
+The matrices as printed are to see what their misprints do, see tsm/elements/errata.md. Each is the corrected
+matrix except for the misprinted entries, which mix dimensions: what these elements do depends on the unit of
+length. Lengths on the chord are measured as in the corrected elements, as parts of l0, so that the misprints
+are the only difference.
 """
 
 from __future__ import annotations
@@ -72,8 +77,8 @@ def euler_bernoulli(p: Properties, xi: Any) -> Array:
 def timoshenko(p: Properties, xi: Any) -> Array:
     """Matrix of [P] (9)-(12), corrected, over ``[theta_i, theta_j, y_c]``.
 
-    ``M_i-theta_j`` is ``(9 Psi (l0^2 - ab) - Omega) k_c``; as printed it mixes dimensions. ``Psi = 0`` gives the
-    Euler-Bernoulli element (5)-(6).
+    ``M_i-theta_j`` is ``(9 Psi (l0^2 - ab) - Omega) k_c``; as printed it mixes dimensions. ``Psi = 0`` gives
+    the Euler-Bernoulli element (5)-(6).
     """
     l0 = p.l0
     Psi = p.Phi * l0 * l0 / 12
@@ -134,8 +139,8 @@ def euler_bernoulli_as_printed(p: Properties, xi: Any) -> Array:
 def cantilever_as_printed(p: Properties, xi: Any) -> Array:
     """Matrix of [P] (7)-(8): ``k_b = 3 EI/(a^3 b^3)``, ``-a^2 b`` for Y_c-theta_j.
 
-    Without the ``1/l`` that k_b lacks, Y_j-y_c is right as printed, Y_c-theta_j has the wrong sign and lacks a length, and
-    the others have a length too much.
+    Without the ``1/l`` that k_b lacks, Y_j-y_c is right as printed, Y_c-theta_j has the wrong sign and lacks
+    a length, and the others have a length too much.
     """
     misprint = [[p.l0, 1, p.l0], [1, p.l0, -1 / p.l0], [p.l0, -1 / p.l0, p.l0]]
     K: Array = np.array(misprint) * cantilever(p, xi)
@@ -170,12 +175,7 @@ def force_equation(stiffness: Matrix, basis: Matrix | None = None) -> ElementFor
 def response(
     element_force: ElementForce, p: Properties, x: Any, lever: Any, side: float, offset: float
 ) -> tuple[Array, Array]:
-    """Forces and exact tangent of an element together with the node that touches it.
-
-    ``lever``: ``x_i - x_c``, from the contacting node to the element's end i. ``side``: +1 where the node
-    comes from the right, -1 from the left. ``offset``: distance of the contact surface from the axis. Returns
-    ``force`` (8,), on the element (6) and the node (2); ``tangent`` (8, 8), its derivative.
-    """
+    """Forces (8,) on an element (6) and the node (2) that touches it, and their exact tangent, see `ContactLaw`."""
     (dx, dy), (rx, ry) = (p.dx0 + (x[3] - x[0]), p.dy0 + (x[4] - x[1])), (-lever[0], -lever[1])
     length = np.sqrt(dx * dx + dy * dy)
     t = np.array([dx, dy]) / length
