@@ -46,18 +46,6 @@ def test_the_table_of_commands_is_whole_and_its_old_names_are_gone():
         assert {*re.findall(r"crossval ([a-z]+)", line)} <= commands.keys()
 
 
-def test_solve_prints_a_summary_and_writes_json_and_vtk(scene, capsys):
-    assert run("solve my.toml --model elastica --out a.json --out vtk") == 0
-    out, err = capsys.readouterr()
-    assert "COMPLETED" in out
-    assert err == ""
-    assert run("solve my.toml --model elastica --out -") == 0
-    for data in (json.loads(capsys.readouterr().out), json.loads(Path("a.json").read_text())):
-        assert (data["model"], data["status"]) == ("elastica", "COMPLETED")
-        assert data["load_parameter"] == [0.25, 0.5, 0.75, 1.0]
-    assert [len(list(Path("vtk").glob(f"*.{kind}"))) for kind in ("pvd", "vtm", "vtu")] == [1, 4, 12]
-
-
 def test_solve_to_an_accuracy(scene, capsys):
     assert run("solve my.toml --accuracy 1e-3") == 0
     out, err = capsys.readouterr()
