@@ -1,7 +1,5 @@
 """Contacts with Coulomb friction: true answers are certified, with and without what they state of slip and stick, and equilibria of another history are not."""
 
-import subprocess
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -180,17 +178,3 @@ def test_a_pin_that_sticks_where_it_touches_is_certified(surface, radius, fricti
         assert max(item.distance.largest[1] for item in found.judged if item.distance) < (
             4e-10 if rolls else 1e-11
         )
-
-
-def test_friction_is_loaded_where_a_contact_has_it():
-    """In a process of its own, as others of the tests load it."""
-    lines = (
-        "import sys; from comparisons.models import solve; from comparisons.referee import certify",
-        "from comparisons.scene import load_scene; scene = load_scene(sys.argv[1])",
-        "assert certify(solve(scene, 'tsm'), scene, at=[0]).judged; print('comparisons.referee.friction' in sys.modules)",
-    )
-    for scene, loaded in (("ks-cantilever", "False"), ("ks-friction", "True")):
-        run = subprocess.run(
-            [sys.executable, "-c", "\n".join(lines), scene], capture_output=True, text=True, check=True
-        )
-        assert run.stdout.strip() == loaded
