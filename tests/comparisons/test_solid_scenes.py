@@ -113,7 +113,7 @@ def distance(case: Scene, mesh: tuple[int, int] | None = None) -> float:
     return float(max(found))
 
 
-@pytest.mark.slow_at("turned pins", "moved clamp", "pushed between", "raised", "part", "inside")
+@pytest.mark.slow_at("turned pins", "moved clamp", "pushed between", "raised")
 @pytest.mark.slow_at("other end", "sliding on an arc")
 @pytest.mark.parametrize("case", CASES)
 def test_forces_and_reactions_are_the_rods(case):
