@@ -58,7 +58,8 @@ class Budget:
         """Difference that the parts do not explain, over the total."""
         total = self.total[quantity]
         explained: Array = np.sum(list(self.parts[quantity].values()), axis=0)
-        return np.asarray((total - explained) / total)
+        # a force that vanishes in both models has no difference to explain
+        return np.divide(total - explained, total, out=np.zeros_like(explained), where=total != 0)
 
 
 def budget_cases(scene: Scene) -> dict[str, Case]:

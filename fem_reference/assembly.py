@@ -19,8 +19,7 @@ from fem_reference.mesh import Discretisation, Points
 class Pattern:
     """Sparsity of a symmetric stiffness matrix, and the map from element stiffnesses to LAPACK's lower band."""
 
-    # sparse matrix from all element entries, see `element_entries`, to the entries on and below the
-    # diagonal
+    # from all element entries, see `element_entries`, to the entries on and below the diagonal
     scatter: csr_matrix
     positions: Ints  # positions of these entries in the raveled band ``(m, width + 1)``, column after column
     size: int  # size, width: number of unknowns m, and number of diagonals below the main one
@@ -90,8 +89,7 @@ def internal_force(mesh: Discretisation, P: Array) -> Array:
         for k in range(2):
             pulled[i, :, k] = mesh.gauss.pulled_back(weighted, k)
     forces = pulled.reshape(2 * elements, -1) @ mesh.gauss.slopes.reshape(-1, shapes)
-    total: Array = mesh.gather @ forces.reshape(2, -1).T
-    return total
+    return np.asarray(mesh.gather @ forces.reshape(2, -1).T)
 
 
 def element_entries(mesh: Discretisation, moduli: Callable[[Array], Array], u: Array) -> Array:

@@ -26,8 +26,7 @@ class Body:
     unknowns: slice  # range of its unknowns in the model's
     expansion: csr_matrix  # matrix ``(2 n, m)`` from the unknowns to the displacements, see `clamp`
     stiffness: Pattern  # sparsity pattern of the stiffness over the unknowns
-    # band of springs on the start's section, ``(width + 1, m)``, which make the factorised matrix of a strip without a
-    # clamp regular; `fem_reference.system` takes their stiffness away in the section's columns
+    # band of springs on the start's section that make K of a strip without a clamp regular; the border takes them away
     anchor: Floats | None
     offset: Floats  # start ``(2,)`` from that of the first strip, so that a distant scene loses no digits [m]
     round_off: float  # round-off of a nodal force [N], see `force_round_off`
@@ -92,9 +91,8 @@ def build_body(strip: Strip, before: Sequence[Body] = ()) -> Body:
 def force_round_off(strip: Strip, mesh: Discretisation, law: Law) -> float:
     """Round-off of a nodal force [N]: ``4 eps M b L`` times the largest aspect ratio of an element.
 
-    M is the modulus of uniaxial strain, at least E, and eps the machine epsilon. The strain is a difference of
-    displacements of order L over the element's short side, so that its round-off is ``eps L / short``. The stress ``M eps L /
-    short`` acts on the width b times the long side. The factor 4 is twice the round-off measured for L/h = 50 to 2000.
+    M is the modulus of uniaxial strain and eps the machine epsilon. The strain has the round-off ``eps L / short`` of an element's
+    short side, its stress acts on the width b times the long side. The factor 4 is twice what is measured for L/h = 50 to 2000.
     """
     sides = np.ptp(mesh.places[mesh.cells[:, :4]], axis=1)
     aspect = float((sides.max(axis=1) / sides.min(axis=1)).max())

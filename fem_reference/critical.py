@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem_reference.arrays import Floats
+from fem_reference.loads import amount
 from fem_reference.newton import Control, displacement_tolerance, iterate, revised
-from fem_reference.stages import amount
 from fem_reference.state import State, stored_energy
 from fem_reference.status import Status
 from fem_reference.system import linearise

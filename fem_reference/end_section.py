@@ -21,8 +21,8 @@ from scipy.sparse import csr_matrix, kron
 
 from fem_reference.arrays import Floats
 from fem_reference.contact import Carrier
+from fem_reference.loads import amount
 from fem_reference.mesh import Discretisation, edge_weights, section_points
-from fem_reference.stages import amount
 from fem_reference.strip import Strip
 
 COLUMNS = 4

@@ -1,7 +1,6 @@
 """Ends of strips: what a pin or a node meets beyond the last point of a contact curve.
 
-The end of an axis is a point, the end of a thick strip the straight line between its corners. A node beyond the end meets it at the
-radius of its pin; a point goes through it.
+The end of an axis is a point, that of a thick strip the line between its corners. A pin meets it at its radius; a point goes through.
 """
 
 import numpy as np

@@ -1,9 +1,7 @@
 """Events on the way: the changes of contacts, and where within a step they are.
 
-In a scene with friction a node touches or leaves, a slip comes to rest, or a contact that sticks begins to slip. Slip counts from
-accepted states, and a contact sticks where its slip came to rest. An accepted state therefore lies at every such event, so that the
-answer does not depend on the load steps. In every scene, the contact with a round pin changes from a point to a line where the
-strip becomes as curved as the pin.
+In a scene with friction slip counts from accepted states. One lies therefore where a node touches or leaves, a slip comes to rest, or a
+contact that sticks begins to slip, so that the answer does not depend on the load steps.
 """
 
 from collections.abc import Callable, Iterator

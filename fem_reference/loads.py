@@ -1,13 +1,14 @@
 """Dead loads on a strip: forces and moments on its sections, and forces per length such as a weight.
 
-They act on the sections of the strip:
+A force acts on its section as a uniform traction over the height, a moment as tractions that are linear over the height and normal to
+the mean direction of the deformed section, a force per length as a force per volume that is uniform over the height.
 
-- a force as a uniform traction over the height of its section;
-- a moment as tractions that are linear over the height, normal to the mean direction of the deformed section;
-- a force per length as a force per volume that is uniform over the height of every section. A weight is such a force.
+In a stage, quantities change in proportion to the load parameter, from one whole number to the next.
 """
 
+import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import lagrange
@@ -133,3 +134,20 @@ def _shapes(stations: Floats, points: Floats) -> Floats:
     """Lagrange's polynomials ``(k, p)`` of the stations ``(k,)`` at the points ``(p,)``."""
     s, h = (stations - stations[0]) / np.ptp(stations), (points - stations[0]) / np.ptp(stations)
     return np.array([lagrange(s, unit)(h) for unit in np.eye(s.size)])
+
+
+def stage_of(t: float, stages: int) -> int:
+    """Number from 0 of the stage at the load parameter ``t``; at a boundary, the one that ends."""
+    return min(max(math.ceil(t) - 1, 0), stages - 1)
+
+
+def amount(increments: Any, t: float) -> Any:
+    """Quantity at ``t`` that changes by ``increments[k]`` in the stage k."""
+    stage = stage_of(t, len(increments))
+    total = (t - stage) * increments[stage]
+    return total if stage == 0 else total + sum(increments[1:stage], start=increments[0])
+
+
+def increment(increments: Any, before: float, after: float) -> Any:
+    """Change per load parameter between two load parameters of one stage."""
+    return increments[stage_of((before + after) / 2, len(increments))]

@@ -1,7 +1,6 @@
 """March along the load parameters with step control, branch control and slip-off.
 
-A step is accepted if it departs little from the tangents at both ends, and if the index is unchanged or the set of closed
-contacts has changed. The steps between the requested load parameters are chosen automatically.
+A step, chosen automatically, is accepted if it departs little from the tangents at its ends, with the same index or other contacts.
 """
 
 from collections.abc import Iterator

@@ -40,8 +40,7 @@ def in_plane_lam(lam: float, mu: float, plane: str) -> float:
 
 
 def _contract(A: Array, B: Array) -> Array:
-    product: Array = (A * B).sum(axis=(0, 1))
-    return product
+    return np.asarray((A * B).sum(axis=(0, 1)))
 
 
 def _times(A: Array, B: Array) -> Array:
@@ -58,8 +57,7 @@ def _cofactor(F: Array) -> Array:
 
 
 def _determinant(F: Array) -> Array:
-    J: Array = F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0]
-    return J
+    return np.asarray(F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0])
 
 
 def _log_area(F: Array) -> Array:
@@ -87,8 +85,7 @@ def st_venant_kirchhoff(lam: float, mu: float, plane: str) -> Law:
 
     def energy(F: Array) -> Array:
         E = green(F)
-        W: Array = lam / 2 * (E[0, 0] + E[1, 1]) ** 2 + mu * _contract(E, E)
-        return W
+        return np.asarray(lam / 2 * (E[0, 0] + E[1, 1]) ** 2 + mu * _contract(E, E))
 
     def stress(F: Array) -> Array:
         return _times(F, second_stress(F))
@@ -127,8 +124,7 @@ def biot_linear(lam: float, mu: float, plane: str) -> Law:
 
     def energy(F: Array) -> Array:
         _, s = rotation(F)
-        W: Array = lam / 2 * (s - 2) ** 2 + mu * (_contract(F, F) - 2 * s + 2)
-        return W
+        return np.asarray(lam / 2 * (s - 2) ** 2 + mu * (_contract(F, F) - 2 * s + 2))
 
     def stress(F: Array) -> Array:
         R, s = rotation(F)
@@ -169,13 +165,11 @@ def neo_hookean(lam: float, mu: float, plane: str) -> Law:
     def energy(F: Array) -> Array:
         z = log_stretch(F)
         log_J = _log_area(F) + z
-        W: Array = mu / 2 * (_contract(F, F) + np.exp(2 * z) - 3) - mu * log_J + lam / 2 * log_J**2
-        return W
+        return np.asarray(mu / 2 * (_contract(F, F) + np.exp(2 * z) - 3) - mu * log_J + lam / 2 * log_J**2)
 
     def stress(F: Array) -> Array:
         J = _determinant(F)
-        P: Array = mu * F + (lam * (_log_area(F) + log_stretch(F)) - mu) * _cofactor(F) / J
-        return P
+        return np.asarray(mu * F + (lam * (_log_area(F) + log_stretch(F)) - mu) * _cofactor(F) / J)
 
     def tangent(F: Array) -> Array:
         """``mu I + c F^-T F^-T - (lam ln J - mu) F^-T_il F^-T_kj``, c = lam, condensed: ``lam W_zz0 / (lam + W_zz0)``."""

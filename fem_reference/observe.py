@@ -177,8 +177,7 @@ def gauss_stations(body: Body) -> Floats:
     face = body.mesh.edges["right"]
     x = body.mesh.places[face[np.isin(face, corners)], 0]
     offsets = (1 + np.array([-1.0, 1.0]) / np.sqrt(3)) / 2
-    stations: Floats = (x[:-1, None] + offsets * np.diff(x)[:, None]).ravel()
-    return stations
+    return np.asarray((x[:-1, None] + offsets * np.diff(x)[:, None]).ravel())
 
 
 def face_strains(result: Result, strip: str, k: int) -> tuple[Floats, dict[str, Floats]]:

@@ -15,8 +15,7 @@ from fem_reference.checks import (
     require_positive,
 )
 from fem_reference.conditions import Holding, Joint, Spring, Support, require_held, require_known_ends
-from fem_reference.loads import Load, PointLoad
-from fem_reference.stages import stage_of
+from fem_reference.loads import Load, PointLoad, stage_of
 from fem_reference.strip import Strip
 
 TURN = 0.5

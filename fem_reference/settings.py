@@ -17,8 +17,7 @@ class Settings:
         Largest accepted nodal residual, relative to the largest of the contact forces, the end loads and ``E I / L^2``.
         The round-off of a nodal force is added.
     max_iterations
-        Largest number of Newton iterations with one set of closed contacts. Near a buckling load 30 are needed, because a
-        large bending correction also stretches the strip and changes the sign of its lateral stiffness.
+        Largest number of Newton iterations with one set of closed contacts. Near a buckling load 30 are needed.
     min_step
         Smallest step of the load parameter.
     max_attempts

@@ -9,9 +9,9 @@ from fem_reference.arrays import Floats
 from fem_reference.contact import Touch
 from fem_reference.end_section import ROTATION, Pose
 from fem_reference.friction import slip_residual
+from fem_reference.loads import amount
 from fem_reference.model import Model
 from fem_reference.problem import Pin
-from fem_reference.stages import amount
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -27,8 +27,8 @@ from fem_reference.contact import Touch
 from fem_reference.end_section import COLUMNS, ROTATION
 from fem_reference.factor import Factor
 from fem_reference.friction import slip_gradient, stiffness
+from fem_reference.loads import increment
 from fem_reference.problem import Pin
-from fem_reference.stages import increment
 from fem_reference.state import State
 
 
@@ -48,9 +48,7 @@ class Border:
     A: Floats  # curvatures ``(k, k)``: the Hessian without constraints is ``K - U A U^T``
     N: Floats  # directions ``(k, c)`` of the constraints' forces ``U N``: gaps, friction, then ties
     M: Floats  # gradients ``(k, c)`` of the constraints ``U M``. They differ from N for friction only
-    # flexibilities ``(c, c)``: of contacts and ties on the diagonal [m/N]; where a contact slips, the factor 1 of its
-    # tangential force, and beside it the factor ``-sigma mu`` of the normal force
-    C: Floats
+    C: Floats  # flexibilities ``(c, c)`` [m/N]; of a contact that slips 1, and ``-sigma mu`` at its normal force
     rates: Floats  # the same for changes along the path, on which augmented Lagrangian steps remove a contact's flexibility
     contacts: tuple[slice, ...]  # columns of each closed contact
 
@@ -104,9 +102,7 @@ class Tangent:
 
     state: State  # the state of linearisation
     factors: tuple[Factor, ...]  # factorised stiffness of every body
-    # first half ``(m, k)`` of the solution ``K^-1 U`` for the columns of the closed contacts and end sections over
-    # the unknowns, see `fem_reference.factor.Factor`
-    V: Floats
+    V: Floats  # first half ``(m, k)`` of ``K^-1 U`` for the columns over the unknowns, see `Factor`
     border: Border  # curvatures and constraints over the columns
 
     @cached_property

@@ -116,9 +116,8 @@ def departure(a: Accepted, b: Accepted, floor: float) -> float:
     """Distance of a step from the tangents at its ends, relative to the length of the step.
 
     With ``d = u_b - u_a`` and the rates v at both ends it is the larger of ``|d - dt v_a| / |d|`` and ``|d - dt v_b| / |d|``.
-    If the set of closed contacts changes, the path has a corner, and the distance is the minimum of
-    ``|d - dt ((1 - tau) v_a + tau v_b)| / |d|`` over tau between 0 and 1. Norms are root mean squares over the nodes.
-    Differences below ``floor`` [m] count as zero.
+    If contacts change, the path has a corner, and it is the minimum of ``|d - dt ((1 - tau) v_a + tau v_b)| / |d|`` over tau
+    between 0 and 1. Norms are root mean squares over the nodes, and differences below ``floor`` [m] count as zero.
     """
     dt, d = b.t - a.t, b.state.u - a.state.u
     va, vb = (dt * accepted.rate(a.t, b.t).u for accepted in (a, b))

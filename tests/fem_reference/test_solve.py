@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 import fem_reference as fr
 from comparisons.exact import elastica_under_pin
+from fem_reference import newton
 from tests.fem_reference.conftest import CLAMP, PAIR, STRIP, B, H, loads, make_problem, rotation
 from tests.oracles.elastica import slip_off_height
 
@@ -71,8 +72,9 @@ def test_pin_that_jumps_past_the_clamp_is_not_taken_for_an_open_contact():
     ],
 )  # fmt: skip
 def test_a_path_that_ends_early_has_a_status_and_keeps_the_accepted_states(
-    contact, n, settings, status, said
+    contact, n, settings, status, said, monkeypatch
 ):
+    monkeypatch.setattr(newton, "_MAX_AUGMENTATIONS", 1)
     values = {"penalty": 1e4} | contact
     result = fr.solve(
         make_problem(mesh=(10, 1), contact=values), loads(n), fr.Settings(**settings), throw=False

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 import numpy as np
 
 from tsm.contact_block import ContactBlock
+from tsm.elements.contact_law import Vector
 from tsm.elements.properties import Array
 from tsm.projection import Projection, arc_position, overshoot, slide
 from tsm.state import State, Touch, Traction
@@ -138,15 +139,16 @@ class ElementGroup(ABC):
         """Closest point of the deflected axis to the pair's node, with the dents of the contacts that are closed."""
 
     @abstractmethod
-    def point(self, element: int, arc: float, state: State) -> tuple[Array, Array, Array]:
-        """Point (2,) of the axis at an arc position within an element, tangent per arc, and the tangent's derivative, without dents."""
+    def point(self, element: int, arc: float, state: State) -> tuple[Vector, Vector, Vector]:
+        """Point of the axis at an arc position in an element, tangent per arc, and its derivative, without dents."""
 
-    def end(self, pair: PairModel, state: State, *, last: bool) -> tuple[Array, Array]:
+    def end(self, pair: PairModel, state: State, *, last: bool) -> tuple[Vector, Vector]:
         """Vector from a pair's node to the start of its beam, or to its end if `last`, and a tangent there."""
         target = pair.target
         element, arc = (target.last, target.lengths[-1]) if last else (target.first, 0.0)
-        position, tangent, _ = self.point(element, arc, state)
-        return position - self.model.node_position(pair, state.q, state.load_parameter), tangent
+        (px, py), tangent, _ = self.point(element, arc, state)
+        x, y = self.model.node_position(pair, state.q, state.load_parameter)
+        return (px - x, py - y), tangent
 
     def closest(
         self,
@@ -162,16 +164,17 @@ class ElementGroup(ABC):
         axis by contacts, at a position on an element.
         """
         target, steep = pair.target, pair.side * pair.steep
-        node = np.array(self.model.node_position(pair, state.q, state.load_parameter))
+        x, y = self.model.node_position(pair, state.q, state.load_parameter)
         for _ in range(_STEPS):
             l0 = target.lengths[e]
             inside = min(max(arc, 0.0), l0)
-            position, tangent, bend = self.point(target.first + e, inside, state)
-            apart = position + (arc - inside) * tangent - node
-            slope = float(tangent @ tangent) + (float(bend @ apart) if inside == arc else 0.0)
-            along = float(apart @ tangent)
+            (px, py), (tx, ty), (bx, by) = self.point(target.first + e, inside, state)
+            px, py = px + (arc - inside) * tx - x, py + (arc - inside) * ty - y
+            slope, along = tx * tx + ty * ty, px * tx + py * ty
+            if inside == arc:
+                slope += bx * px + by * py
             if steep:
-                distance = float(np.hypot(*apart))
+                distance = math.hypot(px, py)
                 slope, along = slope - steep * along / distance, along - steep * distance
             step = along / slope if slope > 0 else 0.0
             arc -= min(max(step, -l0 / _PARTS), l0 / _PARTS)
@@ -179,8 +182,9 @@ class ElementGroup(ABC):
             arc = place * target.lengths[e]
             if abs(step) < _PROJECTED * l0:
                 break
-        element, (tx, ty) = target.first + e, tangent.tolist()
-        px, py = apart if dent is None else apart + dent(element, place)
+        element = target.first + e
+        if dent is not None:
+            px, py = np.array([px, py]) + dent(element, place)
         arc = arc_position(target, element, place)
         height = (py * tx - px * ty) / math.hypot(tx, ty)
         if steep:

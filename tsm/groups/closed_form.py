@@ -10,7 +10,7 @@ import numpy as np
 from tsm.contact_block import ContactBlock
 from tsm.elements import beam as beam_element
 from tsm.elements.axis import deflected_axes
-from tsm.elements.contact_law import Here
+from tsm.elements.contact_law import Here, Vector
 from tsm.elements.curve import Curve
 from tsm.elements.mixed_contact import REDUCE
 from tsm.elements.properties import Array, Properties
@@ -136,15 +136,15 @@ class ClosedFormGroup(ElementGroup):
         start_x, start_y = model.element_start[element]
         return model.element[element], x, (start_x + x[0] - cx, start_y + x[1] - cy)
 
-    def point(self, element: int, arc: float, state: State) -> tuple[Array, Array, Array]:
+    def point(self, element: int, arc: float, state: State) -> tuple[Vector, Vector, Vector]:
         """Point of the curve, its tangent, and the tangent's derivative."""
         model, p = self.model, self.model.element[element]
         x = state.q[model.dofs[:, element]].tolist()
         curve, xi, (start_x, start_y) = Curve(p, x), arc / p.l0, model.element_start[element]
         (w, dw, ddw), dx, dy = curve.deflection(xi), curve.dx, curve.dy
-        position = np.array([start_x + x[0] + xi * dx - w * dy, start_y + x[1] + xi * dy + w * dx])
-        tangent, bend = np.array([dx - dw * dy, dy + dw * dx]), ddw * np.array([-dy, dx])
-        return position, tangent / p.l0, bend / p.l0**2
+        position = start_x + x[0] + xi * dx - w * dy, start_y + x[1] + xi * dy + w * dx
+        tangent, bend = ((dx - dw * dy) / p.l0, (dy + dw * dx) / p.l0), ddw / p.l0**2
+        return position, tangent, (-bend * dy, bend * dx)
 
     def project(self, pair: PairModel, state: State) -> Projection:
         """Closest point. The chords give the owner, and Newton's method on the owner's curve gives the point."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tsm.elements import rod
+from tsm.elements.contact_law import Vector
 from tsm.elements.properties import Array
 from tsm.elements.varied import STEP
 from tsm.groups.base import Change
@@ -93,14 +94,15 @@ class ExactGroup(Rods):
         """Estimated error of the integration inside the elements."""
         return 0.0 if self.nodes else truncation(self, forces.entry)
 
-    def point(self, element: int, arc: float, state: State) -> tuple[Array, Array, Array]:
+    def point(self, element: int, arc: float, state: State) -> tuple[Vector, Vector, Vector]:
         """Point of an element's axis at an arc position, tangent vector r', and its derivative along the arc."""
         place = int(self.model.place[element])
         at, section = deflected(self, state)[0].at(place, np.array([arc])), self.section(place, arc, 0.0)
         turn = section.bend * at.moment[0] + section.curvature
         angle = at.angle[0] + 1j * STEP * turn
-        axis = np.array(rod.tangent(section.stretch, section.shear, at.force[0].tolist(), angle))
-        return at.position[0], axis.real, axis.imag / STEP
+        tx, ty = rod.tangent(section.stretch, section.shear, at.force[0].tolist(), angle)
+        x, y = at.position[0].tolist()
+        return (x, y), (tx.real, ty.real), (tx.imag / STEP, ty.imag / STEP)
 
     def project(self, pair: PairModel, state: State) -> Projection:
         """Closest point, the last ones found at the same state kept."""
