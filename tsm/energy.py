@@ -25,7 +25,7 @@ from tsm.elements.properties import Array, unwind
 from tsm.friction import grips, slip_rate, traction, traction_at, with_grips
 from tsm.newton import Equilibrium, Newton
 from tsm.pairs import PairModel
-from tsm.path import Point, Track, extrapolate
+from tsm.path import SHORTEST, Point, Track, extrapolate
 from tsm.state import Grip, Place, State
 from tsm.status import Status
 from tsm.system import Drive
@@ -185,8 +185,9 @@ def spent(track: Track, end: Point, drive: Drive) -> tuple[Array, list[Point]] |
     one counts by the mean of its ends.
     """
     newton, begin = track.newton, track.last
-    near = _NEAR * (end.t - begin.t)
-    trail = [begin.predicted(begin.t + near), end.predicted(end.t - near), begin.state, end.state]
+    near, trail = _NEAR * (end.t - begin.t), [begin.state, end.state]
+    if end.t - begin.t > SHORTEST:
+        trail = [begin.predicted(begin.t + near), end.predicted(end.t - near), *trail]
     between: list[Point] = []
 
     def at(t: float) -> Array | None:

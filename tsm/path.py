@@ -37,7 +37,7 @@ SMALLEST = 1e-12
 """Floor of the load step, as a part of the whole load."""
 _SAFE = 0.8
 """Safety factor: next step over the step that the tangents would still allow."""
-_SHORTEST = 0.1
+_LEAST_PART = 0.1
 """Shortest part of a refused step that is tried next."""
 _NAMED = {
     Status.NOT_FINITE,
@@ -61,7 +61,7 @@ _BEFORE_KINK = 1
 """Points before a contact passed from element to element that the prediction still uses: the path has a kink there."""
 _AHEAD = 1e-2
 """Part of a step ahead of a state at which another one states its tangent; a shorter one has fewer digits."""
-_SHORTEST = 1e-6
+SHORTEST = 1e-6
 """Step of the load parameter below which the tangent alone predicts: the others would be round-off."""
 _FOLD = 100.0
 """Speed of the path, in largest Newton steps per whole load, above which a limit point is near, where it is infinite."""
@@ -176,16 +176,17 @@ class Track:
             kinks += _owners(state) != _owners(point.state)
             if kinks > _BEFORE_KINK and not point.on_chords:
                 break
-            kept += [(*ahead, state)] if state.load_parameter < point.t else []
+            if state.load_parameter < point.t:
+                kept.append((*ahead, state))
         return kept[::-1]
 
     def predicted(self, t: float) -> State:
         """State at t from the last states and their tangents, or along the last tangent."""
         last, step, history = self.last, t - self.last.t, self.history
         steady = not last.on_chords and last.speed < _FOLD  # a nearly singular tangent leads anywhere
-        if steady and step >= _SHORTEST and len(history[-1]) == 1:
+        if steady and step >= SHORTEST and len(history[-1]) == 1:
             history[-1] = (last.predicted(last.t + _AHEAD * step), last.state)
-        if (len(history) == 1 and not last.on_chords) or (steady and step < _SHORTEST):
+        if (len(history) == 1 and not last.on_chords) or (steady and step < SHORTEST):
             return last.predicted(t)
         states = [state for near in history if len(near) == 1 + steady for state in near]
         return self.newton.prescribed(extrapolate(last.model, states, t, tangents=steady), t)
@@ -317,7 +318,7 @@ class StepControl:
 
     def fail(self, status: Status, part: float = 1 / 2) -> Status:
         """Give up an attempt; the fraction `part` of its step is tried next."""
-        self.failure, self.part = status, min(max(part, _SHORTEST), 1 / 2)
+        self.failure, self.part = status, min(max(part, _LEAST_PART), 1 / 2)
         return status
 
     def refuse(self, part: float = 1 / 2) -> Status:

@@ -38,6 +38,8 @@ _LITTLE = 1e-7
 """Fraction of the remaining path over which the tangent is a difference."""
 _SMALLEST = 1e-10
 """Smallest step of the load parameter, over the distance from the start; an imperfect column needs steps this small."""
+_STEPS = 300
+"""Largest number of steps; beside a bifurcation round-off accepts the smallest ones without end."""
 _SAME = 1e-6
 """Largest difference between the end of the followed path and the second equilibrium."""
 _MEET, _MEETING = 1e-4, 0.02
@@ -195,7 +197,10 @@ def _followed(first: Equilibrium, end: float, last: Equilibrium | None = None) -
     ways, sign = abs(end - start), 1.0 if end > start else -1.0
     stops = sorted(sign * t for t in {*corners(first.scene), end} if 0.0 < sign * (t - start) <= ways)
     now, step, rate = first, ways, None
-    while (here := now.load_parameter) != end:
+    for _ in range(_STEPS):
+        here = now.load_parameter
+        if here == end:
+            return now, False
         stop = sign * next(t for t in stops if t > sign * here)
         left = abs(stop - here)
         rate = rate or tangent(now, sign * _LITTLE * left)
@@ -213,7 +218,7 @@ def _followed(first: Equilibrium, end: float, last: Equilibrium | None = None) -
             now, rate = there, None if t == stop else behind
         elif step < _SMALLEST * max(abs(here - start), _SMALLEST * ways):
             return now, True
-    return now, False
+    return now, True
 
 
 def _unexplained(
