@@ -11,12 +11,11 @@ from pathlib import Path
 
 import pytest
 
-from comparisons.cli import main
-
 # the table of the commands: that it is whole is the contract
 from comparisons.cli.command import COMMANDS
 from comparisons.cli.options import STATED
 from comparisons.scene import built_in_scenes
+from tests.comparisons.cases.conftest import crossval
 
 KS = built_in_scenes()["ks-cantilever"].replace("load_parameters = 50", "load_parameters = 4")
 BIN = Path(sys.executable).parent
@@ -31,18 +30,7 @@ def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def run(line: str) -> int:
-    """Return the exit status, argparse's own included."""
-    try:
-        return main(line.split())
-    except SystemExit as exit_:
-        return int(exit_.code or 0)
-
-
-def test_scenes_are_listed(capsys):
-    assert run("scenes") == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines] == sorted(built_in_scenes())
-    assert all(len(line.split()) > 2 for line in lines)
+    return crossval(*line.split())
 
 
 def test_the_table_of_commands_is_whole_and_its_old_names_are_gone():
@@ -56,64 +44,6 @@ def test_the_table_of_commands_is_whole_and_its_old_names_are_gone():
     for line in STATED["gone"].values():
         assert {*re.findall(r"--[a-z-]+", line)} <= {"--version", "--help", *options}
         assert {*re.findall(r"crossval ([a-z]+)", line)} <= commands.keys()
-
-
-def test_solve_prints_a_summary_and_writes_json_and_vtk(scene, capsys):
-    assert run("solve my.toml --model elastica --out a.json --out vtk") == 0
-    out, err = capsys.readouterr()
-    assert "COMPLETED" in out
-    assert err == ""
-    assert run("solve my.toml --model elastica --out -") == 0
-    for data in (json.loads(capsys.readouterr().out), json.loads(Path("a.json").read_text())):
-        assert (data["model"], data["status"]) == ("elastica", "COMPLETED")
-        assert data["load_parameter"] == [0.25, 0.5, 0.75, 1.0]
-    assert [len(list(Path("vtk").glob(f"*.{kind}"))) for kind in ("pvd", "vtm", "vtu")] == [1, 4, 12]
-
-
-BAD = {
-    "": "COMMAND",
-    "solve my.toml --model nosuch": "nosuch",
-    "solve my.toml --model tsm --elements 0": "--elements",
-    "solve my.toml --model tsm --elements 1000001": "elements",
-    "solve my.toml --model tsm --element nosuch": "nosuch",
-    "solve my.toml --model tsm --element mixed --integration-tolerance 1e-9": "tolerance",
-    "solve my.toml --model tsm --element exact --integration-tolerance 1e-17": "tolerance",
-    "solve my.toml --model rod --elements 3": "elements",
-    "solve my.toml --model solid --mesh 50": "--mesh",
-    "solve my.toml --accuracy 1e-3 --mesh 5x2": "--mesh: is what --accuracy chooses",
-    "solve my.toml --accuracy 1e-3 --model rod": "model = rod: has no resolution to choose",
-    "solve my.toml --accuracy 0": "must be a number between 0 and 1",
-    "solve my.toml --accuracy length=1e-3": "must be QUANTITY=X, one of force, arc",
-    "solve nosuch.toml --model tsm": "nosuch.toml",
-    "solve my.toml --model tsm --out none/a.json": "none/a.json: cannot be written",
-    "solve my.toml --out a.gif": "must end in",
-    "solve my.toml --out=": "--out: must end in .json, .csv",
-    "solve my.toml --csv a.csv": "--csv: is no longer an option, see --out FILE.csv",
-    "solve my.toml --model tsm --out my.toml": "must end in",
-    "compare my.toml --out my.toml": "cannot be written",
-    "view my.toml --out out --scale -1": "--scale",
-}
-
-
-@pytest.mark.parametrize("line", BAD)
-def test_bad_input_is_status_2_with_one_reason_and_no_file(line, scene, capsys):
-    assert run(line) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    (reason,) = [said for said in err.splitlines() if said.startswith("crossval")]
-    assert BAD[line] in reason
-    assert [path.name for path in scene.iterdir()] == ["my.toml"]
-
-
-def test_a_model_that_cannot_state_the_scene_says_why(scene, capsys):
-    text = KS.replace("width = 0.02", "area = 4e-4").replace("height = 0.02", "second_moment = 1.3333e-6")
-    Path("my.toml").write_text(text)
-    assert run("solve my.toml --model solid") == 2
-    assert capsys.readouterr().err == (
-        'crossval: solid: the solid model needs the width and height of beam "cantilever": the rectangle of its area '
-        "and second moment is 0.2 high, more than an eighth of the length\n"
-    )
-    assert run("solve my.toml --model tsm") == 0
 
 
 def test_solve_to_an_accuracy(scene, capsys):

@@ -14,7 +14,7 @@ import pyvista
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.response import Response
-from comparisons.scene import load_scene, read_scene
+from comparisons.scene import load_scene
 from comparisons.show.export import CONTACTS, HINGES, SUPPORTS, blocks, write_series
 from tests.comparisons.show.specimen import SPECIMEN
 
@@ -69,7 +69,7 @@ def test_every_block_reads_back_in_meshio_and_pyvista(written):
 
 
 def test_springs_and_hinges_are_points_with_their_forces(tmp_path):
-    scene = read_scene(SPECIMEN, "specimen")
+    scene = SPECIMEN
     response = solve(scene, "tsm")
     found = pyvista.read(write_series(tmp_path, response, scene)[-1])
     assert found.keys() == ["hook", "flat", "link", CONTACTS, SUPPORTS, HINGES]

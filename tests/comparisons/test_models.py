@@ -11,7 +11,16 @@ from comparisons.models import MODELS, TSM, Model, certified, find, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.solid import to_solid
 from comparisons.response import Response
-from comparisons.scene import LoadSpec, PinSpec, Scene, SpringSpec, SupportSpec, load_scene, read_scene
+from comparisons.scene import (
+    HingeSpec,
+    LoadSpec,
+    PinSpec,
+    Scene,
+    SpringSpec,
+    SupportSpec,
+    load_scene,
+    read_scene,
+)
 from tests.problems import PROBLEMS, RUNS
 
 KS, FACE = load_scene("ks-cantilever"), load_scene("ks-face")
@@ -56,6 +65,7 @@ BOTH_ENDS = replace(KS, load_parameters=2, pins=(), contacts=(), supports=(PRESS
 HINGED = support("start", kind="pinned")
 LOOSE = replace(KS, beams=FREE, supports=(HINGED,), pins=(replace(KS.pins[0], start=(1.0, -0.1)),))
 AT_CLAMP = {"beam": "cantilever", "end": "start"}
+HINGED_CLAMP = replace(KS, hinges=(HingeSpec(stiffness=5.0, **AT_CLAMP),))
 MOVED_CLAMPS = [
     replace(KS, beams=FREE, **changes)
     for changes in (
@@ -81,6 +91,8 @@ NO_UNKNOWNS = r"Beam\(cantilever\)\.elements = 1: every node is held.*take at le
         (on(KS, mesh=(1, 1)), "solid", Options(), "needs at least 2 elements along"),
         (on(KS, solid_mesh_file="nothing.msh"), "solid", Options(), r"^solid: Strip\('cantilever'\)\.mesh_file = 'nothing.msh': cannot be read"),
         (LOOSE, "solid", Options(), "must hold cantilever, with the pins that touch at the start$"),
+        (HINGED_CLAMP, "solid", Options(), r"use a pinned support and a \[\[spring\]\] with a rotation"),
+        (on(HINGED_CLAMP, solid_clamp="full"), "solid", Options(), 'use solid_clamp = "rod"'),
         *((on(scene, solid_clamp="full"), "solid", Options(), r'full clamp at rest .*, "cantilever\.start" is another') for scene in MOVED_CLAMPS),
     ],
 )  # fmt: skip

@@ -20,48 +20,8 @@ from tests.comparisons.processes import COMMAND, ended
 PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "model.md"
 CHAIN = PAGE.read_text(encoding="utf-8").partition("```python\n")[2].partition("```")[0]
 """The complete model of the page."""
-FUNCTIONS = """
-from comparisons.models.outside import Functions, Program, StoppedError, points_along
-
-def refusal(scene):
-    return "one beam only" if len(scene["beams"]) > 1 else None
-
-def states(scene, histories):
-    print("chatter")
-    beam, = scene["beams"]
-    for t in scene["load_parameters"]:
-        if scene["contacts"]:
-            raise {stopped}
-        histories.axis(beam["name"], *points_along(beam, beam["elements"]))
-        histories.support(scene["supports"][0]["node"], (0.0, 0.0), -t * scene["loads"][0]["moment"])
-        yield t
-
-MODEL = Program(Functions(name="stiff", elements=(4, 8), refusal=refusal, states=states))
-"""
-POINTS = """[crossval.models]
-chain = lender:MODEL
-number = lender:OTHER
-absent = no_such_module:MODEL
-wrong = lender:MODEL
-stiff = functions:MODEL
-
-[crossval.elements]
-unsheared = lender:ELEMENT
-number = lender:OTHER
-"""
-LENT = """
-from tsm.elements import MIXED
-MODEL, OTHER, ELEMENT = MODELS[0], 3, replace(MIXED, name="unsheared", sheared=False)
-"""
-STUDY = """
-[study]
-name = "both"
-scene = "ks-cantilever"
-repeats = 1
-[[run]]
-model = ["chain", "rod"]
-scene.load_parameters = 2
-"""
+LENDER = Path(__file__).with_name("lender")
+"""A package that offers models and elements by entry points, some of them wrong."""
 # what is drawn and measured by the registry: the modules have no command that answers at once
 ASKED = """
 from comparisons.claims.extremes.axes import matrix
@@ -92,14 +52,15 @@ def registered(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def offered(tmp_path: Path) -> Path:
     """A folder with an installed package that offers the model."""
-    (tmp_path / "lender.py").write_text(CHAIN + LENT)
-    (tmp_path / "functions.py").write_text(FUNCTIONS.format(stopped='StoppedError("no luck")'))
-    info = tmp_path / "lender-1.0.dist-info"
-    info.mkdir()
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: lender\nVersion: 1.0\n")
-    (info / "entry_points.txt").write_text(POINTS)
-    (tmp_path / "study.toml").write_text(STUDY)
-    return tmp_path
+    shutil.copytree(LENDER, tmp_path, dirs_exist_ok=True)
+    (tmp_path / "lender.py").write_text(CHAIN + (LENDER / "lent.txt").read_text())
+    return with_functions(tmp_path, 'StoppedError("no luck")')
+
+
+def with_functions(folder: Path, stopped: str) -> Path:
+    text = (LENDER / "functions.txt").read_text()
+    (folder / "functions.py").write_text(text.replace("STOPPED", stopped))
+    return folder
 
 
 def crossval(place: Path, *arguments: str, code: str = COMMAND) -> subprocess.CompletedProcess[str]:
@@ -166,7 +127,7 @@ def test_functions_are_a_model(offered):
 
 
 def test_an_exception_of_a_function_is_a_status(offered):
-    (offered / "functions.py").write_text(FUNCTIONS.format(stopped="ZeroDivisionError('by hand')"))
+    with_functions(offered, "ZeroDivisionError('by hand')")
     solved = crossval(offered, "solve", "ks-cantilever", "--model", "stiff", "--quiet")
     assert solved.returncode == 3, solved.stderr
     assert "CRASHED: ZeroDivisionError: by hand; 0 of 50" in solved.stderr

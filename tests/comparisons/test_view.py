@@ -13,7 +13,7 @@ from comparisons.cli import main
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.response import Response
-from comparisons.scene import load_scene, read_scene, to_toml
+from comparisons.scene import load_scene, to_toml
 from comparisons.show import render  # a machine without OpenGL
 from comparisons.show.export import HINGES, blocks, read_series, solved_series, write_series
 from comparisons.show.panel import Panel, mises_panel, panel  # what is drawn, before it is pixels
@@ -59,7 +59,7 @@ def test_beams_and_solid_show_the_same_bodies_and_stress(responses):
 
 
 def test_supports_hinges_and_the_heights_of_curved_beams_are_drawn():
-    scene = read_scene(SPECIMEN, "specimen")
+    scene = SPECIMEN
     whole = blocks(solve(scene, "tsm"), scene, 0)
     unhinged = {name: grid for name, grid in whole.items() if name != HINGES}
     assert len(panel([whole], "t").supports) > len(panel([unhinged], "t").supports) > 0

@@ -37,12 +37,7 @@ def make_problem(path=None, radius=0.0, contact=None, **changes):
     return fr.SolidProblem(strips=(make_strip(**changes),), pins=(pin,), contacts=(fr.Contact(**values),))
 
 
-KINDS = {
-    fr.Support: "supports",
-    fr.Spring: "springs",
-    fr.LineLoad: "loads",
-    fr.PointLoad: "loads",
-}
+KINDS = {fr.Support: "supports", fr.Spring: "springs", fr.LineLoad: "loads", fr.PointLoad: "loads"}
 
 
 def held(*conditions, **changes):

@@ -28,11 +28,7 @@ def augmented(surface="axis", **changes):
 
 @surfaces
 @pytest.mark.slow_at(
-    "biot-linear-axis",
-    "biot-linear-face",
-    "neo-hookean-axis",
-    "neo-hookean-face",
-    "st-venant-kirchhoff-face",
+    "biot-linear-axis", "biot-linear-face", "neo-hookean-axis", "neo-hookean-face", "st-venant-kirchhoff-face"
 )
 @pytest.mark.parametrize("material", fr.MATERIALS)
 def test_augmented_lagrangian_reaches_the_requested_penetration(surface, material, stated):

@@ -40,9 +40,7 @@ REFUSED = {
         "mesh": [(1, 1), (4.5, 1), (10**400, 1), (2, 500)],
         "material": ["rubber"],
     },
-    (pin, r"Pin\('pin'\)"): {
-        "path": [(), ((1.0, 0.0), (1.0, 0.0)), ((1.0, NAN), (0.0, 0.0))],
-    },
+    (pin, r"Pin\('pin'\)"): {"path": [(), ((1.0, 0.0), (1.0, 0.0)), ((1.0, NAN), (0.0, 0.0))]},
     (contact, r"Contact\('.*'\)"): {
         "side": ["up"],
         "penalty": [0.0, INF],
@@ -56,10 +54,7 @@ REFUSED = {
         "at": [0.0, 1.1],
         "stage": [-1],
     },
-    (support, r"Support\('.*'\)"): {
-        "motion": [(None, None, None), (0.0, 0.0)],
-        "onward": [((0.0, 0.0),)],
-    },
+    (support, r"Support\('.*'\)"): {"motion": [(None, None, None), (0.0, 0.0)], "onward": [((0.0, 0.0),)]},
     (spring, r"Spring\('.*'\)"): {"stiffness": [(-1.0, 0.0, 0.0)]},
     (line, r"LineLoad\('s'\)"): {"force": [((0.0, 0.0),)], "part": [(0.5, 0.5)]},
     (point, r"PointLoad\('s at .*'\)"): {"at": [-0.1], "force": [(0.0, 0.0)]},

@@ -74,6 +74,14 @@ def _scene(scene: str) -> Iterator[str]:
     with TemporaryDirectory() as folder:
         yield "== check"
         yield from said("check", scene, "--out", f"{folder}/picture.svg", folder=folder)
+    yield from solved(scene)
+    yield "== certify"
+    yield from list(said("certify", scene))[:2]
+
+
+def solved(scene: str) -> Iterator[str]:
+    """Yield the answers of all models."""
+    with TemporaryDirectory() as folder:
         for model, options in MODELS.items():
             yield f"== solve {model}"
             file = Path(folder) / f"{model}.json"
@@ -82,8 +90,6 @@ def _scene(scene: str) -> Iterator[str]:
             yield from (line for line in printed if line.startswith(("crossval", "exit")))
             if file.exists():
                 yield from _answer(json.loads(file.read_text()))
-        yield "== certify"
-        yield from list(said("certify", scene))[:2]
 
 
 def _answer(answer: dict[str, Any]) -> Iterator[str]:

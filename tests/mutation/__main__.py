@@ -16,12 +16,7 @@ from random import Random
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("tsm", "fem_reference", "comparisons")
-DRAWS = (
-    "comparisons/show",
-    "comparisons/cli",
-    "comparisons/claims/paper",
-    "comparisons/trade/plots.py",
-)
+DRAWS = ("comparisons/show", "comparisons/cli", "comparisons/claims/paper", "comparisons/trade/plots.py")
 """Where faults are not put: pages, pictures and texts of help."""
 NEAR = {
     "tsm": "tests/tsm tests/verification tests/laws tests/oracles",

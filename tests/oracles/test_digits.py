@@ -17,11 +17,9 @@ from comparisons.exact import elastica_under_pin, rod_under_pin
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.scene import load_scene
-from tests import problems as scenes
 from tests.oracles import elastica, frames
 from tests.oracles.coupled import pair_of
 from tests.oracles.friction import rubbed
-from tests.oracles.shooting import Rod, pinned
 from tests.oracles.shooting import tied as tied_by_shooting
 
 PROBLEMS = {path.stem: read_problem(path) for path in problems()}
@@ -169,21 +167,3 @@ def test_every_digit_of_the_manual_has_a_second_source() -> None:
     assert {*ORACLES, *BY_DEFINITION} == set(PROBLEMS)
     for name, values in BY_DEFINITION.items():
         assert [quantity.exact for quantity in PROBLEMS[name].quantities] == values
-
-
-@pytest.mark.slow_at("ks-face")
-@pytest.mark.parametrize("name", ["ks-cantilever", "ks-face"])
-def test_shooting_has_the_digits_of_the_main_scenes(name: str) -> None:
-    """Force and arc position at all load parameters of the table, in units of EI; it begins near the rod's answer, which says the branch."""
-    scene, table = replace(load_scene(name), load_parameters=20), scenes.PROBLEMS[name]
-    (beam,), (pin,), (spec,), near = scene.beams, scene.pins, scene.contacts, solve(scene, "rod")
-    E, G = beam.youngs_modulus / beam.EI, beam.youngs_modulus / 2.6 / beam.EI
-    rod = Rod(height=(beam.height,) * 2, width=(beam.width,) * 2, youngs_modulus=E, shear_modulus=G)
-    clamp, contact = near.supports["cantilever.start"], near.contacts[spec.pair]
-    for t in table.answers:
-        k = round(20 * t) - 1
-        forces = np.array([*-clamp.force[k], -clamp.moment[k], *contact.vector[k]]) / beam.EI
-        guess = np.array([*forces, contact.arc_position[k]]) + 1e-3
-        found = pinned(rod, pin.position(t), (scene.offset(spec),) * 2, guess)
-        expected = [table.at(t)[f"{what} {spec.pair}"] for what in ("force", "arc")]
-        assert [beam.EI * np.hypot(*found.force), found.arc] == pytest.approx(expected, rel=1e-9)

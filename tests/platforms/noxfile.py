@@ -1,4 +1,4 @@
-"""The same numbers on every Python and the oldest and newest libraries: ``nox -f tests/platforms/noxfile.py``."""
+"""The same answers on every Python and the oldest and newest libraries: ``nox -f tests/platforms/noxfile.py``."""
 
 import os
 import re
@@ -31,7 +31,7 @@ def lowest(python):
 @nox.session(python=PYTHONS)
 @nox.parametrize("versions", ["oldest", "newest"])
 def numbers(session, versions):
-    """Compare essential numbers with those stored, and show that a lock ends with its process."""
+    """Compare answers with the golden files, and show that a lock ends with its process."""
     session.chdir(ROOT)
     if versions == "oldest":
         session.install("--only-binary", ":all:", *lowest(str(session.python)))

@@ -77,14 +77,6 @@ def test_events_are_located_however_long_the_step(element, name):
         assert np.isnan(contact.arc_position[~closed]).all()
 
 
-@pytest.mark.parametrize("x", [0.5, np.nextafter(0.5, 0), np.nextafter(0.5, 1), 1e-3])
-def test_a_pin_on_a_node_or_beside_it_or_near_the_clamp_pushes_like_a_point_load(x):
-    d = 1e-3 * x**2
-    result = tsm.solve(cantilever(((x, 0.0), (x * (1 - 1e-9), d))), [0.5, 1.0])
-    stiffness = 1 / (x**3 / (3 * SECTION.EI) + x / SECTION.GA)
-    assert result.contacts["p0->b"].force == pytest.approx(stiffness * d * np.array([0.5, 1.0]), rel=1e-4)
-
-
 @pytest.mark.parametrize(("element", "elements"), [("mixed", 40), ("exact", 3)])
 def test_the_gap_is_the_distance_to_the_closest_point_of_the_axis(element, elements):
     """A beam rolls up to three quarters of a circle around a pin, or away from it."""

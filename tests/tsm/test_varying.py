@@ -1,4 +1,4 @@
-"""Loads along a beam, natural curvature and taper in exact elements: derivatives, index, and numbers known in closed form."""
+"""Loads along a beam, natural curvature and taper: index, falls, meshes, and numbers known in closed form."""
 
 import math
 from dataclasses import replace
@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from scipy.special import jn_zeros, jv
 
 import tsm
-from tests.tsm.structures import CLAMP, THIN, beam, hook, leaning
+from tests.tsm.structures import CLAMP, beam, cantilever, leaning, raised
 
 
 def heavy_column(weight, element, elements):
@@ -31,15 +31,6 @@ def test_heavy_column_gains_a_negative_eigenvalue_at_every_critical_weight(eleme
         for factor, expected in ((1 - apart, number), (1 + apart, number + 1)):
             column = heavy_column(9 / 4 * zero**2 * factor, element, elements)
             assert tsm.solve(column, [1.0], tsm.Settings(branch="primary")).index.tolist() == [expected]
-
-
-def test_work_of_loads_along_the_beam_is_the_strain_energy():
-    gauss, weight = np.polynomial.legendre.leggauss(16)
-    t = np.append((gauss + 1) / 2, 1.0)
-    result = tsm.solve(hook(), t)
-    (group,) = result.model.groups
-    full = np.array([group.load_work(e.state) / e.state.load_parameter for e in result.equilibria])
-    assert result.strain_energy[-1] == pytest.approx(full[-1] - weight @ full[:-1] / 2, rel=1e-11)
 
 
 def test_what_a_snap_releases_counts_the_work_of_loads_along_a_beam():
@@ -89,14 +80,36 @@ def test_straight_mixed_beams_stand_beside_varying_ones():
     assert np.abs(np.subtract(*found)).max() <= 2e-6
 
 
-def test_a_force_inside_a_beam_bends_it_as_a_force_at_the_end_of_its_half():
-    whole, half = (
-        beam("b", (0, 0), (1, 0), section=THIN).divided(0.5),
-        beam("b", (0, 0), (0.5, 0), section=THIN),
-    )
-    loads = (tsm.Load(beam="b", arc=0.5, force=(0.0, 3.0)), tsm.Load(beam="b", end="end", force=(0.0, 3.0)))
-    bent, alone = (
-        tsm.solve(tsm.Structure(beams=(one,), supports=(CLAMP,), loads=(load,)), [1.0]).shape("b", 0)[1]
-        for one, load in zip((whole, half), loads, strict=True)
-    )
-    assert np.abs(bent - alone).max() <= 1e-13
+@pytest.mark.slow
+def test_too_coarse_a_mesh_for_a_boundary_layer_is_told():
+    """Tension along the clamp's normal, 40,000 EI/L^2: the layer at the clamp has the length L/200."""
+    stiff, pull = tsm.Section(EA=1e9, GA=1e9, EI=1.0), tsm.Load(beam="b", end="end", force=(0.0, 4e4))
+    weight = (tsm.LineLoad(beam="b", force=((0.0, 1e-3),)),)
+
+    def status(elements, element):
+        given = cantilever(section=stiff, elements=elements, element=element, load=pull)
+        return tsm.solve(replace(given, line_loads=weight), [1.0], throw=False).status
+
+    assert status(4, "mixed") is tsm.Status.INACCURATE
+    assert status(150, "mixed") is status(8, "exact") is tsm.Status.COMPLETED
+
+
+@pytest.mark.slow
+def test_largest_span_of_a_heavy_strip_on_two_points():
+    """Curtis, Griffiths and Vella: up to the half span 1/e of its half length a strip bears any weight on two points without friction.
+
+    Beyond, the weight f has a limit, with ``a - 1/e = c f^(-1/2) + ...``: the half span is extrapolated to infinite weight.
+    """
+    spans, limits = [], []
+    for beyond in (0.012, 0.008, 0.006, 0.004):
+        span, weight = 1 / math.e + beyond, 1.1 * (1.167 / beyond) ** 2
+        stiff = tsm.Section(EA=1e9 * weight, GA=1e9 * weight, EI=1.0)
+        slider = (replace(CLAMP, uy=None),)
+        half = cantilever(raised(span, 1e-9), section=stiff, elements=4, element="exact", supports=slider)
+        weighted = replace(half, line_loads=(tsm.LineLoad(beam="b", force=((0.0, -weight),)),))
+        result = tsm.solve(weighted, [1.0], throw=False)
+        assert result.status is tsm.Status.LIMIT_POINT
+        spans.append(span)
+        limits.append(result.critical[-1].load_parameter * weight)
+    least = np.polyfit(np.array(limits) ** -0.5, spans, 3)[-1]
+    assert least == pytest.approx(1 / math.e, abs=1e-6)

@@ -9,7 +9,7 @@ import pytest
 from comparisons.accuracy import solve_to
 from comparisons.errors import difference
 from comparisons.models import solve
-from comparisons.models.options import ModelError, Options
+from comparisons.models.options import Options
 from comparisons.quantities import KEPT
 from comparisons.scene import SPECIAL, BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene, read_scene
 from tests.comparisons.scene.test_special_keys import BEAM, USES
@@ -210,20 +210,6 @@ def test_beam_theorys_own_error(height):
     theory = solve_to(scene, 1e-3).beam_theory
     assert theory.slenderness == pytest.approx(height)
     assert apart / 2 <= theory.error <= 2 * apart
-
-
-@pytest.mark.parametrize(
-    ("asked", "sentence"),
-    [
-        ({"quantity": "weight"}, "quantity = weight: must be one of force, arc"),
-        ({"model": "solid", "element": "mixed"}, "solid: element = mixed: not an option"),
-        ({"element": "cubic"}, "element = cubic: must be one of"),
-        ({"scene": load_scene("two-pins"), "quantity": "friction"}, "quantity = friction: no touched beam"),
-    ],
-)
-def test_what_cannot_be_asked(asked, sentence):
-    with pytest.raises(ModelError, match=sentence):
-        solve_to(**{"scene": KS, "accuracy": 1e-3, **asked})
 
 
 @pytest.mark.slow_at("mixed")

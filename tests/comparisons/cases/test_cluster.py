@@ -11,7 +11,7 @@ from threading import Thread
 import distributed
 import pytest
 
-from tests.comparisons.cases.conftest import CASES, check_finished, crossval, recorded, wait_for
+from tests.comparisons.cases.conftest import CASES, TINY, check_finished, crossval, recorded, wait_for
 
 
 @pytest.fixture
@@ -23,7 +23,7 @@ def cluster():
 
 
 @pytest.mark.slow
-def test_a_cluster_that_loses_a_worker(cluster, whole, tiny, tmp_path):
+def test_a_cluster_that_loses_a_worker(cluster, whole, tmp_path):
     victim, killed = next(iter(cluster.workers.values())).pid, list[int]()
 
     def kill():
@@ -33,17 +33,17 @@ def test_a_cluster_that_loses_a_worker(cluster, whole, tiny, tmp_path):
 
     killer = Thread(target=kill)
     killer.start()
-    status = crossval("run", tiny, "--out", tmp_path, "--workers", cluster.scheduler_address)
+    status = crossval("run", TINY, "--out", tmp_path, "--workers", cluster.scheduler_address)
     killer.join()
     assert status == 0
     assert 3 <= killed[0] < CASES
-    check_finished(tiny, tmp_path, whole)
+    check_finished(tmp_path, whole)
 
 
 @pytest.mark.slow_at("tcp://127.0.0.1:9")
 @pytest.mark.parametrize("address", ["nonsense", "tcp://127.0.0.1:9"])
-def test_no_cluster_there(address, tiny, tmp_path, capsys):
-    assert crossval("run", tiny, "--out", tmp_path, "--workers", address) == 2
+def test_no_cluster_there(address, tmp_path, capsys):
+    assert crossval("run", TINY, "--out", tmp_path, "--workers", address) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"crossval: cluster {address}: ")
 
@@ -70,7 +70,7 @@ def free_port():
 
 
 @pytest.mark.slow
-def test_a_scheduler_that_dies_is_one_line_and_keeps_what_is_done(tiny, tmp_path, capfd):
+def test_a_scheduler_that_dies_is_one_line_and_keeps_what_is_done(tmp_path, capfd):
     file, port = tmp_path / "tiny", free_port()
     address = f"tcp://127.0.0.1:{port}"
     with dask("scheduler", "--host", "127.0.0.1", "--port", str(port)) as scheduler:
@@ -82,7 +82,7 @@ def test_a_scheduler_that_dies_is_one_line_and_keeps_what_is_done(tiny, tmp_path
         with dask("worker", address, "--nthreads", "1", "--no-nanny"):
             killer = Thread(target=kill)
             killer.start()
-            status = crossval("run", tiny, "--out", tmp_path, "--workers", address)
+            status = crossval("run", TINY, "--out", tmp_path, "--workers", address)
             killer.join()
     assert status == 2
     assert 3 <= recorded(file) < CASES

@@ -16,6 +16,7 @@ from comparisons.cases.run import LOST
 from comparisons.cli import main
 from tests.comparisons.cases.conftest import (
     CASES,
+    TINY,
     check_finished,
     crossval,
     histories,
@@ -61,25 +62,25 @@ def killed(process, results, chance):
 @pytest.mark.slow
 @pytest.mark.long
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs /proc to see what is left running")
-def test_killed_at_twenty_random_points(whole, tiny, tmp_path, start):
+def test_killed_at_twenty_random_points(whole, tmp_path, start):
     """20 times kill -9, over as many studies as that takes: each ends with the tables of one that was left alone."""
     chance, hit, folders = random.Random(7), list[int](), list[Path]()  # noqa: S311 - no secret
     while len(hit) < KILLS:
         folder = tmp_path / str(len(folders))
         folders.append(folder)
         while recorded(folder / "tiny") < CASES and len(hit) < KILLS:
-            if killed(start("run", tiny, "--out", folder, "--workers", "2"), folder / "tiny", chance):
+            if killed(start("run", TINY, "--out", folder, "--workers", "2"), folder / "tiny", chance):
                 hit.append(recorded(folder / "tiny"))
     for folder in folders:
-        check_finished(tiny, folder, whole)
+        check_finished(folder, whole)
     assert len(set(hit)) > KILLS // 4, "the points are spread over the study"
     print(f"killed with {sorted(hit)} cases done, in {len(folders)} studies")
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("whom", ["command", "group"])
-def test_interrupted_and_gone_on(whom, whole, tiny, tmp_path, start):
-    process = start("run", tiny, "--out", tmp_path, "--workers", "2")
+def test_interrupted_and_gone_on(whom, whole, tmp_path, start):
+    process = start("run", TINY, "--out", tmp_path, "--workers", "2")
     wait_for(lambda: recorded(tmp_path / "tiny") >= 3)
     (os.kill if whom == "command" else os.killpg)(process.pid, signal.SIGINT)
     out, err = process.communicate(timeout=20)
@@ -89,19 +90,19 @@ def test_interrupted_and_gone_on(whom, whole, tiny, tmp_path, start):
     assert "Warning" not in err
     kept = histories(tmp_path)
     assert 3 <= len(kept) < CASES
-    check_finished(tiny, tmp_path, whole)
+    check_finished(tmp_path, whole)
     assert kept.items() <= histories(tmp_path).items()
 
 
 @pytest.mark.slow
-def test_out_of_room(whole, tiny, tmp_path, start):
+def test_out_of_room(whole, tmp_path, start):
     """A limit on the size of files stops the command like a full disk: one line, and everything before it kept."""
     sizes = [file.stat().st_size for file in (whole / "tiny").glob("*.json")]
 
     def limit():
         resource.setrlimit(resource.RLIMIT_FSIZE, (sorted(sizes)[-2], resource.RLIM_INFINITY))
 
-    process = start("run", tiny, "--out", tmp_path, "--workers", "2", preexec_fn=limit)
+    process = start("run", TINY, "--out", tmp_path, "--workers", "2", preexec_fn=limit)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 2, err
     line = err.splitlines()[-1]
@@ -110,18 +111,18 @@ def test_out_of_room(whole, tiny, tmp_path, start):
     assert "Traceback" not in err
     assert 0 < recorded(tmp_path / "tiny") < CASES
     assert len(list((tmp_path / "tiny").iterdir())) == recorded(tmp_path / "tiny")
-    check_finished(tiny, tmp_path, whole)
+    check_finished(tmp_path, whole)
 
 
-def test_a_folder_that_is_only_read(tiny, capsys):
+def test_a_folder_that_is_only_read(capsys):
     """Not even the superuser writes there."""
-    assert crossval("run", tiny, "--out", "/proc/study") == 2
+    assert crossval("run", TINY, "--out", "/proc/study") == 2
     assert capsys.readouterr().err.startswith("crossval: /proc/study: cannot be written: ")
 
 
-def test_a_program_from_standard_input_is_refused_by_one_line(tiny, tmp_path):
+def test_a_program_from_standard_input_is_refused_by_one_line(tmp_path):
     """Processes by spawn load the file of the main program, and there is none."""
-    code = f"import sys; from comparisons.cli import main; sys.exit(main(['run', {str(tiny)!r}, '--out', {str(tmp_path)!r}, '--quiet']))"
+    code = f"import sys; from comparisons.cli import main; sys.exit(main(['run', {str(TINY)!r}, '--out', {str(tmp_path)!r}, '--quiet']))"
     found = subprocess.run([sys.executable, "-"], input=code, capture_output=True, text=True, check=False)
     assert found.returncode == 2
     (line,) = found.stderr.splitlines()

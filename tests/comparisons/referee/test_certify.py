@@ -132,9 +132,7 @@ def weakened(response: Response, kept: list[float], factor: float) -> Response:
     part = np.where(np.isin(response.load_parameter, kept), 1.0, factor)
     contacts = {
         pair: replace(
-            item,
-            force=part * item.force,
-            vector=None if item.vector is None else part[:, None] * item.vector,
+            item, force=part * item.force, vector=None if item.vector is None else part[:, None] * item.vector
         )
         for pair, item in response.contacts.items()
     }

@@ -44,9 +44,7 @@ SOURCES: dict[str, tuple[Scene, tuple[str, ...]]] = {
     "smooth": (cantilever(0.0, 20), EXACT),
 }
 """Scenes, and the options of the model whose true answers are forged."""
-SCENES = {
-    "left": cantilever(0.0, STEPS, (1.0, 0.0), (0.0, 2.0 / np.pi), side="left"),
-}
+SCENES = {"left": cantilever(0.0, STEPS, (1.0, 0.0), (0.0, 2.0 / np.pi), side="left")}
 """Scenes that are judged with answers of others."""
 
 
@@ -324,8 +322,3 @@ def test_a_stored_response_is_judged_as_the_response_itself(tmp_path, judged):
         )
     arc = read["judged"][-1]["exact"]["contacts"][PAIR]["arc_position"]
     assert arc == pytest.approx(whole.judged[-1].exact.contacts[PAIR].arc_position, rel=1e-13)
-
-
-def test_a_scene_takes_no_scene_of_a_response(capsys):
-    assert main(["certify", "ks-cantilever", "--scene", "ks-face"]) == 2
-    assert "--scene: belongs to a response" in capsys.readouterr().err

@@ -1,7 +1,5 @@
 """Contacts with Coulomb friction: true answers are certified, with and without what they state of slip and stick, and equilibria of another history are not."""
 
-import subprocess
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -51,16 +49,12 @@ def forces_alone(response: Response) -> Response:
     return replace(contact(response, friction=None), events=None, work=None)
 
 
-@pytest.mark.slow_at(
-    *(f"{name}-{mu}-as_it_is" for name in ("ks-cantilever", "ks-face") for mu in (0.1, 0.3, 0.5))
-)
-@pytest.mark.slow_at("ks-face-0.3-without_events", "ks-cantilever-0.3-without_events")
+@pytest.mark.slow_at("ks-face-0.5-without_events", "ks-cantilever-0.1-as_it_is")
 @pytest.mark.parametrize(
     ("name", "friction", "leave"),
     [
-        *((name, mu, as_it_is) for name in ("ks-cantilever", "ks-face") for mu in (0.1, 0.3, 0.5)),
-        ("ks-cantilever", 0.3, without_events),
-        ("ks-face", 0.3, without_events),
+        ("ks-cantilever", 0.1, as_it_is),
+        ("ks-face", 0.5, without_events),
         ("ks-cantilever", 0.3, forces_alone),
     ],
 )
@@ -164,11 +158,7 @@ def test_a_strut_buckles_in_stick_whatever_the_steps():
 @pytest.mark.slow_at("axis-None-1.0-0.003-8", "face-0.1-20.0-0.003-8")
 @pytest.mark.parametrize(
     ("surface", "radius", "friction", "gap", "steps"),
-    [
-        ("axis", 0.1, 1.0, 0.0, 2),
-        ("axis", None, 1.0, 0.003, 8),
-        ("face", 0.1, 20.0, 0.003, 8),
-    ],
+    [("axis", 0.1, 1.0, 0.0, 2), ("axis", None, 1.0, 0.003, 8), ("face", 0.1, 20.0, 0.003, 8)],
 )
 def test_a_pin_that_sticks_where_it_touches_is_certified(surface, radius, friction, gap, steps):
     """A round pin rolls. With and without events."""
@@ -188,17 +178,3 @@ def test_a_pin_that_sticks_where_it_touches_is_certified(surface, radius, fricti
         assert max(item.distance.largest[1] for item in found.judged if item.distance) < (
             4e-10 if rolls else 1e-11
         )
-
-
-def test_friction_is_loaded_where_a_contact_has_it():
-    """In a process of its own, as others of the tests load it."""
-    lines = (
-        "import sys; from comparisons.models import solve; from comparisons.referee import certify",
-        "from comparisons.scene import load_scene; scene = load_scene(sys.argv[1])",
-        "assert certify(solve(scene, 'tsm'), scene, at=[0]).judged; print('comparisons.referee.friction' in sys.modules)",
-    )
-    for scene, loaded in (("ks-cantilever", "False"), ("ks-friction", "True")):
-        run = subprocess.run(
-            [sys.executable, "-c", "\n".join(lines), scene], capture_output=True, text=True, check=True
-        )
-        assert run.stdout.strip() == loaded

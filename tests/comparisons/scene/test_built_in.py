@@ -46,9 +46,7 @@ def test_the_table_has_every_scene_and_every_model(stated):
     stated("scenes", len(NAMES))
 
 
-@pytest.mark.slow_at(
-    *(f"{name}-{element}" for name in DEAR for element in ELEMENTS),
-)
+@pytest.mark.slow_at(*(f"{name}-{element}" for name in DEAR for element in ELEMENTS))
 @pytest.mark.parametrize("element", ELEMENTS)
 @pytest.mark.parametrize("name", NAMES)
 def test_two_load_parameters_have_the_answer_of_the_table(name, element):

@@ -150,15 +150,6 @@ def test_an_extreme_line_is_refused(line):
     assert all(said in one for one in found)
 
 
-def test_what_needs_too_much_memory_is_refused(tmp_path, capsys):
-    file, many = tmp_path / "my.toml", KS.replace("= 50 ", "= 100_000 ")
-    file.write_text(many)
-    assert many != KS
-    assert main(["solve", str(file), "--elements", "100000"]) == 2
-    said = "tsm: load_parameters = 100000: with 100000 elements and 1 contacts needs 6.5e+03 GB"
-    assert capsys.readouterr().err.startswith(f"crossval: {said}")
-
-
 TABLES = {table: {key for there, key in KEYS if there == table} for table, _ in KEYS}
 OTHERS = {name for names in OTHER_NAMES.values() for name in names}
 

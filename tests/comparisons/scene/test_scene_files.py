@@ -20,7 +20,6 @@ from tests.comparisons.scene.test_special_keys import SCHEMA
 from tests.fuzz.world import toml_text
 
 TEMPLATE = resources.files("comparisons.scene").joinpath("template.toml").read_text()
-THERE = TEMPLATE.replace('side = "right"', 'side = "below"')
 VALIDATOR = Draft202012Validator(SCHEMA)
 KEYS = {kind: {key for table, key in ALL if table == kind} for kind in SCHEMA["properties"]}
 KS = built_in_scenes()["ks-cantilever"]
@@ -59,29 +58,6 @@ def test_a_new_scene_is_like_a_built_in_one():
         assert to_toml(load_scene("mine.toml")) == to_toml(load_scene(name)).replace(f'"{name}"', '"mine"', 1)
         assert mine.read_text().count("#") == text.count("#")
         mine.unlink()
-
-
-def test_a_new_scene_is_not_like_a_file_with_the_name_of_a_built_in_one(capsys):
-    Path("mine.toml").write_text(KS)
-    said = refused(["new", "other", "--like", "mine.toml"], capsys)
-    assert said == "mine.toml: must be a built-in scene, crossval scenes lists them"
-
-
-@pytest.mark.parametrize(
-    ("arguments", "line"),
-    [
-        (["new", "a/b"], "NAME: a/b: must be a name of letters, digits"),
-        (["new", "there"], "there.toml: is there already"),
-        (["check", "there.toml"], "there.toml: "),
-        (["check", "ks-cantilever", "--out", "picture.pdf"], "picture.pdf: must end in .json, .png, .svg"),
-        (["check", "ks-cantilever", "--out", "nowhere/p.png"], "nowhere"),
-    ],
-)
-def test_what_cannot_be_done_is_one_line(arguments, line, capsys, in_a_folder):
-    (in_a_folder / "there.toml").write_text(THERE)
-    assert refused(arguments, capsys).startswith(line)
-    assert [path.name for path in in_a_folder.iterdir()] == ["there.toml"]
-    assert (in_a_folder / "there.toml").read_text() == THERE
 
 
 def test_every_built_in_scene_obeys_the_schema(capsys):

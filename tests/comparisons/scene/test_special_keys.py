@@ -134,46 +134,6 @@ def test_a_new_key_is_one_declaration(monkeypatch):
     assert "| `wear` | a number between 0 and 1 | `0.25` | Share of the surface worn off. |" in scene_file()
 
 
-def ends(name: str, start: str, end: str, clamped: str = "[]") -> str:
-    section = "area = 1.0\nsecond_moment = 1.0\nyoungs_modulus = 1.0\nshear_modulus = 1.0\n"
-    return f'[[beam]]\nname = "{name}"\nstart = {start}\nend = {end}\nclamped = {clamped}\n{section}'
-
-
-def at(kind: str, node: str, line: str = "") -> str:
-    name, end = node.split(".")
-    return f'[[{kind}]]\nbeam = "{name}"\nend = "{end}"\n{line}\n'
-
-
-PINNED = 'kind = "pinned"'
-FRAME = (
-    HEAD
-    + ends("a", "[0, 0]", "[0, 1]")
-    + ends("b", "[0, 1]", "[1, 1]")
-    + ends("c", "[1, 1]", "[1, 0]")
-    + at("support", "a.start", PINNED)
-    + at("support", "c.end", PINNED)
-    + at("load", "a.end", "force = [1.0, 0.0]")
-)
-SPRING = at("spring", "b.end", "stiffness = [1.0, 0.0]")
-
-
-@pytest.mark.parametrize(("hinges", "more"), [(("a.end",), ""), (("a.end", "b.end"), SPRING)])
-def test_a_frame_of_three_hinges_stands_and_one_of_four_with_a_spring(hinges, more):
-    text = FRAME + "".join(at("hinge", node) for node in hinges)
-    assert [hinge.node for hinge in read_scene(text + more, "s").hinges] == list(hinges)
-    if more:
-        with pytest.raises(SceneError, match="mechanism"):
-            read_scene(text, "s")
-
-
-def test_beams_that_meet_one_after_the_other_are_one_structure():
-    """Held by one clamp."""
-    beams = ends("a", "[0, 0]", "[1, 0]") + ends("c", "[2, 0]", "[3, 0]") + ends("b", "[1, 0]", "[2, 0]")
-    load = at("load", "a.start", "moment = 1.0")
-    scene = read_scene(HEAD + beams + at("support", "c.end", 'kind = "clamped"') + load, "s")
-    assert [spec.node for spec in scene.all_supports] == ["c.end"]
-
-
 KS = built_in_scenes()["ks-cantilever"]
 START = "start = [1.0, 0.0]\ndisplacement"
 

@@ -72,11 +72,7 @@ OFF = "TSM timoshenko is off by at most 1.6 % (support moment) with 10 elements 
 THEORY = "Theory expects most of it from this cause: "
 DIFFER = "In the error budget, beams and solid differ most in the "
 APART = "solid and the exact rod disagree on whether a contact is closed."
-STOPPED = {
-    "status": "CUTBACK_FLOOR",
-    "message": "no step",
-    "load_parameter": np.array([0.2, 0.4]),
-}
+STOPPED = {"status": "CUTBACK_FLOOR", "message": "no step", "load_parameter": np.array([0.2, 0.4])}
 LEFT_OUT = {"elastica": "two pins", "mine": "two pins", "solid Q2": "no height", BUDGET: "no solid"}
 
 

@@ -10,7 +10,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from comparisons.cli import main
-from comparisons.scene import LoadSpec, PinSpec, Scene, load_scene, read_scene, to_toml
+from comparisons.scene import LoadSpec, PinSpec, Scene, load_scene, to_toml
 from tests.comparisons.show.specimen import SPECIMEN
 
 KS = load_scene("ks-face")
@@ -65,7 +65,7 @@ def test_a_round_pin_has_its_true_radius_and_loads_have_values_with_units(drawn)
 
 
 def test_curved_and_tapered_beams_springs_hinges_stages_and_loads_along_a_beam(drawn):
-    scene = read_scene(SPECIMEN, "specimen")
+    scene = SPECIMEN
     fig = drawn(scene)
     assert {
         "hinge", "spring of 3.5 N/mm in x", "spring of 100 N mm/rad in rotation", "force per length, arrows not to scale",
@@ -82,25 +82,9 @@ def test_curved_and_tapered_beams_springs_hinges_stages_and_loads_along_a_beam(d
     assert fig.axes[0].get_ylim()[1] > hook.place(0.5)[1]
 
 
-COLUMN = "width = 0.1, youngs_modulus = 2.1e11, poissons_ratio = 0.3, density = 7850"
-FRAME = f"""
-scene = {{ name = "frame", units = "N, m", load_parameters = 1, gravity = [0, -9.81] }}
-beam = [
-  {{ name = "left-column", start = [0, 0], end = [0, 3], clamped = ["start"], height = 0.15, {COLUMN} }},
-  {{ name = "girder", start = [0, 3], end = [5, 3], height = 0.2, {COLUMN} }},
-  {{ name = "right-column", start = [5, 0], end = [5, 3], clamped = ["start"], height = 0.15, {COLUMN} }},
-]
-load = [
-  {{ beam = "girder", force_per_length = [0, -20000], part = [0.2, 0.6] }},
-  {{ beam = "left-column", end = "end", force = [5000, 0] }},
-  {{ beam = "right-column", end = "end", force = [0, 3000] }},
-]
-"""
-
-
 @pytest.mark.parametrize("name", ["frame", "sleeve", "double-beam-friction"])
 def test_labels_lie_apart_and_nothing_is_cut_off(name, drawn):
-    fig = drawn(read_scene(FRAME, name) if name == "frame" else load_scene(name))
+    fig = drawn(load_scene(str(Path(__file__).with_name("frame.toml")) if name == "frame" else name))
     (axes,) = fig.axes
     labels = [text for text in axes.texts if text.get_text()]
     boxes = [text.get_window_extent() for text in labels]

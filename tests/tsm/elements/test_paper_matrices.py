@@ -29,10 +29,7 @@ FORMULATIONS = {
         correct=paper.euler_bernoulli, printed=paper.euler_bernoulli_as_printed, shear=0, entries=SIMPLE
     ),
     "(7)-(8)": SimpleNamespace(
-        correct=paper.cantilever,
-        printed=paper.cantilever_as_printed,
-        shear=0,
-        entries=CANTILEVER,
+        correct=paper.cantilever, printed=paper.cantilever_as_printed, shear=0, entries=CANTILEVER
     ),
     "(9)-(12)": SimpleNamespace(
         correct=paper.timoshenko, printed=paper.timoshenko_as_printed, shear=Psi, entries=SIMPLE
@@ -170,10 +167,7 @@ def test_other_sentences_of_the_errata():
     without_shear = in_symbols(paper.timoshenko_as_printed, 0)
     simple = in_symbols(paper.euler_bernoulli_as_printed, 0)
     assert (without_shear - simple).applyfunc(sp.cancel) == sp.zeros(3, 3)
-    for function, positive in (
-        (paper.cantilever, True),
-        (paper.cantilever_as_printed, False),
-    ):
+    for function, positive in ((paper.cantilever, True), (paper.cantilever_as_printed, False)):
         K = in_symbols(function, 0)
         assert bool((K[0, 1] * K[0, 2] * K[1, 2]).subs({a: 1, b: 2, EI: 1}) > 0) is positive
 

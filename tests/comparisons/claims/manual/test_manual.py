@@ -191,20 +191,6 @@ def test_a_scene_that_is_moved_is_the_scene():
         assert [one.side for one in other.contacts] == ["right" if name == "objectivity" else "left"]
 
 
-NEW = """
-title = "New"
-purpose = "One file is a problem."
-statement = "The pin of ks-cantilever at half its way."
-source = "ks-axis"
-uncertainty = 1e-11
-scene = "ks-cantilever"
-changes = { "scene.load_parameters" = 2 }
-quantities = [{ name = "F [N]", exact = 0.0013049919842595134, read = "pin->cantilever.force", at = 0.5 }]
-trials = [{ model = "tsm exact", allowed = 1e-9, why = "no mesh" }, { model = "tsm mixed", elements = 2, allowed = 1e-9, why = "wrong" }]
-"""
-
-
-def test_a_new_problem_is_one_file(tmp_path):
-    (tmp_path / "new.toml").write_text(NEW)
-    (path,) = problems(folder=tmp_path)
+def test_a_new_problem_is_one_file():
+    (path,) = problems(folder=Path(__file__).with_name("new"))
     assert [item.passed for item in judged(read_problem(path)).judgements] == [True, False]

@@ -10,7 +10,7 @@ from comparisons.claims.paper.fig8 import KS
 from comparisons.claims.paper.fig9 import EVENTS as EXACT
 from comparisons.claims.paper.fig9 import LOWER, TIP, UPPER
 from comparisons.claims.paper.figure import CANTILEVER, MIXED, SIMPLE, TIMOSHENKO, Study
-from comparisons.claims.paper.force_floor import TURNED, force_floor
+from comparisons.claims.paper.force_floor import TURNED
 from comparisons.claims.paper.reproduce import CLAIMS, Verdict, claims_text, judged
 from comparisons.claims.paper.reproduce import verdict as verdict_of
 from comparisons.compare import PAPER, SOLID
@@ -185,43 +185,3 @@ def test_the_way_ends_where_the_pin_slips_off():
     assert 1.8 * last.load_parameter[-1] == pytest.approx(1.4716026278, rel=2e-5)
     assert np.all(np.diff(last.load_parameter) > 0)
     assert np.all(np.diff(last.ratio) < 0)
-
-
-def slope(element, end, first=1, step=2, **options):
-    ratios = 10.0 ** -np.arange(first, 14, step)
-    floors = [force_floor(element, float(ratio), end=end, samples=25, **options) for ratio in ratios]
-    return float(np.polyfit(np.log10(ratios), np.log10(floors), 1)[0])
-
-
-@pytest.mark.parametrize("element", [*SLOPES, "mixed-no-bow"])
-def test_slope(element):
-    expected = SLOPES.get(element, 0.0)
-    for end in ("start", "end"):
-        assert slope(element, end) == pytest.approx(expected, abs={-3.0: 0.3, -1.0: 0.2, 0.0: 0.1}[expected])
-
-
-def test_timoshenko_is_euler_bernoulli_until_the_distance_falls_below_the_shear_length():
-    """``sqrt(Psi)`` = 1e-3 of the element: the same cubic floor above, a linear one below."""
-    above = [force_floor(name, 1e-2, Psi=1e-6, samples=200) for name in (TIMOSHENKO, SIMPLE)]
-    assert above[0] == pytest.approx(above[1], rel=0.25)
-    assert slope(TIMOSHENKO, "start", 4, 1, Psi=1e-6) == pytest.approx(-1, abs=0.2)
-
-
-def test_mixed_has_the_floor_of_mid_element_everywhere():
-    middle = force_floor(MIXED, 0.5)
-    for end in ("start", "end"):
-        for ratio in (0.0, 1e-300, 1e-16, 1e-8, 1e-2):
-            assert force_floor(MIXED, ratio, end=end) <= 1.5 * middle
-
-
-def test_the_size_is_the_contact_stiffness_times_the_last_bit_of_a_coordinate():
-    """``3 EI/b^3`` times ``eps L/10`` (half a last bit, root mean square, of coordinates up to L), in EI/L^2."""
-    for elements in (10, 100, 1000):
-        expected = 3 / 1e-4**3 * np.finfo(float).eps * elements / 10 * elements**2
-        assert 0.5 < force_floor(SIMPLE, 1e-4, elements=elements, samples=200) / expected < 2
-
-
-def test_the_input_of_a_floor_is_checked():
-    for element, ratio in (("spring", 0.1), (MIXED, 1.5), (MIXED, float("nan"))):
-        with pytest.raises(ValueError, match="closed form"):
-            force_floor(element, ratio)

@@ -1,4 +1,4 @@
-"""`crossval reproduce`: files, numbers, verdicts. One figure at a time with coarse settings; all of it in the slow tier."""
+"""`crossval reproduce`: files, numbers, verdicts. A figure with coarse settings, and all of them."""
 
 import csv
 import json
@@ -32,13 +32,13 @@ VERDICTS = dict.fromkeys((claim.name for claim in CLAIMS), REPRODUCED) | {
 """What full settings make of every claim of [P]."""
 
 
-def check_claims(page, *figures, verdict=None):
-    """The page has every claim of some figures once, in the order of the paper, with its verdict or that of coarse settings."""
+def check_claims(page, *figures):
+    """The page has every claim of some figures once, in the order of the paper, with its verdict."""
     found = re.findall(
         r"^\| (\d+) \| .* \| \*\*(.*?)\*\* \| .* \(`(\w+)`\) \|", page.read_text(), re.MULTILINE
     )
     wanted = [claim for claim in CLAIMS if claim.figure in figures]
-    expected = [(verdict or VERDICTS[claim.name], claim.figure) for claim in wanted]
+    expected = [(VERDICTS[claim.name], claim.figure) for claim in wanted]
     assert found == [(str(number), *one) for number, one in enumerate(expected, 1)]
 
 
@@ -54,59 +54,22 @@ def check_files(folder, figure):
         assert all(set(row) == set(rows[0]) and None not in row for row in rows)
 
 
-def run(figure, folder, capsys):
-    """Reproduce a figure with coarse settings; its page has every picture, every claim, and the shapes that move."""
-    assert main(["run", figure, "--quick", "--out", str(folder)]) == 0
-    out, err = capsys.readouterr()
-    assert figure in err
-    assert sorted(map(str, folder.glob("[!.]*"))) == sorted(line.strip() for line in out.splitlines()[1:])
-    check_files(folder, figure)
-    check_claims(folder / f"claims-{figure}.md", figure, verdict=None if figure == "fig9" else "provisional")
-    html = (folder / "report.html").read_text()
-    check_alone(html, folder)
-    assert html.count(f"({figure})</td>") == sum(claim.figure == figure for claim in CLAIMS)
-    assert html.count("data:image/svg+xml") == len(FILES[figure][0])
-    moving = block(html)
-    assert len(moving) == {"fig8": 3, "fig9": 1}.get(figure, 0)
-    if figure == "fig9":
-        assert all(len(lines) == 2 for one in moving.values() for lines in one["runs"][0]["lines"])
-    return json.loads((folder / f"{figure}.json").read_text())
-
-
-@pytest.mark.slow
-def test_fig7a(tmp_path, capsys):
-    """Slip-off displacements of theory section 7; bar 5e-4 with 18 elements."""
-    found = {one["start"]: one for one in run("fig7a", tmp_path, capsys)["starting_positions"]}
-    for start, exact in ((4.05, 1.7814439389), (4.35, 1.0524732309)):
-        one = found[start]
-        own = (
-            one["slip_off_rod"],
-            one["slip_off"]["18"],
-            one["slip_off"]["72"],
-            one["reached_in_contact"]["mixed"],
-        )
-        assert (np.abs(np.array(own) / exact - 1.0) <= (1e-10, 5e-4, 2e-4, 5e-4)).all()
-        assert one["force_error"] < 5e-4
-
-
-@pytest.mark.slow
-def test_fig8(tmp_path, capsys):
-    """Bars: shapes of TSM and solid alike within 1 % of the length, `mixed` on the exact rod in every reading."""
-    runs = {(one["reading"], one["label"]): one for one in run("fig8", tmp_path, capsys)["runs"]}
-    paper = [runs["ks-cantilever", f"TSM timoshenko, {n} elements"] for n in (10, 20, 50)]
-    assert [one["status"] for one in paper] == ["COMPLETED"] * 3
-    assert max(one["shape_difference"] for one in paper) < 1e-2
-    assert runs["ks-cantilever", "solid"]["error_path_shape"] < 1e-3
-    quantities = {"ks-cantilever": "force", "ks-printed-shear": "force", "ks-tied-tip": "shape"}
-    assert {reading for reading, _ in runs} == set(quantities)
-    for reading, quantity in quantities.items():
-        assert runs[reading, "TSM mixed, 20 elements"][f"error_path_{quantity}"] < 1e-5
-
-
 @pytest.mark.slow
 def test_fig9(tmp_path, capsys, stated):
-    """Exact depths of the coupled rods and, for the last, of the elastica (theory sections 7 and 8)."""
-    found = run("fig9", tmp_path, capsys)
+    """Exact depths of the coupled rods and, for the last, of the elastica; every picture, claim and shape that moves is on the page."""
+    assert main(["run", "fig9", "--quick", "--out", str(tmp_path)]) == 0
+    out, err = capsys.readouterr()
+    assert "fig9" in err
+    assert sorted(map(str, tmp_path.glob("[!.]*"))) == sorted(line.strip() for line in out.splitlines()[1:])
+    check_files(tmp_path, "fig9")
+    check_claims(tmp_path / "claims-fig9.md", "fig9")
+    html = (tmp_path / "report.html").read_text()
+    check_alone(html, tmp_path)
+    assert html.count("(fig9)</td>") == sum(claim.figure == "fig9" for claim in CLAIMS)
+    assert html.count("data:image/svg+xml") == len(FILES["fig9"][0])
+    (moving,) = block(html).values()
+    assert all(len(lines) == 2 for lines in moving["runs"][0]["lines"])
+    found = json.loads((tmp_path / "fig9.json").read_text())
     exact = found["exact_events"]
     assert exact["touch"] == pytest.approx(0.149786, abs=1e-6)
     stated("double-beam.hand-over", exact["hand-over"])

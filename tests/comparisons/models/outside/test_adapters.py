@@ -18,7 +18,7 @@ from comparisons.scene import LoadSpec, Scene, load_scene
 
 ROOT = Path(__file__).parents[4]
 FINDINGS = Path(__file__).parents[2] / "findings"
-KS, FACE, FRICTION = (load_scene(name) for name in ("ks-cantilever", "ks-face", "ks-friction"))
+KS, FACE = load_scene("ks-cantilever"), load_scene("ks-face")
 PAIR = "pin->cantilever"
 BEAM = KS.beams[0]
 TIP = replace(
@@ -66,14 +66,9 @@ def answered(name: str, scene: Scene, elements: int) -> Response:
 
 
 @needs("opensees")
-@pytest.mark.slow_at("ks-friction-20", "ks-friction-200")
-@pytest.mark.parametrize(
-    ("scene", "steps"), [(KS, 50), (FRICTION, 20), (FRICTION, 60), (FRICTION, 200)], ids=lambda item: getattr(item, "name", item)
-)  # fmt: skip
-def test_opensees_loses_the_contact_in_long_steps_and_reports_success(scene, steps, tmp_path):
-    response = certified(solve(scene, in_steps("opensees", steps, tmp_path), Options(elements=20)), scene)
-    assert response.reported_success
-    assert response.false_success
+def test_opensees_loses_the_contact_in_long_steps_and_reports_success(tmp_path):
+    response = certified(solve(KS, in_steps("opensees", 50, tmp_path), Options(elements=20)), KS)
+    assert (response.reported_success, response.false_success) == (True, True)
     assert response.contacts[PAIR].force[-1] == 0.0
 
 

@@ -129,30 +129,6 @@ def test_a_program_that_is_not_there(tmp_path):
         assert solve(KS, str(file)).status == ProgramStatus.NOT_STARTED.name
 
 
-GOOD = "[program]\nname = 'a'\ncommand = ['c']\n"
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("", "program = (missing): must be given"),
-        *((GOOD.replace("'a'", name), "must not be the name of a model") for name in ("'rod'", "'opensees'")),
-        (GOOD.replace("['c']", "'c'"), 'program.command = "c": must be a list'),
-        (GOOD + "seconds = 0", "program.seconds = 0: must be a positive number"),
-        (GOOD + "colour = 'red'", "must be a colour, as #AA3377"),
-        ("[program", "must be valid TOML"),
-    ],
-)
-def test_a_program_file_is_refused_in_one_line(text, message, tmp_path, capsys):
-    file = tmp_path / "wrong.toml"
-    file.write_text(text)
-    assert main(["solve", "ks-cantilever", "--model", str(file)]) == 2
-    out, err = capsys.readouterr()
-    assert (out, err.count("\n")) == ("", 1)
-    assert err.startswith(f"crossval: {file}: ")
-    assert message in err
-
-
 def test_elements_are_an_option_where_the_file_has_them(program, tmp_path):
     file = program("Path('seen').write_text(str(scene['beams'][0]['elements']))", elements=[5, 10, 20])
     model = find(file)

@@ -9,7 +9,7 @@ import pytest
 from matplotlib.image import imread
 
 from comparisons.models import solve
-from comparisons.scene import SupportSpec, read_scene
+from comparisons.scene import SupportSpec
 from comparisons.show.motion import motion_section
 from comparisons.show.pages import Section, page
 from tests.comparisons.show.pages.conftest import Browser
@@ -134,7 +134,7 @@ def test_light_dark_and_paper(browser, compared, tmp_path):
 
 def test_true_pins_supports_and_arcs_are_drawn(browser, tmp_path):
     """A round pin is a circle of its radius in the scale of the drawing; an undeformed arc has many points; supports move."""
-    scene = read_scene(SPECIMEN, "specimen")
+    scene = SPECIMEN
     scene = replace(scene, beams=(replace(scene.beams[0], clamped=()), *scene.beams[1:]), supports=(MOVED,))
     section = motion_section("Drawn", scene, {"TSM mixed": solve(scene, "tsm")}, [], focus="TSM mixed")
     script = """
