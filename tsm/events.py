@@ -112,7 +112,8 @@ def passes(model: Model, before: Equilibrium, after: Equilibrium) -> Iterator[Ev
         push, pushed = normal_force(model, before, k), normal_force(model, after, k)
         for element in range(old.element + ahead, new.element + ahead, ahead):
             arc = arc_position(pair.target, element, 0.0 if ahead > 0 else 1.0)
-            part = (arc - start) / (end - start) if end != start else 1.0
+            # an end of the step on a node is beside it but for round-off
+            part = min(max((arc - start) / (end - start), 0.0), 1.0) if end != start else 1.0
             yield Event(
                 kind=EventKind.PASS_THROUGH,
                 load_parameter=t0 + part * (t1 - t0),
