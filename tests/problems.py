@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from comparisons.answer import ContactEvent, Response
 from comparisons.models import MODELS
 from comparisons.models.options import Options
-from comparisons.response import ContactEvent, Response
 from comparisons.scene import load_scene
 
 RUNS = {

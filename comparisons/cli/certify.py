@@ -12,8 +12,8 @@ from comparisons.models.options import ModelError
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
+    from comparisons.answer import Response
     from comparisons.referee import Judgement
-    from comparisons.response import Response
 
 
 def run(given: Namespace) -> int:
@@ -22,9 +22,9 @@ def run(given: Namespace) -> int:
     if stored and Path(given.answer).resolve() in (Path(name).resolve() for name in given.out):
         raise OutputError(f"{given.answer}: is the answer to be judged, choose another name")
     files = outputs(given.out, ".json")
+    from comparisons.answer.file import read_response
     from comparisons.output import json_text
     from comparisons.referee import Verdict, certify
-    from comparisons.response.file import read_response
 
     if stored:
         response, scene = read_response(given.answer, given.scene)

@@ -116,7 +116,7 @@ def _version() -> int:
     import shutil
     from importlib import metadata
 
-    from comparisons.show.render import renders
+    from comparisons.report.render import renders
 
     def found(name: str) -> str | None:
         with suppress(metadata.PackageNotFoundError):

@@ -47,8 +47,8 @@ def run(given: argparse.Namespace) -> int:
 
 def _compare(scene: Scene, given: argparse.Namespace) -> int:
     """Compare all models, print the table and name the files."""
-    from comparisons.compare import ROD, Run, compare, run_of
-    from comparisons.show.table import table_text
+    from comparisons.report.table import table_text
+    from comparisons.suites.compare import ROD, Run, compare, run_of
 
     tell = (lambda _: None) if given.quiet else report
     more = [run_of(model, options) for model in map(find, given.others) for options in model.compared()]
@@ -72,7 +72,7 @@ def _compare(scene: Scene, given: argparse.Namespace) -> int:
 def _held(scene: Scene, given: argparse.Namespace) -> int:
     """Measure one model, print its bounds and write them."""
     files = outputs([str(given.out)] if given.out else [], ".xml")
-    from comparisons.claims.gate import gate
+    from comparisons.suites.gate import gate
 
     found = gate(scene, given.model or TSM.name, chosen(given), dict(given.max_error), given.against)
     for _, file in files:
@@ -92,9 +92,9 @@ def _held(scene: Scene, given: argparse.Namespace) -> int:
 
 def _league(scenes: list[Scene], given: argparse.Namespace) -> int:
     """Measure every program on every scene, print the summary and name the files."""
-    from comparisons.cases.progress import running
-    from comparisons.league import FILES, measure_league, summary, write_league
     from comparisons.output import tabulated
+    from comparisons.suite.progress import running
+    from comparisons.suites.league import FILES, measure_league, summary, write_league
 
     folder = writable_folder(given.out or Path("out/league"), *FILES)
     with running(folder / "results", workers(given, 1), quiet=given.quiet, process=True) as run_cases:

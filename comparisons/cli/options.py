@@ -17,7 +17,7 @@ from comparisons.scene import rules
 from comparisons.scene.rules import Rule, RuleError
 
 if TYPE_CHECKING:
-    from comparisons.cases.workers import Workers
+    from comparisons.suite.workers import Workers
 
 
 class Names:
@@ -39,7 +39,7 @@ class Names:
 
 
 def _quantities(*, path: bool) -> Iterable[str]:
-    from comparisons.quantities import names
+    from comparisons.answer.quantities import names
 
     return names(path=path)
 
@@ -120,7 +120,7 @@ def chosen(given: argparse.Namespace) -> Options:
 
 def workers(given: argparse.Namespace, number: int | None = None) -> "Workers":
     """Return where the cases run, by default `number` processes or one for each core."""
-    from comparisons.cases.workers import cluster, local
+    from comparisons.suite.workers import cluster, local
 
     return cluster(given.workers) if isinstance(given.workers, str) else local(given.workers or number)
 

@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import NamedTuple
 
-from comparisons.claims.names import FIGURES, QUESTIONS
 from comparisons.cli.options import refuse, workers
 from comparisons.cli.screen import DONE, STOPPED, WRONG, files_named, report
 from comparisons.files import writable_folder, write_text
 from comparisons.scene import InputError, load_scene
+from comparisons.suites.names import FIGURES, QUESTIONS
 
 
 def run(given: Namespace) -> int:
@@ -46,15 +46,15 @@ def _ended(files: Iterable[Path], reasons: Iterable[str] = (), status: int = STO
 
 def _figures(given: Namespace) -> int:
     folder = _out(given, "report.html")
-    from comparisons.claims.paper.reproduce import reproduce
+    from comparisons.suites.paper.reproduce import reproduce
 
     figure = "all" if given.suite == "paper" else given.suite
     return _ended(*reproduce(figure, folder, quick=given.quick, report=report))
 
 
 def _cards(given: Namespace) -> int:
-    from comparisons.claims.manual import problems
-    from comparisons.claims.manual.cards import write_cards
+    from comparisons.suites.manual import problems
+    from comparisons.suites.manual.cards import write_cards
 
     folder = given.out or Path("out") / given.suite
     cards = write_cards(folder, _told(given), problems(given.of or None))
@@ -63,13 +63,13 @@ def _cards(given: Namespace) -> int:
 
 
 def _manual(given: Namespace) -> int:
-    from comparisons.claims.manual import problems
+    from comparisons.suites.manual import problems
 
     stated = problems(given.of or None)
     folder = _out(given, "index.md", "manual.json", "junit.xml")
-    from comparisons.claims.finding import junit_text
-    from comparisons.claims.manual import write_manual
-    from comparisons.claims.manual.write import checks
+    from comparisons.suites.finding import junit_text
+    from comparisons.suites.manual import write_manual
+    from comparisons.suites.manual.write import checks
 
     cases, files = write_manual(folder, _told(given), stated)
     write_text(folder / "junit.xml", junit_text("crossval run manual", checks(cases)))
@@ -81,9 +81,9 @@ def _manual(given: Namespace) -> int:
 
 def _extremes(given: Namespace) -> int:
     folder = _out(given, "extremes.html", "extremes.csv", "extremes.json")
-    from comparisons.cases.progress import shown
-    from comparisons.claims.extremes.run import counts, extremes
     from comparisons.output import tabulated
+    from comparisons.suite.progress import shown
+    from comparisons.suites.extremes.run import counts, extremes
 
     with shown(quiet=given.quiet) as progress:
         judgements, files = extremes(folder, workers(given), progress, quick=given.quick)
@@ -97,10 +97,10 @@ def _trade(given: Namespace) -> int:
     scene = load_scene(given.of[0])
     folder = given.out or Path("out/trade") / scene.name
     writable_folder(folder, "report.html", "trade.csv", "trade.json")
-    from comparisons.cases.progress import running
-    from comparisons.trade.reference import NoReferenceError
-    from comparisons.trade.report import summary, write_trade
-    from comparisons.trade.trade import measure_trade
+    from comparisons.suite.progress import running
+    from comparisons.suites.trade.reference import NoReferenceError
+    from comparisons.suites.trade.report import summary, write_trade
+    from comparisons.suites.trade.trade import measure_trade
 
     try:
         with running(folder / "results", workers(given, 1), quiet=given.quiet) as run_cases:
@@ -115,8 +115,8 @@ def _trade(given: Namespace) -> int:
 
 def _question(given: Namespace) -> int:
     folder = _out(given, f"{given.suite}.csv")
-    from comparisons.claims.solid_accuracy import STUDIES
     from comparisons.output import tabulated, write_rows
+    from comparisons.suites.solid_accuracy import STUDIES
 
     rows = list(STUDIES[given.suite](report))
     print(tabulated(rows))
@@ -124,10 +124,10 @@ def _question(given: Namespace) -> int:
 
 
 def _study(given: Namespace) -> int:
-    from comparisons.cases.progress import running
-    from comparisons.cases.run import UNSETTLED
-    from comparisons.cases.study import read_study, result_rows, result_table
     from comparisons.output import write_rows
+    from comparisons.suite.progress import running
+    from comparisons.suite.run import UNSETTLED
+    from comparisons.suite.study import read_study, result_rows, result_table
 
     study = read_study(Path(given.suite))
     table = f"{study.name}.csv"

@@ -52,7 +52,7 @@ def run_check(given: Namespace) -> int:
     files = outputs(given.out, ".json", ".png", ".svg")
     from comparisons.models.options import Options
     from comparisons.models.outside.exchange import request
-    from comparisons.show.sketch import draw, stated
+    from comparisons.report.sketch import draw, stated
 
     printed = (".json", STANDARD) in files
     if not printed:

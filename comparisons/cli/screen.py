@@ -11,7 +11,7 @@ from comparisons.files import printable
 from comparisons.models.progress import REDRAW, Count, Reached, Watch, bar
 
 if TYPE_CHECKING:
-    from comparisons.response import Response
+    from comparisons.answer import Response
     from comparisons.scene import Scene
 
 DONE, WRONG, BAD_INPUT, STOPPED, INTERRUPTED = 0, 1, 2, 3, 130

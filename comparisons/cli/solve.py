@@ -12,9 +12,9 @@ from comparisons.models import TSM, certified, find, solve
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
-    from comparisons.accuracy import Answer
-    from comparisons.response import Response
+    from comparisons.answer import Response
     from comparisons.scene import Scene
+    from comparisons.suite.accuracy import Answer
 
 PICTURES = (".png", ".svg", ".pdf")
 
@@ -24,7 +24,7 @@ def run(given: Namespace) -> int:
     scene = load_scene(given.scene)
     files = outputs(given.out, ".json", ".csv", *PICTURES, "")
     for folder in (path for kind, path in files if not kind):
-        from comparisons.show.export import check_series
+        from comparisons.report.export import check_series
 
         check_series(writable_folder(folder), find(given.model or TSM.name).name, scene)
     answer = _answer(scene, given)
@@ -43,7 +43,7 @@ def run(given: Namespace) -> int:
     for kind, path in files:
         _write(kind, path, response, scene, more)
     if STANDARD not in dict(files).values():
-        from comparisons.response.page import text
+        from comparisons.answer.page import text
 
         print(text(response, [*_found(response, scene), *lines], rule))
     status = exit_status(scene, [("", response)])
@@ -56,26 +56,26 @@ def run(given: Namespace) -> int:
 def _write(kind: str, path: Path, response: "Response", scene: "Scene", more: dict[str, Any]) -> None:
     """Write a file, or the files of a folder."""
     if kind == ".json":
-        from comparisons.response.file import as_json
+        from comparisons.answer.file import as_json
 
         write(path, as_json(response, **more))
     elif kind == ".csv":
-        from comparisons.response.table import csv_history
+        from comparisons.answer.table import csv_history
 
         write(path, csv_history(response, scene.units))
     elif not kind:
-        from comparisons.show.export import write_series
+        from comparisons.report.export import write_series
 
         write_series(path, response, scene)
     elif len(response.load_parameter):
-        from comparisons.show.answer import plot_answer
+        from comparisons.report.answer import plot_answer
 
         plot_answer(response, path)
 
 
 def _found(response: "Response", scene: "Scene") -> list[tuple[str, str]]:
     """Return the coefficient of friction that a clamp's reactions show, at the last load parameter in contact, and the scene's."""
-    from comparisons.response.material import frictions_found
+    from comparisons.answer.material import frictions_found
 
     given = {contact.beam: contact.friction for contact in scene.contacts}
     rows = []
@@ -94,7 +94,7 @@ def _answer(scene: "Scene", given: Namespace) -> "Answer | None":
         return None
     chosen_by_it = ("elements", "integration_tolerance", "mesh", "branch")
     refuse(given, chosen_by_it, "is what --accuracy chooses, give one of the two")
-    from comparisons.accuracy import solve_to
+    from comparisons.suite.accuracy import solve_to
 
     quantity, error = given.accuracy
     answer = solve_to(scene, error, quantity, model=given.model, element=given.element)

@@ -13,16 +13,16 @@ from comparisons.models.options import ModelError, Options
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
-    from comparisons.response import Response
+    from comparisons.answer import Response
+    from comparisons.report.export import Series
     from comparisons.scene import Scene
-    from comparisons.show.export import Series
 
 BEAMS = Options(elements=20)
 
 
 def run(given: Namespace) -> int:
     """Solve or read, then show or write."""
-    from comparisons.show.export import read_series, solved_series
+    from comparisons.report.export import read_series, solved_series
 
     folder = Path(given.what)
     if folder.is_dir():
@@ -61,7 +61,7 @@ def _solve(scene: "Scene") -> "list[tuple[str, Response]]":
 
 
 def _present(series: "list[Series]", factor: float, out: Path | None) -> int:
-    from comparisons.show.render import film, show, write_film
+    from comparisons.report.render import film, show, write_film
 
     shown = film(series, factor)
     if out is None:

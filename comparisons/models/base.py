@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, ClassVar
 from comparisons.models.options import Options
 
 if TYPE_CHECKING:
+    from comparisons.answer import Response
     from comparisons.models.progress import Watch
     from comparisons.models.theory import Bending
-    from comparisons.response import Response
     from comparisons.scene import Scene
 
 

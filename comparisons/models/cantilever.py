@@ -11,10 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.exact import Outcome, RodPath
-from comparisons.models.options import ModelError
-from comparisons.models.shared import POINTS
-from comparisons.response import (
+from comparisons.answer import (
     Array,
     ContactEvent,
     ContactHistory,
@@ -22,7 +19,10 @@ from comparisons.response import (
     Response,
     SupportHistory,
 )
-from comparisons.response.axis import axis_grid
+from comparisons.answer.axis import axis_grid
+from comparisons.exact import Outcome, RodPath
+from comparisons.models.options import ModelError
+from comparisons.models.shared import POINTS
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 from comparisons.scene.ends import BeamEnd
 from comparisons.scene.keys import ONE_ROD, unstated

@@ -10,8 +10,8 @@ from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Watch, unwatched
 
 if TYPE_CHECKING:
+    from comparisons.answer import Response
     from comparisons.models.base import Model
-    from comparisons.response import Response
     from comparisons.scene import Scene
 
 Certify = Literal["last", "all", "none"]
@@ -46,8 +46,8 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
     ModelError
         If the model cannot state the scene, or an option does not belong to it.
     """
+    from comparisons.answer.material import material_forces
     from comparisons.models.verify import verified
-    from comparisons.response.material import material_forces
 
     chosen, given = find(model), options or Options()
     for option, value in vars(given).items():

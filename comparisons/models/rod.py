@@ -10,10 +10,10 @@ from comparisons.models.tsm import beams_refusal
 from comparisons.scene.keys import ONE_ROD, RODS
 
 if TYPE_CHECKING:
+    from comparisons.answer import Response
     from comparisons.models.cantilever import RodScene
     from comparisons.models.progress import Watch
     from comparisons.models.theory import Bending
-    from comparisons.response import Response
     from comparisons.scene import Scene
 
 

@@ -7,13 +7,13 @@ from time import perf_counter
 
 import numpy as np
 
+from comparisons.answer import Array, ContactHistory, FrictionHistory, Response, Sections, SupportHistory
+from comparisons.answer.axis import axis_grid
 from comparisons.models.progress import Watch
 from comparisons.models.rod import ROD
 from comparisons.models.shared import POINTS, Axis, rows
 from comparisons.models.tsm import TSM
 from comparisons.referee import Equilibrium, Verdict, certify
-from comparisons.response import Array, ContactHistory, FrictionHistory, Response, Sections, SupportHistory
-from comparisons.response.axis import axis_grid
 from comparisons.scene import Scene
 
 States = Sequence[Equilibrium]

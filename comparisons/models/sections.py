@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.response import Array, Sections
-from comparisons.response.material import clamped
+from comparisons.answer import Array, Sections
+from comparisons.answer.material import clamped
 from comparisons.scene import BeamSpec, Scene
 
 MARGIN = 1.5
@@ -37,7 +37,7 @@ def section_forces(scene: Scene, result: Any, beam: str, k: int) -> Sections:
 
 
 def j_integrals(scene: Scene, result: Any) -> dict[str, Array]:
-    """Return the J-integrals at the clamps of `comparisons.response.material.clamped`, shape (s,) by beam [force].
+    """Return the J-integrals at the clamps of `comparisons.answer.material.clamped`, shape (s,) by beam [force].
 
     The J-integral is the same for all sections between the clamp and the nearest contact. Its error changes its sign between
     neighbouring Gauss stations and is largest beside clamp and contact. The value is therefore the mean over the Gauss stations in

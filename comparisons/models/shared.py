@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from comparisons.answer import Array, ContactHistory, Response
     from comparisons.models.options import Options
-    from comparisons.response import Array, ContactHistory, Response
     from comparisons.scene import BeamSpec, PinSpec, Scene
 
 POINTS = 401
@@ -73,7 +73,7 @@ def result_of(
 
 def history(item: Any, **more: Any) -> ContactHistory:
     """Return the contact history of a solver's result, with what else the model states."""
-    from comparisons.response import ContactHistory
+    from comparisons.answer import ContactHistory
 
     return ContactHistory(**kept(item, "force arc_position gap"), **more)
 
@@ -87,7 +87,7 @@ def of_result(
     **more: Any,
 ) -> Response:
     """Return the response of one of the solvers; `line(beam, k)` has the positions at both ends of the axis, `more` what is its own."""
-    from comparisons.response import CriticalPoint, Response, SupportHistory
+    from comparisons.answer import CriticalPoint, Response, SupportHistory
 
     tips = {beam.name: 0 if scene.tip(beam.name) == "start" else -1 for beam in scene.beams}
     steps = range(len(result.load_parameter))

@@ -15,8 +15,8 @@ from comparisons.scene.keys import STRIPS
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from comparisons.answer import Array, ContactEvent, Response
     from comparisons.models.theory import Bending
-    from comparisons.response import Array, ContactEvent, Response
     from comparisons.scene import BeamSpec, LoadSpec, Scene, SpringSpec, SupportSpec
     from fem_reference import SolidProblem, Strip
 
@@ -54,9 +54,9 @@ class Solid(Model):
         import numpy as np
 
         import fem_reference
+        from comparisons.answer import Deformation, FrictionHistory, Grid
+        from comparisons.answer.material import Deferred
         from comparisons.models.sections import j_integrals, section_forces
-        from comparisons.response import Deformation, FrictionHistory, Grid
-        from comparisons.response.material import Deferred
 
         def report(step: Any) -> None:
             touching = (f"{touch.pair.name} at {touch.at.zeta:.4g}" for touch in step.state.closed)
@@ -168,7 +168,7 @@ def _order(scene: Scene) -> str:
 
 def _events(result: Any) -> tuple[ContactEvent, ...]:
     """Return the events of a scene with friction, whose load parameters are located; no element owns a contact."""
-    from comparisons.response import ContactEvent
+    from comparisons.answer import ContactEvent
 
     found = [
         ContactEvent(pair=pair, element=-1, released=0.0, stage=max(1, ceil(event.load_parameter)), **own)

@@ -21,8 +21,8 @@ from typing import Any
 
 import numpy as np
 
+from comparisons.answer import Response
 from comparisons.models.options import Options
-from comparisons.response import Response
 from comparisons.scene import BeamSpec, Scene
 
 MESH = 4.0

@@ -17,8 +17,8 @@ from comparisons.scene.keys import BEAMS
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from comparisons.answer import Grid, Response
     from comparisons.models.theory import Bending
-    from comparisons.response import Grid, Response
     from comparisons.scene import BeamSpec, ContactSpec, Scene
     from tsm import Beam, ContactPair, Structure
     from tsm.elements import ElementType
@@ -75,7 +75,7 @@ class Tsm(Model):
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked; a tolerance is for elements that integrate."""
         import tsm
-        from comparisons.response import ContactEvent, Deformation, FrictionHistory, Sections
+        from comparisons.answer import ContactEvent, Deformation, FrictionHistory, Sections
 
         kind, tolerance = self.kind(scene, options), options.integration_tolerance
         structure = to_structure(scene, elements=options.elements, element=kind.name)
@@ -214,7 +214,7 @@ def _grid(scene: Scene, result: Any, k: int) -> Grid:
     """
     import numpy as np
 
-    from comparisons.response import Grid
+    from comparisons.answer import Grid
 
     parts = []
     for number, beam in enumerate(scene.beams):

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.answer import Array, ContactHistory, Deformation, Response
 from comparisons.referee.balance import balance_failures
 from comparisons.referee.passing import passages
-from comparisons.response import Array, ContactHistory, Deformation, Response
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 from comparisons.scene.ends import BeamEnd, free_ends
 

@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.answer import Array, Response
+from comparisons.answer.round_off import force_round_off, least_force
 from comparisons.referee.state import Equilibrium
-from comparisons.response import Array, Response
-from comparisons.response.round_off import force_round_off, least_force
 from comparisons.scene import BeamSpec, Scene
 
 BALANCE = 1e-6

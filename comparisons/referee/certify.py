@@ -7,16 +7,16 @@ from time import perf_counter
 
 import numpy as np
 
+from comparisons.answer import Response
+from comparisons.answer.axis import SampledAxes
+from comparisons.answer.material import material_forces
+from comparisons.answer.round_off import least_force
 from comparisons.referee.balance import BALANCE, balance_failures, unpaid
 from comparisons.referee.certificate import Certificate, Judgement, Verdict
 from comparisons.referee.judge import Trial, compared, impossible, judged
 from comparisons.referee.passing import changes, misstated, passages
 from comparisons.referee.path import changes_of, departures
 from comparisons.referee.state import Equilibrium
-from comparisons.response import Response
-from comparisons.response.axis import SampledAxes
-from comparisons.response.material import material_forces
-from comparisons.response.round_off import least_force
 from comparisons.scene import Scene
 from comparisons.scene.keys import REFEREE, unstated
 

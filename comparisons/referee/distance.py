@@ -8,11 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.guess import SHORTEST, end_of
-from comparisons.referee.rod import angle, axis_at_rest, cross, face_of
-from comparisons.referee.state import Equilibrium
-from comparisons.response import Response
-from comparisons.response.round_off import (
+from comparisons.answer import Response
+from comparisons.answer.round_off import (
     LAST_PLACES,
     LEAST,
     RESIDUAL,
@@ -20,6 +17,9 @@ from comparisons.response.round_off import (
     force_round_off,
     least_force,
 )
+from comparisons.referee.guess import SHORTEST, end_of
+from comparisons.referee.rod import angle, axis_at_rest, cross, face_of
+from comparisons.referee.state import Equilibrium
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 
 Array = NDArray[np.float64]

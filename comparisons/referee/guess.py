@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.answer import ContactHistory, Response
 from comparisons.referee.grip import Grip
 from comparisons.referee.layout import NONE, Layout, Part
-from comparisons.response import ContactHistory, Response
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 
 Array = NDArray[np.float64]

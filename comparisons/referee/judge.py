@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.answer import ContactHistory, Response
 from comparisons.referee.certificate import Judgement, Verdict
 from comparisons.referee.distance import Distance, Scales, distance
 from comparisons.referee.grip import UnknownFrictionError
@@ -16,7 +17,6 @@ from comparisons.referee.newton import equilibrium
 from comparisons.referee.path import reach
 from comparisons.referee.rod import angle, cross, face_of
 from comparisons.referee.state import Equilibrium, SearchStatus
-from comparisons.response import ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
 
 if TYPE_CHECKING:

@@ -8,13 +8,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.answer import ContactEvent, Response
 from comparisons.referee.distance import gap_off, largest_force
 from comparisons.referee.guess import answer_state, end_of
 from comparisons.referee.newton import equilibrium
 from comparisons.referee.path import PASSES, at_rest, changes_of, events_between, on_the_way, reach
 from comparisons.referee.rod import axis_at_rest, cross, face_of
 from comparisons.referee.state import Equilibrium
-from comparisons.response import ContactEvent, Response
 from comparisons.scene import ContactSpec, Scene
 
 Array = NDArray[np.float64]

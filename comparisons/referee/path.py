@@ -7,6 +7,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.answer import ContactEvent, Response
 from comparisons.referee.elements import mesh_of
 from comparisons.referee.equations import orientation_of
 from comparisons.referee.grip import Grip
@@ -15,7 +16,6 @@ from comparisons.referee.layout import lay_out
 from comparisons.referee.newton import correct, equilibrium, newton_step, undeformed
 from comparisons.referee.rod import largest
 from comparisons.referee.state import Change, Equilibrium, located
-from comparisons.response import ContactEvent, Response
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]

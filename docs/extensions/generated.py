@@ -10,12 +10,12 @@ from typing import Any
 
 import fem_reference
 import tsm
+from comparisons.answer.file import SCHEMA
+from comparisons.answer.quantities import QUANTITIES
 from comparisons.models import MODELS
 from comparisons.models.cantilever import STOPS
 from comparisons.models.outside.child import ProgramStatus
-from comparisons.quantities import QUANTITIES
 from comparisons.referee import Verdict
-from comparisons.response.file import SCHEMA
 from comparisons.scene import Scene, load_scene, read_scene
 from comparisons.scene.read import LISTS
 from comparisons.scene.record import Record, lists_of, rule_of

@@ -86,7 +86,7 @@ def _write(app: Sphinx) -> None:
 
 def _write_manual(app: Sphinx) -> None:
     """Solve the manual anew where a module is younger than its page; Sphinx has targets in place of anchors, under names of their own."""
-    from comparisons.claims.manual import problems, write_manual
+    from comparisons.suites.manual import problems, write_manual
 
     page = Path(app.srcdir) / "_generated" / "manual" / "index.md"
     modules = (

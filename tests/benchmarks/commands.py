@@ -16,14 +16,15 @@ import numpy as np
 
 import fem_reference
 import tsm
-from comparisons import budget, compare
+from comparisons.answer.errors import difference
 from comparisons.cli import main
-from comparisons.errors import difference
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.models.solid import to_solid
 from comparisons.models.tsm import to_structure
 from comparisons.scene import load_scene
+from comparisons.suite import budget
+from comparisons.suites import compare
 from tests.benchmarks.measure import Gate, children
 
 KS = load_scene("ks-cantilever")

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from comparisons.answer import Response
 from comparisons.cli import main
 from comparisons.models import solve
 from comparisons.models.options import Options
-from comparisons.response import Response
 from comparisons.scene import load_scene
 
 EXACT = Options(element="exact")

@@ -15,7 +15,7 @@ import pytest
 from comparisons.cli.command import COMMANDS
 from comparisons.cli.options import STATED
 from comparisons.scene import built_in_scenes
-from tests.comparisons.cases.conftest import crossval
+from tests.comparisons.suite.conftest import crossval
 
 KS = built_in_scenes()["ks-cantilever"].replace("load_parameters = 50", "load_parameters = 4")
 BIN = Path(sys.executable).parent

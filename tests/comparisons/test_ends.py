@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from comparisons.answer import Response
 from comparisons.cli import main
 from comparisons.exact import rod_under_pin
 from comparisons.models import solve
 from comparisons.models.cantilever import to_rod
 from comparisons.models.options import Options
-from comparisons.response import Response
 from comparisons.scene import (
     BeamSpec,
     ContactSpec,

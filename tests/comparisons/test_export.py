@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 import pyvista
 
+from comparisons.answer import Response
 from comparisons.models import solve
 from comparisons.models.options import Options
-from comparisons.response import Response
+from comparisons.report.export import CONTACTS, HINGES, SUPPORTS, blocks, write_series
 from comparisons.scene import load_scene
-from comparisons.show.export import CONTACTS, HINGES, SUPPORTS, blocks, write_series
-from tests.comparisons.show.specimen import SPECIMEN
+from tests.comparisons.report.specimen import SPECIMEN
 
 SCENE, RUBBED = (replace(load_scene(name), load_parameters=3) for name in ("ks-cantilever", "ks-friction"))
 PAGE = (Path(__file__).parents[2] / "docs/how-to/paraview.md").read_text()

@@ -37,11 +37,11 @@ def names(folder: Path) -> set[str]:
 WRITE = """
 from dataclasses import replace
 from pathlib import Path
-from comparisons.show.export import write_series
+from comparisons.report.export import write_series
 from comparisons.files import write_text
 from comparisons.models import solve
 from comparisons.scene import load_scene
-from comparisons.response.file import as_json
+from comparisons.answer.file import as_json
 scene = replace(load_scene("ks-cantilever"), load_parameters=12)
 response = solve(scene, "tsm")
 text = as_json(response)

@@ -6,13 +6,13 @@ from functools import cache
 import numpy as np
 import pytest
 
-from comparisons.errors import difference
-from comparisons.models import certified, solve
-from comparisons.models.options import Options
-from comparisons.response import Response
+from comparisons.answer import Response
+from comparisons.answer.errors import difference
 
 # the coefficient of friction that a clamp shows is in no answer
-from comparisons.response.material import frictions_found, material_forces
+from comparisons.answer.material import frictions_found, material_forces
+from comparisons.models import certified, solve
+from comparisons.models.options import Options
 from comparisons.scene import LoadSpec, Scene, SupportSpec, load_scene
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from comparisons.answer import Response
 from comparisons.models import MODELS, TSM, Model, certified, find, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.solid import to_solid
-from comparisons.response import Response
 from comparisons.scene import (
     HingeSpec,
     LoadSpec,

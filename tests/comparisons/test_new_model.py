@@ -12,9 +12,9 @@ import pytest
 
 import comparisons
 import tsm
-from comparisons.accuracy import solve_to
 from comparisons.models import solve
 from comparisons.scene import load_scene
+from comparisons.suite.accuracy import solve_to
 from tests.comparisons.processes import COMMAND, ended
 
 PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "model.md"
@@ -24,11 +24,11 @@ LENDER = Path(__file__).with_name("lender")
 """A package that offers models and elements by entry points, some of them wrong."""
 # what is drawn and measured by the registry: the modules have no command that answers at once
 ASKED = """
-from comparisons.claims.extremes.axes import matrix
-from comparisons.compare import RUNS
-from comparisons.trade.settings import sweep_cases
+from comparisons.suites.extremes.axes import matrix
+from comparisons.suites.compare import RUNS
+from comparisons.suites.trade.settings import sweep_cases
 from comparisons.scene import load_scene
-from comparisons.show.palette import colour
+from comparisons.report.palette import colour
 print(sum(run.model == "chain" for run in RUNS))
 print(sum(case.model == "chain" for case in sweep_cases(load_scene("ks-cantilever"), quick=True)))
 print(any(cell.row == "chain" for cell in matrix(quick=True)))

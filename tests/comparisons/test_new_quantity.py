@@ -8,11 +8,12 @@ from pathlib import Path
 
 import pytest
 
-# the registry, and the runs of a comparison, of which two are enough here
-from comparisons import compare
+from comparisons.answer.quantities import QUANTITIES, Quantity
 from comparisons.cli import main
-from comparisons.quantities import QUANTITIES, Quantity
 from comparisons.scene import load_scene, to_toml
+
+# the registry, and the runs of a comparison, of which two are enough here
+from comparisons.suites import compare
 from docs.extensions import generated
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from comparisons.scene import built_in_scenes
-from tests.comparisons.cases.conftest import crossval
+from tests.comparisons.suite.conftest import crossval
 
 REFUSED = tomllib.loads(Path(__file__).with_name("refused.toml").read_text(encoding="utf-8"))
 """Parts of the line by commands; and studies and files of programs by parts of the line."""

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from comparisons.answer import Response
 from comparisons.models import certified, solve
 from comparisons.models.options import Options
-from comparisons.response import Response
 from comparisons.scene import Scene, load_scene, read_scene
 
 FINDINGS = Path(__file__).parent / "findings"

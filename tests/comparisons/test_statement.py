@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from comparisons.errors import errors
+from comparisons.answer import Response
+from comparisons.answer.errors import errors
+from comparisons.answer.quantities import KEPT
 from comparisons.models import solve
-from comparisons.quantities import KEPT
-from comparisons.response import Response
 from comparisons.scene import load_scene
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=5)

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from comparisons.answer import Deformation, Response
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.models.verify import CHECK_FAILED, CHECKS, verified
-from comparisons.response import Deformation, Response
 from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene
 from tests.comparisons.referee.forged import contact, support
 

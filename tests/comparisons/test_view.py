@@ -9,16 +9,16 @@ import pytest
 from matplotlib.image import imread
 from PIL import Image
 
+from comparisons.answer import Response
 from comparisons.cli import main
 from comparisons.models import solve
 from comparisons.models.options import Options
-from comparisons.response import Response
+from comparisons.report import render  # a machine without OpenGL
+from comparisons.report.export import HINGES, blocks, read_series, solved_series, write_series
+from comparisons.report.panel import Panel, mises_panel, panel  # what is drawn, before it is pixels
+from comparisons.report.render import film, write_picture
 from comparisons.scene import load_scene, to_toml
-from comparisons.show import render  # a machine without OpenGL
-from comparisons.show.export import HINGES, blocks, read_series, solved_series, write_series
-from comparisons.show.panel import Panel, mises_panel, panel  # what is drawn, before it is pixels
-from comparisons.show.render import film, write_picture
-from tests.comparisons.show.specimen import SPECIMEN
+from tests.comparisons.report.specimen import SPECIMEN
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=3)
 

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from comparisons.answer import Response
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.referee import certify
-from comparisons.response import Response
 from comparisons.scene import BeamSpec, HingeSpec, LoadSpec, Scene, SupportSpec, load_scene
 from tests.laws.transform import Change
 

@@ -11,11 +11,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from comparisons.answer import Response
 from comparisons.models import solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.verify import penetration
 from comparisons.referee import Judgement, Verdict, certify
-from comparisons.response import Response
 from comparisons.scene import Scene, to_toml
 from tests.fuzz.judge import LIMIT, Hang, time_limit
 

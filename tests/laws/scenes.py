@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import tsm
+from comparisons.answer import Response
 from comparisons.models import MODELS, solve
 from comparisons.models.options import Options
 from comparisons.referee import certify
-from comparisons.response import Response
 from comparisons.scene import SPECIAL, Scene, load_scene, unstated
 from tests.fuzz.special import DRAW
 from tests.laws.transform import Readings, readings

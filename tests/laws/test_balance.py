@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from comparisons.response import ContactHistory
+from comparisons.answer import ContactHistory
 from comparisons.scene import ContactSpec, Scene
 from tests.laws.scenes import ELEMENTS, OTHERS, answer, cases, scene
 from tests.laws.transform import axis

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from comparisons.response import Response
+from comparisons.answer import Response
 from comparisons.scene import BeamSpec, LoadSpec, Scene
 
 OTHER = {"start": "end", "end": "start", "left": "right", "right": "left", "x": "y", "y": "x"}

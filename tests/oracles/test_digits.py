@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 from scipy.special import ellipe, ellipk
 
-from comparisons.claims.manual import problems, read_problem
-from comparisons.claims.manual.measures import (
-    Answers,
-    readings,
-)  # not public: what a problem reads, of the exact rod
-from comparisons.claims.paper.fig9 import HAND_OVER
 from comparisons.exact import elastica_under_pin, rod_under_pin
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.scene import load_scene
+from comparisons.suites.manual import problems, read_problem
+from comparisons.suites.manual.measures import (
+    Answers,
+    readings,
+)  # not public: what a problem reads, of the exact rod
+from comparisons.suites.paper.fig9 import HAND_OVER
 from tests.oracles import elastica, frames
 from tests.oracles.coupled import pair_of
 from tests.oracles.friction import rubbed

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import tsm
-from comparisons.claims.manual.measures import under_load  # a frame of the manual
 from comparisons.models.tsm import to_structure
 from comparisons.scene import load_scene
+from comparisons.suites.manual.measures import under_load  # a frame of the manual
 from tests.tsm.structures import beam, cantilever, steps
 
 EA, GA = 5000.0, 2000.0

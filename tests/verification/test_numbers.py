@@ -7,12 +7,12 @@ from functools import cache
 import numpy as np
 import pytest
 
-from comparisons.cases.settings import changed
-from comparisons.compare import ELASTICA, MIXED, PAPER, ROD, RUNS, SOLID
-from comparisons.errors import errors
+from comparisons.answer.errors import errors
 from comparisons.models import find, solve
 from comparisons.models.options import Options
 from comparisons.scene import load_scene
+from comparisons.suite.settings import changed
+from comparisons.suites.compare import ELASTICA, MIXED, PAPER, ROD, RUNS, SOLID
 
 COLUMNS = ("force", "arc", "moment", "tip")
 ROWS = {

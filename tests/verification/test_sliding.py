@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 import tsm
-from comparisons.claims.paper import fig9 as double_beam
-from comparisons.errors import errors
+from comparisons.answer.errors import errors
 from comparisons.exact import rod_under_pin
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.models.tsm import to_structure
 from comparisons.scene import load_scene
+from comparisons.suites.paper import fig9 as double_beam
 from tests.oracles.coupled import pair_of
 from tests.tsm.structures import KS_PATH, essentials, kinds, raised, steps, when
 from tests.tsm.structures import cantilever as made

@@ -8,6 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from comparisons.answer import ContactHistory, Response
+from comparisons.answer.axis import axis_grid, sampled_axes
+from comparisons.answer.file import SCHEMA, NotFiniteError, contradictions, parsed, restated
 from comparisons.files import one_line
 from comparisons.models.options import ModelError, Options
 from comparisons.models.outside.adapters.exchange import Histories
@@ -15,9 +18,6 @@ from comparisons.models.outside.child import ProgramError, ProgramStatus
 from comparisons.models.shared import joints, kept
 from comparisons.models.verify import CHECK_FAILED
 from comparisons.referee.certificate import Verdict
-from comparisons.response import ContactHistory, Response
-from comparisons.response.axis import axis_grid, sampled_axes
-from comparisons.response.file import SCHEMA, NotFiniteError, contradictions, parsed, restated
 from comparisons.scene import BeamSpec, Scene
 from comparisons.scene.keys import PROGRAMS, unstated
 from comparisons.scene.rules import FieldError
@@ -95,7 +95,7 @@ def _reason(data: dict[str, Any]) -> str:
 
 
 def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
-    """Return the response that a program wrote, JSON by `comparisons.response.file.SCHEMA`; it took `seconds` if it states no time itself.
+    """Return the response that a program wrote, JSON by `comparisons.answer.file.SCHEMA`; it took `seconds` if it states no time itself.
 
     The program states its status, and may leave out what follows from the rest: names of model and scene, message, tips, numbers of
     iterations, wall time. An answer that is not COMPLETED may leave out all histories. A scene that the program refuses is a `ModelError`,

@@ -30,9 +30,9 @@ from comparisons.scene.tables import InputError, check_keys, head_values, in_ord
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
+    from comparisons.answer import Response
     from comparisons.models.outside.adapters.exchange import Refusal, States
     from comparisons.models.progress import Watch
-    from comparisons.response import Response
     from comparisons.scene import Scene
 
 SUFFIX = ".toml"

@@ -10,6 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from comparisons.answer import Response
 from comparisons.referee.friction.phases import OPEN, SAME, UNKNOWN, Phase, phases, states
 from comparisons.referee.friction.slip import place, relative_slip_rate, roll, slip_rate
 from comparisons.referee.grip import LOOSE, Grip, Hold, UnknownFrictionError
@@ -18,7 +19,6 @@ from comparisons.referee.newton import equilibrium
 from comparisons.referee.path import corners, reach
 from comparisons.referee.rod import face_of
 from comparisons.referee.state import Equilibrium
-from comparisons.response import Response
 from comparisons.scene import ContactSpec, Scene
 
 _ITERATIONS = 60

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.answer import ContactEvent, ContactHistory, Response
 from comparisons.referee.path import changes_of
-from comparisons.response import ContactEvent, ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
 
 Ints = NDArray[np.int64]

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 
+from comparisons.answer import Response
+from comparisons.answer.round_off import LEAST, least_force
 from comparisons.referee.friction.history import History, at_rest
 from comparisons.referee.friction.phases import OPEN, UNKNOWN
 from comparisons.referee.friction.slip import place, relative_slip_rate, slip_rate
@@ -16,8 +18,6 @@ from comparisons.referee.layout import Touch
 from comparisons.referee.path import corners, reach
 from comparisons.referee.rod import largest
 from comparisons.referee.state import Equilibrium
-from comparisons.response import Response
-from comparisons.response.round_off import LEAST, least_force
 from comparisons.scene import ContactSpec, Scene
 
 Array = NDArray[np.float64]

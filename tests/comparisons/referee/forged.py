@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
+from comparisons.answer import ContactHistory, Response, SupportHistory
 from comparisons.referee import AnswerState, Equilibrium, SearchStatus, equilibrium
-from comparisons.response import ContactHistory, Response, SupportHistory
 from comparisons.scene import Scene, load_scene
 
 POINTS = 201

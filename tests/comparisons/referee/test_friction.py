@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from comparisons.answer import Response
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.referee import Certificate, Equilibrium, Verdict, answer_state, certify, equilibrium
@@ -14,7 +15,6 @@ from comparisons.referee import Certificate, Equilibrium, Verdict, answer_state,
 # the states of slip and stick that the referee finds are no part of a certificate, and equilibria of others are made from them
 from comparisons.referee.friction import History, dissipated
 from comparisons.referee.grip import Grip
-from comparisons.response import Response
 from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene
 from tests.comparisons.referee.forged import contact, scene_of, stated
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from comparisons.answer import Response
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.referee import (
@@ -17,7 +18,6 @@ from comparisons.referee import (
     certify,
     equilibrium,
 )
-from comparisons.response import Response
 from comparisons.scene import (
     BeamSpec,
     HingeSpec,

@@ -7,11 +7,11 @@ from functools import cache
 import numpy as np
 import pytest
 
+from comparisons.answer import ContactHistory, Deformation, Response
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.models.verify import CHECK_FAILED, verified
 from comparisons.referee import certify
-from comparisons.response import ContactHistory, Deformation, Response
 from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene
 from tests.comparisons.referee.forged import contact, scene_of, support
 

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from comparisons.errors import errors
+from comparisons.answer import Response
+from comparisons.answer.errors import errors
 from comparisons.models import MODELS, certified, solve
 from comparisons.models.options import ModelError
 from comparisons.referee import Verdict
-from comparisons.response import Response
 from comparisons.scene import Scene, built_in_scenes, load_scene
 from tests.oracles.frames import Frame
 from tests.problems import PROBLEMS, RUNS, value

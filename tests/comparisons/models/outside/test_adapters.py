@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from comparisons.answer import Response
 from comparisons.models import certified, find, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.outside import Functions, Program
-from comparisons.response import Response
 from comparisons.scene import LoadSpec, Scene, load_scene
 
 ROOT = Path(__file__).parents[4]

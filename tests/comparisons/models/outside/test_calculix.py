@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 import fem_reference
-
-# the study whose numbers the pages state, and the input file and the output of CalculiX, which is not everywhere
-from comparisons.claims.solid_accuracy import contact_forces, peers, press
 from comparisons.cli import main
 from comparisons.models.outside.adapters.calculix import parse, run, tip_load
 from comparisons.models.outside.child import ProgramError
 from comparisons.models.solid import to_solid
 from comparisons.scene import load_scene
+
+# the study whose numbers the pages state, and the input file and the output of CalculiX, which is not everywhere
+from comparisons.suites.solid_accuracy import contact_forces, peers, press
 
 needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed")
 PROBLEM = to_solid(load_scene("ks-face"))

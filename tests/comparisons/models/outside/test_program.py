@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from comparisons.cases import Case, Row, measure
 from comparisons.cli import main
 from comparisons.models import find, solve
 from comparisons.models.options import ModelError, Options
@@ -20,6 +19,7 @@ from comparisons.models.options import ModelError, Options
 # the registry of the statuses, for the contract that each is forced here
 from comparisons.models.outside.child import ProgramStatus
 from comparisons.scene import load_scene
+from comparisons.suite import Case, Row, measure
 from tests.comparisons.models.outside.conftest import KS, PAIR
 
 EARLY = """

@@ -1,0 +1,92 @@
+"""Deformed axes, sampled at fixed stations for comparison and storage."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from comparisons.answer.record import Array, Grid, Response, not_kept
+from comparisons.scene import Scene
+
+STATIONS = np.linspace(0.0, 1.0, 101)
+"""Arc lengths of the stations, over the length of the beam."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SampledAxes:
+    """Deformed axes as arrays; callable like `Response.axis_line`."""
+
+    arc_length: dict[str, Array]  #: Arc lengths along the undeformed axes, shape (m,), by beam.
+    position: dict[str, Array]  #: Deformed positions at the s load parameters (s, m, 2), by beam.
+
+    def __call__(self, beam: str, k: int) -> tuple[Array, Array]:
+        """Return arc length (m,) and deformed positions (m, 2) of a beam's axis at load parameter k."""
+        return self.arc_length[beam], self.position[beam][k]
+
+
+def axes_at_stations(response: Response, beam: str, steps: Iterable[int]) -> Array:
+    """Return the deformed axes of a beam at n load parameters, shape (n, 101, 2), by cubic splines through the model's points."""
+    from scipy.interpolate import CubicSpline
+
+    lines = [response.axis_line(beam, k) for k in steps]
+    if not lines:
+        return np.empty((0, len(STATIONS), 2))
+    first = lines[0][0]
+    if all(np.array_equal(arc, first) for arc, _ in lines):
+        found = CubicSpline(first, np.stack([line for _, line in lines]), axis=1)(_stations(first))
+    else:
+        found = np.array([CubicSpline(arc, line)(_stations(arc)) for arc, line in lines])
+    # a spline passes through its points up to round-off only; the ends keep the exact values of the model
+    found[:, 0], found[:, -1] = [line[0] for _, line in lines], [line[-1] for _, line in lines]
+    return np.asarray(found)
+
+
+def _stations(arc: Array) -> Array:
+    return np.asarray(arc[0] + STATIONS * (arc[-1] - arc[0]))
+
+
+def sampled_axes(response: Response) -> SampledAxes:
+    """Return the deformed axes of all beams at `STATIONS`; axes that are sampled already are returned unchanged."""
+    if isinstance(response.axis_line, SampledAxes):
+        return response.axis_line
+    steps = range(len(response.load_parameter))
+    arcs = {beam: response.axis_line(beam, 0)[0] for beam in response.tips} if steps else {}
+    return SampledAxes(
+        arc_length={beam: _stations(arc) for beam, arc in arcs.items()},
+        position={beam: axes_at_stations(response, beam, steps) for beam in arcs},
+    )
+
+
+def axis_grid(scene: Scene, axis_line: Callable[[str, int], tuple[Array, Array]], k: int) -> Grid:
+    """Return the axes of all beams at load parameter k as lines, with their displacements."""
+    found = [axis_line(beam.name, k) for beam in scene.beams]
+    counts = [len(arc) for arc, _ in found]
+    points = np.array(
+        [
+            beam.place(part)
+            for beam, (arc, _) in zip(scene.beams, found, strict=True)
+            for part in (arc / beam.length).tolist()
+        ]
+    )
+    deformed, beams = np.concatenate([line for _, line in found]), np.repeat(np.arange(len(found)), counts)
+    first = np.flatnonzero(beams[:-1] == beams[1:])
+    data = {"displacement": deformed - points, "deformed": deformed, "beam": beams}
+    return Grid(points=points, cells={"line": np.stack([first, first + 1], axis=1)}, point_data=data)
+
+
+def storable(response: Response, *, axes: bool = True) -> Response:
+    """Return a response of arrays only, which can be stored or sent to another process, with its axes at `STATIONS` or without axes.
+
+    Meshes, section forces, the deformation of elements, the certificate and the scene are not kept.
+    """
+    kept = sampled_axes(response) if axes else SampledAxes(arc_length={}, position={})
+    return replace(
+        response,
+        material_force=dict(response.material_force),
+        axis_line=kept,
+        grid=not_kept,
+        sections=None,
+        deformation=None,
+        certificate=None,
+        definition=None,
+    )

@@ -1,0 +1,110 @@
+"""The measure of the difference between two responses to one scene, by every quantity of `comparisons.answer.quantities`.
+
+A quantity is compared at the load parameters that both responses have; nothing is interpolated in the load parameter. The error
+is the largest difference over all contacts, supports and beams. Forces, moments and stresses are relative to the largest value of
+the reference, positions to the length of their beam.
+
+A value that is not a number in one of the responses has an infinite error: the arc position where its pair is open in one response and
+closed in the other, the friction where one of the responses has no material force. The error is nan where both have none: the arc
+position of a pair that is open in both, every arc position of a scene without contact, the moment where no support has one.
+"""
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from comparisons.answer import Array, Response
+from comparisons.answer.quantities import KEPT, QUANTITIES, SCOPES, Columns, Pair, Scales, scales
+from comparisons.scene import Scene
+
+Errors = Mapping[str, Mapping[str, float]]
+"""Errors by scope and quantity."""
+
+
+def errors(
+    response: Response,
+    reference: Response,
+    scene: Scene,
+    *,
+    scale: Scales | None = None,
+    end: float | None = None,
+    quantities: Iterable[str] = KEPT,
+) -> Errors:
+    """Return the errors of a response by scope and quantity; nan for a response that does not reach the reference's end.
+
+    Parameters
+    ----------
+    response, reference : Response
+        Two responses to the same scene; the first may have fewer load parameters.
+    scene : Scene
+        Source of the beams' lengths.
+    scale : mapping of float, optional
+        Divisors of forces and moments; by default the largest values of the reference.
+    end : float, optional
+        The load parameter of the scope ``end``, the reference's last if not given.
+    quantities : iterable of str
+        Keys of `comparisons.answer.quantities.QUANTITIES`.
+    """
+    names, last = tuple(quantities), reference.load_parameter[-1:]
+    if not len(last) or last[0] not in response.load_parameter:
+        return {scope: dict.fromkeys(names, np.nan) for scope in SCOPES}
+    shared, found = error_histories(response, reference, scene, scale=scale, quantities=names)
+    chosen = {"end": shared == (last[0] if end is None else end), "path": slice(None)}
+    return {
+        scope: {name: largest(values[at]) for name, values in found.items()} for scope, at in chosen.items()
+    }
+
+
+def difference(response: Response, reference: Response, scene: Scene, quantity: str) -> float:
+    """Return the largest error of a quantity over the load parameters that both responses reached.
+
+    Forces and moments are relative to the largest value of the reference at these load parameters. The error is infinite if the
+    responses share no load parameter. It is nan if neither response has the quantity: a scene without contact has no arc position.
+    """
+    steps = np.flatnonzero(np.isin(reference.load_parameter, response.load_parameter))
+    scale = scales(reference, steps)
+    _, found = error_histories(response, reference, scene, scale=scale, quantities=[quantity])
+    return largest(found[quantity]) if len(steps) else np.inf
+
+
+def worst_place(response: Response, reference: Response, scene: Scene, quantity: str) -> str:
+    """Return the pair, support or beam, and the load parameter, where a quantity has its largest error; empty if there is none."""
+    place = QUANTITIES[quantity].place
+    if place is not None:
+        return place(response, reference)
+    columns = error_columns(response, reference, scene, quantity)
+    worst = {name: largest(values) for name, values in columns.items()}
+    name = max(worst, key=lambda name: np.nan_to_num(worst[name]), default="")
+    if not name or not worst[name] > 0.0:
+        return ""
+    shared = np.intersect1d(response.load_parameter, reference.load_parameter)
+    return f"{name} at load parameter {shared[int(np.nanargmax(columns[name]))]:.6g}"
+
+
+def error_histories(
+    response: Response,
+    reference: Response,
+    scene: Scene,
+    *,
+    scale: Scales | None = None,
+    quantities: Iterable[str] = KEPT,
+) -> tuple[Array, dict[str, Array]]:
+    """Return the n load parameters that both responses have, and the errors there, shape (n,) by quantity."""
+    shared = np.intersect1d(response.load_parameter, reference.load_parameter)
+    none = np.full(len(shared), np.nan)
+    columns = {name: error_columns(response, reference, scene, name, scale) for name in quantities}
+    return shared, {name: np.fmax.reduce([none, *found.values()]) for name, found in columns.items()}
+
+
+def error_columns(
+    response: Response, reference: Response, scene: Scene, quantity: str, scale: Scales | None = None
+) -> Columns:
+    """Return the errors of every pair, support or beam, shape (n,), at the n load parameters that both responses have."""
+    _, own, true = np.intersect1d(response.load_parameter, reference.load_parameter, return_indices=True)
+    pair = Pair(response, reference, own, true, scene, scale or scales(reference))
+    return QUANTITIES[quantity].columns(pair)
+
+
+def largest(values: Array) -> float:
+    """Return the largest of the values that are numbers; nan if none is."""
+    return float(np.fmax.reduce(values, initial=np.nan))

@@ -1,0 +1,271 @@
+"""The page of an answer: status, reactions, contacts, extremes, tips and events, as text and as HTML.
+
+Numbers have six significant digits, fewer where the last ones are round-off; a number below the round-off of its quantity is 0
+(`comparisons.answer.round_off`).
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from operator import itemgetter
+
+import numpy as np
+
+from comparisons.answer.along import ALONG, FIRST, extremes_along
+from comparisons.answer.record import ContactEvent, Response
+from comparisons.answer.round_off import RoundOff, round_off
+from comparisons.answer.table import unit_names
+from comparisons.output import aligned
+
+PLACE = 4
+"""Significant digits of the place of an extreme, which is not sharp where the extreme is flat."""
+OPENED = {"release": "opened", "slip-off": "slipped off"}
+"""Events that open a contact, and the state after."""
+EVENTS = {
+    "touch": "{node} touches {beam} at arc position {arc}",
+    "release": "{node} leaves {beam} at arc position {arc}",
+    "slip-off": "{node} slips off {beam} at arc position {arc}; contact force before {force}",
+    "slip": "{node} begins to slip on {beam} at arc position {arc}; contact force {force}",
+    "stick": "{node} comes to stick on {beam} at arc position {arc}; contact force {force}",
+    "limit-point": "limit point of the path",
+    "bifurcation": "bifurcation of the path",
+    "pass-through": "",
+}
+"""Sentences by kind of event; that a contact passes a node of the mesh is no event of the structure."""
+
+Row = Sequence[str | float]
+"""Texts, and numbers whose kind their column states."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Block:
+    """A table of a page: title, names of the columns and rows. The head of the page has neither title nor names."""
+
+    title: str = ""
+    columns: Sequence[str] = ()
+    rows: Sequence[Sequence[str]]
+
+
+def text(response: Response, more: Sequence[tuple[str, str]] = (), rule: str = "") -> str:
+    """Return the page as text; `more` has labels and texts for the head, `rule` says why the setting of the model was chosen.
+
+    Without the `definition` of the answer the numbers have no units, and no extremes along the beams are stated.
+    """
+    return "\n\n".join(_lines(block, response.scene) for block in _blocks(response, more, rule))
+
+
+def html(response: Response) -> str:
+    """Return the page as HTML."""
+    return "".join(_markup(block, response.scene) for block in _blocks(response))
+
+
+def _blocks(response: Response, more: Sequence[tuple[str, str]] = (), rule: str = "") -> Iterator[Block]:
+    yield Block(rows=[*_head(response, rule), *more])
+    if len(response.load_parameter):
+        page = _Page(response)
+        found = (page.reactions(), page.contacts(), page.tips(), page.extremes(), page.events())
+        yield from (block for block in found if block.rows)
+
+
+def _head(response: Response, rule: str) -> Iterator[tuple[str, str]]:
+    scene = response.definition
+    if scene is not None:
+        counts = ((len(scene.beams), "beam"), (len(scene.pins), "pin"), (len(scene.contacts), "contact pair"))
+        parts = [f"{count} {what}{'' if count == 1 else 's'}" for count, what in counts if count]
+        yield "scene", f"{', '.join(parts)}, {len(scene.times)} load parameters, units {scene.units}"
+    size = f"{response.unknowns} unknowns" if response.unknowns else ""
+    yield "model", ", ".join(filter(None, (response.model, response.setting, size)))
+    if rule:
+        yield "element", rule
+    reached = len(response.load_parameter)
+    asked = f" of {len(scene.times)}" if scene is not None else ""
+    stage = f" in stage {response.stage[-1]}" if reached and response.stage[-1] > 1 else ""
+    last = f", the last {response.load_parameter[-1]:.6g}{stage}" if reached else ""
+    yield "status", f"{response.status}: {response.message} ({reached}{asked} load parameters{last})"
+    yield "stability", stability(response)
+    judged = response.certificate
+    yield "certificate", "not judged; crossval certify judges it" if judged is None else judged.line()
+
+
+def stability(response: Response) -> str:
+    """Say in a few words where a response is stable."""
+    if response.index is None:
+        return "not stated by this model"
+    unstable, unknown = response.index > 0, response.index < 0
+    parts = []
+    if unstable.any():
+        first = response.load_parameter[np.argmax(unstable)]
+        parts.append(f"UNSTABLE from load parameter {first:.6g} on, index up to {response.index.max()}")
+    elif not unknown.all():
+        parts.append("stable")
+    if unknown.any():
+        rubbed = any(contact.friction is not None for contact in response.contacts.values())
+        what = "not judged, since a contact has friction," if rubbed else "index not defined"
+        parts.append(f"{what} at {int(unknown.sum())} of {len(unknown)} load parameters")
+    return "; ".join(parts)
+
+
+class _Page:
+    """The tables of an answer that reached a load parameter."""
+
+    def __init__(self, response: Response) -> None:
+        scene = response.definition
+        self.response, self.scene = response, scene
+        self.round_off = RoundOff() if scene is None else round_off(response, scene)
+        self.units = {} if scene is None else unit_names(scene.units)
+        self.now = f"at load parameter {response.load_parameter[-1]:.6g}"
+
+    def with_unit(self, value: float, kind: str) -> str:
+        return f"{self.round_off.text(float(value), kind)} {self.units.get(kind, '')}".rstrip()
+
+    def block(self, title: str, columns: dict[str, str], rows: Sequence[Row]) -> Block:
+        """Return a table whose columns have the kinds of their numbers by name, empty for texts."""
+
+        def cell(value: str | float, kind: str) -> str:
+            return value if isinstance(value, str) else self.round_off.text(float(value), kind)
+
+        units = {kind: f" [{unit}]" for kind, unit in self.units.items()}
+        return Block(
+            title=title,
+            columns=[name + units.get(kind, "") for name, kind in columns.items()],
+            rows=[[cell(*pair) for pair in zip(row, columns.values(), strict=True)] for row in rows],
+        )
+
+    def reactions(self) -> Block:
+        scene, response = self.scene, self.response
+        rows: list[Row] = []
+        for what, reactions, specs in (
+            ("", response.supports, () if scene is None else scene.all_supports),
+            (", spring", response.springs, () if scene is None else scene.springs),
+        ):
+            held = {spec.node: ", ".join(spec.held) for spec in specs}
+            for node, one in reactions.items():
+                rows.append((f"{node}{what}", held.get(node, ""), *one.force[-1], one.moment[-1]))
+        if len(rows) > 1:
+            rows.append(("sum", "", *(sum(float(row[k]) for row in rows) for k in (2, 3)), ""))
+        columns = {"support": "", "holds": "", "x": "force", "y": "force", "moment": "moment"}
+        return self.block(f"Reactions on the beams {self.now}", columns, rows)
+
+    def contacts(self) -> Block:
+        forces = dict.fromkeys(("force", "x", "y"), "force")
+        columns = {"contact": "", "state": "", **forces, "arc position": "length"}
+        if any(contact.friction is not None for contact in self.response.contacts.values()):
+            columns |= {"tangential": "force", "normal": "force", "dissipated": "energy"}
+        rows = []
+        for pair, contact in self.response.contacts.items():
+            x, y = (np.nan, np.nan) if contact.vector is None else contact.vector[-1]
+            row: list[str | float] = [
+                pair,
+                self._state(pair),
+                contact.force[-1],
+                x,
+                y,
+                contact.arc_position[-1],
+            ]
+            if (rubs := contact.friction) is not None:
+                row += [rubs.tangential[-1], rubs.normal[-1], rubs.dissipated[-1]]
+            rows.append(row + [""] * (len(columns) - len(row)))
+        return self.block(f"Contact forces on the beams {self.now}", columns, rows)
+
+    def _state(self, pair: str) -> str:
+        contact = self.response.contacts[pair]
+        if contact.force[-1] != 0.0 or np.isfinite(contact.arc_position[-1]):
+            return "closed" if contact.friction is None else contact.friction.states(contact.force)[-1]
+        for event in reversed(self.response.events or ()):
+            if event.pair == pair and event.kind in OPENED:
+                return f"{OPENED[event.kind]} at {event.load_parameter:.6g}"
+        if np.isfinite(contact.slip_off):
+            return f"slipped off at {contact.slip_off:.6g}"
+        forces = self._forces(pair)
+        return f"open after {forces[-1][0]:.6g}" if forces else "never touched"
+
+    def _forces(self, pair: str) -> list[tuple[float, float, float]]:
+        """Return load parameter, force and arc position of a contact where it pushes: at the load parameters and before the events."""
+        contact, events = self.response.contacts[pair], self.response.events or ()
+        found = [(one.load_parameter, one.force, one.arc_position) for one in events if one.pair == pair]
+        found += zip(self.response.load_parameter, contact.force, contact.arc_position, strict=True)
+        return sorted((one for one in found if one[1] > 0.0), key=itemgetter(0))
+
+    def tips(self) -> Block:
+        columns = {"tip": "", "x": "length", "y": "length"}
+        rows: list[Row] = [(beam, *tip[-1]) for beam, tip in self.response.tips.items()]
+        if self.scene is not None:
+            columns |= {"displacement x": "length", "displacement y": "length"}
+            ends = {f"{beam}.{self.scene.tip(beam)}": tip[-1] for beam, tip in self.response.tips.items()}
+            rows = [(end, *tip, *(tip - self.scene.place(end))) for end, tip in ends.items()]
+        return self.block(f"Tips {self.now}", columns, rows)
+
+    def extremes(self) -> Block:
+        rows = [row for pair in self.response.contacts for row in self._contact_forces(pair)]
+        columns = dict.fromkeys(("quantity", "value", "load parameter", "place"), "")
+        return self.block("Extremes over the load parameters", columns, [*rows, *self._along()])
+
+    def _contact_forces(self, pair: str) -> Iterator[Row]:
+        """Yield the first largest contact force, and the last one of a contact that is open again."""
+        forces = self._forces(pair)
+        if not forces:
+            return
+        least = (1.0 - FIRST) * max(force for _, force, _ in forces)
+        found = {"largest": next(one for one in forces if one[1] >= least)}
+        if self.response.contacts[pair].force[-1] == 0.0:
+            same = found["largest"] == forces[-1]
+            found = {"largest and last": forces[-1]} if same else {**found, "last": forces[-1]}
+        for which, (t, force, arc) in found.items():
+            place = f"arc position {self.with_unit(arc, 'length')}"
+            yield f"contact force {pair}, {which}", self.with_unit(force, "force"), f"{t:.6g}", place
+
+    def _along(self) -> Iterator[Row]:
+        along = {} if self.scene is None else extremes_along(self.response, self.scene)
+        for name, (kind, words) in ALONG.items():
+            own = {beam: extremes[name] for beam, extremes in along.items() if name in extremes}
+            if not own:
+                continue
+            values = np.array([extreme.value for extreme in own.values()])
+            sizes = np.abs(values)
+            k, b = np.argwhere((sizes >= (1.0 - FIRST) * sizes.max()).T)[0]
+            beam, value = list(own)[b], values[b, k]
+            at, place = f"{self.response.load_parameter[k]:.6g}", self._place(beam, own[beam].arc_position[k])
+            resolved = abs(value) > getattr(self.round_off, kind)
+            yield words, self.with_unit(value, kind), at if resolved else "", place if resolved else ""
+
+    def _place(self, beam: str, arc: float) -> str:
+        assert self.scene is not None, "extremes along a beam are those of a scene"
+        length = self.scene.beam(beam).length
+        if min(arc, length - arc) < FIRST * length:
+            return f"{beam}.{'start' if arc < length / 2 else 'end'}"
+        return f"{beam}, arc position {arc:.{PLACE}g} {self.units['length']}"
+
+    def events(self) -> Block:
+        stage = ("stage",) * bool(self.response.stage[-1] > 1)
+        said = ((event, self._said(event)) for event in self.response.events or ())
+        told = ((f"{one.load_parameter:.6g}", str(one.stage), words) for one, words in said if words)
+        rows = [(t, number, words) if stage else (t, words) for t, number, words in told]
+        return self.block("Events", dict.fromkeys(("load parameter", *stage, ""), ""), rows)
+
+    def _said(self, event: ContactEvent) -> str:
+        """Return an event in words; empty for one that changes nothing but the element in contact."""
+        node, _, beam = event.pair.partition("->")
+        arc, force = self.with_unit(event.arc_position, "length"), self.with_unit(event.force, "force")
+        words = EVENTS.get(event.kind, f"{event.kind} {event.pair}")
+        words = words.format(node=node, beam=beam, arc=arc, force=force)
+        released = (
+            f"; {self.with_unit(event.released, 'energy')} released" if words and event.released else ""
+        )
+        return words + released
+
+
+def _lines(block: Block, scene: str) -> str:
+    """Return a table as lines: columns of numbers, with or without units, and dashes to the right, the others to the left."""
+    rows = [block.columns, *block.rows] if block.columns else block.rows
+    columns = zip(*block.rows, strict=True)
+    right = [all(not cell or cell[0] in "-0123456789" for cell in column) for column in columns]
+    return "\n  ".join([block.title or scene, *aligned(rows, right)])
+
+
+def _markup(block: Block, scene: str) -> str:
+    from html import escape
+
+    heading = f"<h4>{escape(block.title or scene)}</h4>"
+    head = "".join(f"<th>{escape(name)}</th>" for name in block.columns)
+    body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in block.rows)
+    names = f"<thead><tr>{head}</tr></thead>" if head else ""
+    return f"{heading}<table>{names}<tbody>{body}</tbody></table>"

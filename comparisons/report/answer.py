@@ -1,0 +1,134 @@
+"""The picture of one answer: deformed shape, section forces along the beams, and forces over the load parameter."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from comparisons.answer import Response
+from comparisons.answer.quantities import forces, size
+from comparisons.answer.round_off import round_off
+from comparisons.answer.table import unit_names
+from comparisons.report import palette
+from comparisons.report.plot import WIDTH, figure, save
+from comparisons.report.sketch import ARROW, Sketch, axis
+from comparisons.report.symbols import LEFT
+from comparisons.scene import Scene
+from comparisons.version import release
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+COLOURS = (palette.BLUE, palette.ORANGE, palette.GREEN, palette.PURPLE, palette.SKY, palette.GREY)
+"""Colours of the beams, and of the forces, in turn."""
+HEIGHT, DIAGRAM, HISTORY = 3.6, 1.25, 1.9
+"""Heights of the shape, of each diagram and of the forces over the load parameter [inch]."""
+DIAGRAMS = (("N", "axial", "force"), ("V", "shear", "force"), ("M", "moment", "moment"))
+
+
+def plot_answer(response: Response, path: Path) -> None:
+    """Draw an answer to `path`, in the format of its suffix; see `picture`."""
+    save(picture(response), path)
+
+
+def picture(response: Response, scene: Scene | None = None) -> "Figure":
+    """Return the picture that `Response.plot` states; at the last load parameter at which a force acts."""
+    scene = scene or response.definition
+    if scene is None:
+        raise ValueError("scene: must be given, the answer was read from a file")
+    if not len(response.load_parameter):
+        raise ValueError(f"{response.scene}: {response.status}, no load parameter was reached")
+    diagrams = DIAGRAMS if response.sections is not None else ()
+    heights = (HEIGHT, *(DIAGRAM for _ in diagrams), HISTORY)
+    fig: Figure = figure(figsize=(WIDTH, sum(heights)))
+    shape, *panels, history = fig.subplots(len(heights), 1, height_ratios=heights)
+    k = _loaded(response, scene)
+    for axes, (name, words, kind) in zip(panels, diagrams, strict=True):
+        _diagram(axes, response, scene, name, kind, k)
+        axes.set_ylabel(f"{words} {name}\n[{unit_names(scene.units)[kind]}]", fontsize="small")
+    for axes in panels[:-1]:
+        axes.sharex(panels[-1])
+        axes.tick_params(labelbottom=False)
+    if panels:
+        panels[-1].set_xlabel(f"distance from the start of the beam [{unit_names(scene.units)['length']}]")
+        if len(scene.beams) > 1:
+            panels[0].legend(loc="best", fontsize="x-small", ncols=len(scene.beams))
+    _history(history, response, scene)
+    fig.supxlabel(f"tsm-crossval {release()}", fontsize="xx-small", x=0.99, ha="right")
+    _shape(shape, response, scene, k)
+    return fig
+
+
+def _loaded(response: Response, scene: Scene) -> int:
+    """Return the number of the last load parameter at which a contact or support force acts; of the last one if none does."""
+    least = round_off(response, scene).force
+    held = [support.force for support in response.supports.values()]
+    acting = [size(values) > least for values in (*forces(response).values(), *held)]
+    numbers = np.flatnonzero(np.any(acting, axis=0))
+    return int(numbers[-1]) if len(numbers) else len(response.load_parameter) - 1
+
+
+def _shape(axes: "Axes", response: Response, scene: Scene, k: int) -> None:
+    t, lines = float(response.load_parameter[k]), {}
+    for beam in scene.beams:
+        arcs, line = response.axis_line(beam.name, k)
+        tangent = np.gradient(line, axis=0)
+        lines[beam.name] = arcs, line, tangent @ LEFT / np.maximum(np.hypot(*tangent.T), 1e-300)[:, None]
+    title = " ".join(filter(None, (response.model, response.setting)))
+    title = f"{scene.name}, {title}: {response.status}, load parameter {t:.6g}"
+    sketch = Sketch(axes, scene, lines, title, "x-small")
+    for number, beam in enumerate(scene.beams):
+        (dashed,) = axes.plot(*axis(beam)[1].T, color="0.6", linewidth=0.9, linestyle="--")
+        _, drawn = sketch.body(beam, COLOURS[number % len(COLOURS)], 1.6)
+        sketch.legend |= {"undeformed": dashed, beam.name: drawn}
+    for pin in scene.pins:
+        at = np.array(pin.position(t))
+        sketch.disc(at, pin.radius, facecolor=palette.PIN, alpha=0.5)
+        (sketch.legend[pin.name],) = axes.plot(*at, ".", color=palette.PIN, markersize=6, zorder=5)
+    vectors = {one: response.contacts[one.pair].vector for one in scene.contacts}
+    acting = {one: vector[k] for one, vector in vectors.items() if vector is not None and vector[k].any()}
+    largest = max((float(np.hypot(*force)) for force in acting.values()), default=0.0)
+    for one, force in acting.items():
+        tip = sketch.at(one.beam, [response.contacts[one.pair].arc_position[k] / scene.beam(one.beam).length])
+        # four significant digits, without an exponent below a million
+        words = f"{float(f'{np.hypot(*force):.4g}'):.6g} {sketch.units['force']}"
+        sketch.arrows(tip, ARROW * sketch.size / largest * force, words, palette.PIN, 1.3)
+        sketch.named("contact force on the beam", palette.PIN, marker=">", markersize=4, linewidth=1.3)
+    loads = [(history.load, history.at(t)) for history in scene.load_histories]
+    sketch.loads(loads, scene.gravity_at(t))
+    sketch.symbols()
+    entries = {words.partition(" of ")[0]: entry for words, entry in sketch.legend.items()}
+    place: dict[str, Any] = {
+        "loc": "upper center",
+        "bbox_to_anchor": (0.5, -0.17),
+        "ncols": 5 if len(entries) <= 5 else 4,
+    }
+    axes.legend(entries.values(), entries, fontsize="x-small", frameon=False, labelspacing=1.2, **place)
+    sketch.separate(1)
+
+
+def _diagram(axes: "Axes", response: Response, scene: Scene, name: str, kind: str, k: int) -> None:
+    assert response.sections is not None, "diagrams are those of a model that states section forces"
+    least = getattr(round_off(response, scene), kind)
+    for number, beam in enumerate(scene.beams):
+        at, colour = response.sections(beam.name, k), COLOURS[number % len(COLOURS)]
+        values = np.where(np.abs(getattr(at, name)) > least, getattr(at, name), 0.0)
+        axes.fill_between(at.arc, values, color=colour, alpha=0.25, linewidth=0.0)
+        axes.plot(at.arc, values, color=colour, linewidth=1.2, label=beam.name)
+    axes.axhline(0.0, color="0.3", linewidth=0.6)
+    axes.grid(visible=True, linewidth=0.3)
+    axes.margins(x=0.01)
+
+
+def _history(axes: "Axes", response: Response, scene: Scene) -> None:
+    t, unit = response.load_parameter, unit_names(scene.units)["force"]
+    for number, (name, values) in enumerate(forces(response).items()):
+        colour, whole = COLOURS[number % len(COLOURS)], np.append(0.0, size(values))
+        axes.plot(np.append(0.0, t), whole, label=name, color=colour, marker=".", markersize=3, linewidth=1.2)
+    what = "contact force" if response.contacts else "reaction"
+    axes.set_xlabel("load parameter")
+    axes.set_ylabel(f"{what}\n[{unit}]", fontsize="small")
+    axes.grid(visible=True, linewidth=0.3)
+    axes.set_xlim(left=0.0)
+    axes.legend(loc="best", fontsize="x-small")

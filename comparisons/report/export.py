@@ -1,0 +1,233 @@
+"""The answers of a model as files for ParaView.
+
+A load parameter has one VTU file for each beam, one for the contacts, one for the supports, and a VTM file that names these blocks.
+The PVD file lists the load parameters.
+"""
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from comparisons.answer import Array, Grid, Response
+from comparisons.files import OutputError, alone_in, check_free, interrupts_held, move, own, staging
+from comparisons.report.symbols import fixed, inward
+from comparisons.report.vtk import read_entries, read_grid, read_units, write_blocks, write_grid, write_list
+from comparisons.scene import ContactSpec, Scene
+
+CONTACTS, SUPPORTS, HINGES = POINTS = ("contact points", "support points", "hinge points")
+"""Names of the blocks besides the beams; no beam has a name with a space."""
+DIMENSIONS = {
+    "L": "displacement deformed arc height beam_displacement gap radius", "rad": "rotation",
+    "F": "N V contact_force tangential normal reaction_force", "F L": "M dissipated reaction_moment",
+    "F/L^2": "stress_xx stress_yy stress_xy von_mises axial_stress axial_stress_right axial_stress_left",
+}  # fmt: skip
+"""The fields by their dimensions, in force F and length L; other fields are plain numbers."""
+
+
+def field_units(scene: Scene) -> dict[str, str]:
+    """Return the units of all fields in the scene's units of force and length."""
+    force, length = (unit.strip() for unit in scene.units.split(","))
+    symbols = {"F": force, "L": length}
+    return {
+        name: "".join(symbols.get(letter, letter) for letter in dimension)
+        for dimension, names in DIMENSIONS.items()
+        for name in names.split()
+    }
+
+
+def blocks(response: Response, scene: Scene, k: int) -> dict[str, Grid]:
+    """Return the grids of a load parameter by name: every beam with its fields, then those of `POINTS` that the scene has.
+
+    Every point of a beam has the index: 0 where the equilibrium is stable, -1 where it is not known. The other fields are those of
+    ``docs/how-to/paraview.md``; what a model does not state is nan.
+    """
+    grid, found = response.grid(k), {}
+    for number, beam in enumerate(scene.beams):
+        own = grid.point_data["beam"] == number
+        place = np.cumsum(own) - 1
+        cells = {kind: place[table[own[table[:, 0]]]] for kind, table in grid.cells.items()}
+        data = {name: values[own] for name, values in grid.point_data.items() if name != "beam"}
+        if response.index is not None:
+            data["index"] = np.full(own.sum(), int(response.index[k]))
+        found[beam.name] = Grid(points=grid.points[own], cells=cells, point_data=data)
+    if scene.contacts:
+        found[CONTACTS] = _contacts(response, scene, k)
+    if scene.holding:
+        found[SUPPORTS] = _ends(response, scene, k, scene.holding, _reactions(response, scene, k))
+    if scene.hinges:
+        found[HINGES] = _ends(response, scene, k, scene.hinges, {})
+    return found
+
+
+def _contacts(response: Response, scene: Scene, k: int) -> Grid:
+    """Return the nodes of the contacts: pins, and ends that touch another beam; with what acts on the beam there."""
+    start, deformed, touched, force = (
+        np.array(column)
+        for column in zip(*(_contact(response, scene, one, k) for one in scene.contacts), strict=True)
+    )
+    histories = [response.contacts[contact.pair] for contact in scene.contacts]
+    data = {
+        "beam_displacement": touched,
+        "radius": np.array([scene.radius(contact) for contact in scene.contacts]),
+        "contact_force": force,
+        "gap": np.array([history.gap[k] for history in histories]),
+    }
+    rubbed = [history.friction for history in histories]
+    for name in ("tangential", "normal", "slip", "dissipated") if any(rubbed) else ():
+        data[name] = np.array([np.nan if one is None else getattr(one, name)[k] for one in rubbed])
+    return _points(start, deformed, data)
+
+
+def _contact(response: Response, scene: Scene, contact: ContactSpec, k: int) -> tuple[Array, ...]:
+    """Return a contact's undeformed and deformed place, the displacement where it touches, of the node where it is open, and the force."""
+    name, _, end = contact.node.partition(".")
+    pin = None if end else scene.pin(name)
+    start = np.array(pin.points[0] if pin else scene.place(contact.node))
+    t = float(response.load_parameter[k])
+    deformed = np.array(pin.position(t)) if pin else _end(response, name, end, k)
+    history, moved = response.contacts[contact.pair], deformed - start
+    arc = float(history.arc_position[k])
+    if np.isfinite(arc):
+        stations, line = response.axis_line(contact.beam, k)
+        beam = scene.beam(contact.beam)
+        moved = np.array([np.interp(arc, stations, x) for x in line.T]) - beam.place(arc / beam.length)
+    if history.vector is not None:  # a model without force vectors has one pair, which the supports balance
+        return start, deformed, moved, history.vector[k]
+    return start, deformed, moved, -sum((one.force[k] for one in response.supports.values()), np.zeros(2))
+
+
+def _reactions(response: Response, scene: Scene, k: int) -> dict[str, Array]:
+    """Return force and moment of supports and springs on the beam; for pictures, what is held (1, by a spring 2) and the way into the beam."""
+    found = [response.supports.get(one.node) for one in scene.all_supports]
+    found += [response.springs.get(one.node) for one in scene.springs]
+    return {
+        "reaction_force": np.array([np.full(2, np.nan) if one is None else one.force[k] for one in found]),
+        "reaction_moment": np.array([np.nan if one is None else one.moment[k] for one in found]),
+        "held": fixed(scene),
+        "inward": np.array([inward(scene, one) for one in scene.holding]),
+    }
+
+
+def _ends(response: Response, scene: Scene, k: int, items: Any, data: dict[str, Array]) -> Grid:
+    """Return what is at the ends of beams with its displacement and other fields."""
+    start = np.array([scene.place(one.node) for one in items])
+    return _points(start, np.array([_end(response, one.beam, one.end, k) for one in items]), data)
+
+
+def _points(start: Array, deformed: Array, data: dict[str, Array]) -> Grid:
+    """Return places as a grid of points with their displacement and other fields."""
+    cells = {"vertex": np.arange(len(start)).reshape(-1, 1)}
+    moved = {"displacement": deformed - start, "deformed": deformed}
+    return Grid(points=start, cells=cells, point_data={**moved, **data})
+
+
+def _end(response: Response, beam: str, end: str, k: int) -> Array:
+    """Return the deformed position of a beam's end."""
+    return np.asarray(response.axis_line(beam, k)[1][0 if end == "start" else -1])
+
+
+def check_series(folder: Path, model: str, scene: Scene) -> None:
+    """Raise `OutputError` with the first file in the way, unless each of a series is not there yet, or is as this program wrote it."""
+    count = len(scene.beams) + sum(map(bool, (scene.contacts, scene.holding, scene.hinges)))
+    names = (name for k in range(len(scene.times)) for name in _names(model, k, count))
+    check_free(folder, *names, f"{model}.pvd")
+
+
+def _names(model: str, k: int, count: int) -> list[str]:
+    """Return the names of the VTM and the VTU files of a load parameter."""
+    # a number for a block: names of beams may differ in capitals only, which some systems do not tell apart
+    stem = f"{model}-{k + 1:04d}"
+    return [f"{stem}.vtm", *(f"{stem}-{number}.vtu" for number in range(count))]
+
+
+def write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
+    """Write the VTU files of the `blocks` and a VTM that names them, per load parameter, and ``MODEL.pvd`` that lists them.
+
+    Files of the same model that this program wrote here before are replaced, and removed where the series is shorter now.
+    Nothing is written if another file has a name of the series. All files are written to a folder aside first. A run waits while
+    another run writes into `folder`.
+
+    Returns
+    -------
+    list of Path
+        The VTM files, in the order of the load parameters.
+
+    Raises
+    ------
+    OutputError
+        If there is no room, or a file is there that this program did not write.
+    """
+    model, units = response.model, field_units(scene)
+    with alone_in(folder):
+        check_series(folder, model, scene)
+        with staging(folder) as aside:
+            files, sets = list[str](), list[str]()
+            for k in range(len(response.load_parameter)):
+                grids = blocks(response, scene, k)
+                whole, *parts = _names(model, k, len(grids))
+                for name, grid in zip(parts, grids.values(), strict=True):
+                    write_grid(aside / name, grid, units)
+                fields = {field for grid in grids.values() for field in grid.point_data}
+                there = {field: unit for field, unit in units.items() if field in fields}
+                write_blocks(aside / whole, dict(zip(grids, parts, strict=True)), there)
+                files += [*parts, whole]
+                sets.append(whole)
+            write_list(aside / f"{model}.pvd", zip(response.load_parameter.tolist(), sets, strict=True))
+            series = re.compile(re.escape(model) + r"-\d{4,}(\.vtm|-\d+\.vtu)")
+            with interrupts_held():
+                earlier = own(folder, (path.name for path in folder.iterdir() if series.fullmatch(path.name)))
+                move(aside, folder, [*files, f"{model}.pvd"])
+                # last, so that no list names a file that is gone
+                for name in earlier - set(files):
+                    (folder / name).unlink()
+    return [folder / name for name in sets]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Series:
+    """The `blocks` of a model's answer at load parameter k, its load parameters (s,), and the units of the fields by name."""
+
+    title: str
+    load_parameter: Array
+    blocks: Callable[[int], Mapping[str, Grid]]
+    units: Mapping[str, str]
+
+
+def solved_series(response: Response, scene: Scene, title: str) -> Series:
+    """Return the series of a response."""
+    return Series(
+        title=title,
+        load_parameter=response.load_parameter,
+        blocks=lambda k: blocks(response, scene, k),
+        units=field_units(scene),
+    )
+
+
+def read_series(folder: Path) -> list[Series]:
+    """Return the series of the PVD files in a folder or in the folders in it, as `write_series` writes them.
+
+    Raises
+    ------
+    OutputError
+        One line, if there is none or one cannot be read.
+    """
+    files = sorted(folder.glob("*.pvd")) or sorted(folder.glob("*/*.pvd"), reverse=True)
+    if not files:
+        raise OutputError(
+            f"{folder}: has no PVD file, `crossval solve --out` and `crossval compare` write them"
+        )
+    return [_read(path) for path in files]
+
+
+def _read(path: Path) -> Series:
+    entries = read_entries(path, "timestep")
+    return Series(
+        title=path.stem,
+        load_parameter=np.array([float(t) for t, _ in entries]),
+        blocks=lambda k: {name: read_grid(file) for name, file in read_entries(entries[k][1], "name")},
+        units=read_units(entries[0][1]) if entries else {},
+    )

@@ -1,0 +1,196 @@
+"""Sections of a page about answers: shapes under a slider with histories, bands of stick and slip."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+
+from comparisons.answer import CONTACT_STATES, SLIPS, Array, Response
+from comparisons.answer.errors import error_columns
+from comparisons.answer.quantities import QUANTITIES, size
+from comparisons.answer.table import unit_names
+from comparisons.report import palette
+from comparisons.report.pages import Section, piece, rendered
+from comparisons.report.symbols import SYMBOL, end_symbols
+from comparisons.scene import Scene
+
+POINTS = 61
+"""Points of a deformed axis."""
+ARC = 25
+"""Points of an undeformed axis that is an arc."""
+DIGITS = 5
+"""Decimals of the coordinates, over the size of the scene."""
+DASHES = ("7 3", "2 3", "9 3 2 3", "12 3", "5 2 1 2 1 2", "3 2", "9 2 2 2 2 2", "4 4", "14 2 2 2")
+"""Dashes of the lines of runs, which distinguish runs without colour."""
+INKS = {palette.BLACK: "var(--ink)", palette.GREY: "var(--grey)"}
+"""Colours of the page that are light on a dark screen, in place of black and grey."""
+HATCH = "repeating-linear-gradient(135deg,#16181d 0 1px,{} 1px 5px)"
+STATES = {**CONTACT_STATES, SLIPS[-1]: HATCH.format(CONTACT_STATES[SLIPS[-1]])}
+"""Backgrounds of the bands; one is hatched, which distinguishes it in grey print."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Track:
+    """A quantity over s load parameters: values (s,) by run, nan for none, and errors (s,)."""
+
+    title: str
+    unit: str
+    values: dict[str, Array]
+    errors: dict[str, Array] = field(default_factory=dict)
+    error_title: str = ""
+
+
+def tracks(responses: Mapping[str, Response], reference: str, scene: Scene) -> list[Track]:
+    """Return the quantities that act in some response, with errors against `reference`."""
+    units = unit_names(scene.units)
+    shown = {label: response for label, response in responses.items() if len(response.load_parameter)}
+    found = []
+    for quantity, row in QUANTITIES.items():
+        if row.drawn is None:
+            continue
+        values = {label: row.drawn(response, scene) for label, response in shown.items()}
+        errors = {
+            label: error_columns(response, responses[reference], scene, quantity)
+            for label, response in shown.items()
+            if label != reference and reference in shown
+        }
+        names = dict.fromkeys(name for one in values.values() for name in one)
+        acts = [name for name in names if any(np.nan_to_num(v.get(name, 0.0)).any() for v in values.values())]
+        found += [
+            Track(
+                title=f"{row.called(scene)} {name}" if len(acts) > 1 else row.called(scene),
+                unit=units.get(row.unit, "1"),
+                values={label: _numbers(one.get(name), shown[label]) for label, one in values.items()},
+                errors={label: one[name] for label, one in errors.items() if name in one},
+                error_title=f"error against the {reference}, over {row.relative_to}",
+            )
+            for name in acts
+        ]
+    return found
+
+
+def _numbers(values: Array | None, response: Response) -> Array:
+    """Return numbers, shape (s,): of vectors the magnitudes, and nan of a quantity that the response does not have."""
+    if values is None:
+        return np.full(len(response.load_parameter), np.nan)
+    return size(values) if values.ndim > 1 else values
+
+
+def motion_section(
+    title: str,
+    scene: Scene,
+    responses: Mapping[str, Response],
+    shown: Sequence[Track],
+    *,
+    focus: str,
+    vtu: Mapping[str, str] | None = None,
+) -> Section:
+    """Return axes under a slider, switches, histories, the tip of the run `focus`, and links of `vtu`."""
+    times = max((one.load_parameter for one in responses.values()), key=len)
+    if not len(times):
+        return Section(title, "<p>No run reached a load parameter.</p>")
+    labels = dict.fromkeys([*responses, *(label for track in shown for label in track.values)])
+    # the wide solid below, the exact answers on top
+    ordered = sorted(labels, key=lambda label: -palette.style(label).width)
+    first, ends = scene.beams[0], np.array([[beam.start, beam.end] for beam in scene.beams]).reshape(-1, 2)
+    extent = float(np.ptp(ends, axis=0).max())
+    decimals, steps = DIGITS - int(np.floor(np.log10(extent))), range(len(times))
+    axes = {label: _lines(scene, response, decimals) for label, response in responses.items()}
+    runs = [
+        {"label": label, **_line_style(label, number), "lines": axes.get(label, [])}
+        for number, label in enumerate(ordered)
+    ]
+    data = {
+        "load_parameter": times,
+        "length": {"unit": unit_names(scene.units)["length"], "beam": first.length},
+        "beams": [
+            [beam.place(part) for part in np.linspace(0.0, 1.0, ARC if beam.turn else 2)]
+            for beam in scene.beams
+        ],
+        "pins": [
+            {
+                "name": pin.name,
+                "path": pin.points,
+                "radius": pin.radius or 0.0,
+                "at": [pin.position(float(t)) for t in times],
+            }
+            for pin in scene.pins
+        ],
+        "symbols": [
+            {
+                "lines": np.round(SYMBOL * extent * one.segments, decimals),
+                "at": np.round(
+                    [one.at(_axis(scene, responses[focus], one.item.beam, k)) for k in steps], decimals
+                ),
+            }
+            for one in end_symbols(scene)
+        ],
+        "tip": responses[focus].tips[first.name],
+        "focus": focus,
+        "runs": runs,
+        "tracks": shown,
+        "vtu": vtu or {},
+    }
+    html = rendered("motion", runs=runs, tracks=shown, last=len(times) - 1)
+    return Section(title, html.rstrip("\n"), data)
+
+
+def _axis(scene: Scene, response: Response, beam: str, k: int) -> Array:
+    """Return the axis of a beam at load parameter number k or the last one reached; its ends before that."""
+    last = min(k, len(response.load_parameter) - 1)
+    if last >= 0:
+        return response.axis_line(beam, last)[1]
+    return np.array([scene.beam(beam).start, scene.beam(beam).end])
+
+
+def _line_style(label: str, number: int) -> dict[str, Any]:
+    """Colour, dashes and width."""
+    style = palette.style(label)
+    dash = "none" if style.unbroken else DASHES[number % len(DASHES)]
+    return {"colour": INKS.get(style.colour, style.colour), "dash": dash, "width": style.width}
+
+
+def _lines(scene: Scene, response: Response, decimals: int) -> list[list[Array]]:
+    """Return the deformed axes (POINTS, 2) of all beams at every load parameter, rounded to what a screen can show."""
+
+    def thinned(arc: Array, line: Array) -> Array:
+        at = np.linspace(arc[0], arc[-1], POINTS)
+        return np.asarray(np.round([np.interp(at, arc, line[:, i]) for i in (0, 1)], decimals).T)
+
+    steps = range(len(response.load_parameter))
+    return [[thinned(*response.axis_line(beam.name, k)) for beam in scene.beams] for k in steps]
+
+
+def states_section(responses: Mapping[str, Response]) -> Section | None:
+    """Return a section with one band for each run and contact with friction; None without friction."""
+    bands = {
+        f"{label}, {pair}" if len(response.contacts) > 1 else label: band(response, pair)
+        for label, response in responses.items()
+        for pair, contact in response.contacts.items()
+        if contact.friction is not None and len(response.load_parameter)
+    }
+    if not bands:
+        return None
+    last = max(parts[-1][2] for parts in bands.values())
+    return Section("Stick and slip", piece("states", bands, STATES, last))
+
+
+def band(response: Response, pair: str) -> list[tuple[str, float, float]]:
+    """Return the states of a contact in their order, each with the load parameters between which it lasts."""
+    contact, times = response.contacts[pair], response.load_parameter
+    assert contact.friction is not None, "a band belongs to a contact with friction"
+    events = [event for event in response.events or () if event.pair == pair and event.kind != "pass-through"]
+    located = sorted(event.load_parameter for event in events)
+    parts: list[tuple[str, float, float]] = []
+    begin, last = 0.0, 0
+    for state, same in groupby(contact.friction.states(contact.force)):
+        last += len(list(same))
+        end = float(times[-1])
+        if last < len(times):
+            between = [t for t in located if times[last - 1] <= t <= times[last]]
+            end = between[-1] if between else float(np.mean(times[last - 1 : last + 1]))
+        parts.append((state, begin, end))
+        begin = end
+    return parts

@@ -1,0 +1,247 @@
+"""A picture of stressed bodies: quadrilaterals with a stress, contacts with forces, supports; its scale.
+
+Beams are ribbons of their height, so that beams and solids are shown on one footing.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparisons.answer import CONTACT_STATES, OPEN, SLIPS, Array, Grid, Response
+from comparisons.report.export import CONTACTS, HINGES, POINTS, SUPPORTS, blocks
+from comparisons.report.palette import PIN
+from comparisons.report.symbols import HINGE, LEFT, SYMBOL, Segments, fixings
+from comparisons.scene import Scene
+
+Body = tuple[Array, Array]
+"""Quadrilaterals (m, 4, 2) of a deformed body, and the stress (m, 4) at their corners."""
+QUARTERS = {
+    "quad9": np.array([[0, 4, 8, 7], [4, 1, 5, 8], [8, 5, 2, 6], [7, 8, 6, 3]]),
+    "quad": np.array([[0, 1, 2, 3]]),
+}
+"""The quadrilaterals in the cells of a solid, in VTK's order of points."""
+PARTS, LAYERS = 8, (4, 8)
+"""Quadrilaterals along an element of a beam, and over its height for a stress linear in it or not."""
+THIN = 2e-3
+"""Height of a beam whose section has none, over the size of the picture."""
+ARROW, LEAST, POINT = 0.2, 0.02, 0.014
+"""Length of the longest arrow and the least length of one over the size of the picture; radius of a mark over half the size."""
+_TURN = np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False)
+CIRCLE = np.stack([np.cos(_TURN), np.sin(_TURN)], axis=-1)
+SHAFT, HEAD = np.array(
+    [
+        [[-1, -0.025], [-0.25, -0.025], [-0.25, 0.025], [-1, 0.025]],
+        [[-0.25, -0.08], [0, 0], [0, 0], [-0.25, 0.08]],
+    ]
+)
+"""The two parts of an arrow of unit length along the first axis, which ends at the origin."""
+COLOURS = {OPEN: CONTACT_STATES[OPEN], "contact": PIN, **CONTACT_STATES}
+"""Colours of contacts by their state, the open ones first, below the others; a closed one without friction is a ``contact``."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Panel:
+    """Deformed bodies as m quadrilaterals with a stress at their corners, the p nodes that touch them, and the supports.
+
+    The nodes are pins, and ends of beams that touch other beams. `radii` are zero for a point. `forces` are what they exert on the beams,
+    drawn as arrows; zero where none are to be drawn. `states` are keys of `COLOURS`. `supports` are the line segments of the symbols of
+    supports, springs and hinges.
+    """
+
+    title: str
+    quads: Array  # (m, 4, 2)
+    stress: Array  # (m, 4)
+    pins: Array  # (p, 2)
+    radii: Array  # (p,)
+    forces: Array  # (p, 2)
+    states: NDArray[np.str_]  # (p,)
+    supports: Segments  # (l, 2, 2)
+
+    def shown(self) -> list[str]:
+        """Return the states of the pins in the order of drawing."""
+        return [state for state in COLOURS if state in self.states]
+
+    def outline(self) -> list[Array]:
+        """Return points (..., 2) within which all is drawn but the arrows."""
+        reach = self.radii[:, None]
+        return [
+            part.reshape(-1, 2) for part in (self.quads, self.pins + reach, self.pins - reach, self.supports)
+        ]
+
+    def shapes(self, scale: "Scale") -> Iterator[tuple[str, float, Array]]:
+        """Yield colour, opacity and polygons (n, corners, 2) of discs, marks and arrows, from below."""
+        lengths = scale.force * np.hypot(*self.forces.T)
+        for state in self.shown():
+            own, colour = self.states == state, COLOURS[state]
+            discs, drawn = own & (self.radii > 0.0), own & (lengths > 2.0 * LEAST * scale.half)
+            yield colour, 0.35, self.pins[discs, None] + self.radii[discs, None, None] * CIRCLE
+            yield colour, 1.0, self.pins[own, None] + POINT * scale.half * CIRCLE
+            along = self.forces[drawn] / np.hypot(*self.forces[drawn].T)[:, None]
+            axes = lengths[drawn, None, None] * np.stack([along, along @ LEFT], axis=1)
+            tips = self.pins[drawn] + self.radii[drawn, None] * along
+            yield colour, 1.0, np.concatenate([tips[:, None] + part @ axes for part in (SHAFT, HEAD)])
+
+
+def mises_panel(response: Response, scene: Scene, ks: Sequence[int], title: str) -> Panel:
+    """Return the von Mises stress at the load parameters numbered `ks`, over each other, without arrows.
+
+    In a beam it is that of the rectangle with its area and second moment: ``sigma^2 = sigma_x^2 + 3 tau^2``
+    with ``sigma_x = N/A - M y/I`` and ``tau = 3/2 V/A (1 - (2 y/h)^2)``. Arrows would hide the bodies.
+    """
+    states = [blocks(response, scene, k) for k in ks]
+    for beam in scene.beams:
+        for data in (state[beam.name].point_data for state in states):
+            if "M" in data:
+                sections = np.array([beam.section(part) for part in data["arc"] / beam.length])
+                area, inertia = sections[:, 0], sections[:, 1]
+                data["height"] = np.sqrt(12.0 * inertia / area)
+                direct, bent = data["N"] / area, data["M"] * data["height"] / (2.0 * inertia)
+                data["axial_stress_right"], data["axial_stress_left"] = direct + bent, direct - bent
+                data["shear_stress"] = 1.5 * data["V"] / area
+    found = panel(states, title, stress="von_mises")
+    return replace(found, forces=0.0 * found.forces)
+
+
+def panel(
+    states: Sequence[Mapping[str, Grid]], title: str, factor: float = 1.0, *, stress: str = "axial_stress"
+) -> Panel:
+    """Return states, each as its `blocks`, over each other, with displacements enlarged by `factor`."""
+    structure = [grid for grids in states for name, grid in grids.items() if name not in POINTS]
+    size = float(np.ptp(np.concatenate([grid.points for grid in structure]), axis=0).max())
+    bodies = [
+        _solid(grid, stress, factor) if QUARTERS.keys() & grid.cells.keys() else _ribbon(grid, size, factor)
+        for grid in structure
+    ]
+    contacts = [grids[CONTACTS].point_data for grids in states if CONTACTS in grids]
+
+    def every(name: str, otherwise: float = 0.0, *more: int) -> Array:
+        parts = [data.get(name, np.full(len(data["radius"]), otherwise)) for data in contacts]
+        return np.concatenate([np.zeros((0, *more)), *parts])
+
+    forces, moved = every("contact_force", 0.0, 2), every("beam_displacement", 0.0, 2)
+    symbols = [
+        place + SYMBOL * size * symbol for grids in states for place, symbol in _symbols(grids, factor)
+    ]
+    return Panel(
+        title=title if factor == 1.0 else f"{title}, deformation x {factor:g}",
+        quads=np.concatenate([quads for quads, _ in bodies]),
+        stress=np.concatenate([values for _, values in bodies]),
+        pins=every("deformed", 0.0, 2) + (factor - 1.0) * moved,
+        radii=every("radius"),
+        forces=forces,
+        states=np.array([_state(*one) for one in zip(forces, every("slip", np.nan), strict=True)], dtype=str),
+        supports=np.concatenate([np.zeros((0, 2, 2)), *symbols]),
+    )
+
+
+def _solid(grid: Grid, stress: str, factor: float) -> Body:
+    """Return a solid's deformed body with one of its stresses."""
+    found = [grid.cells[kind][:, own].reshape(-1, 4) for kind, own in QUARTERS.items() if kind in grid.cells]
+    quads = np.concatenate(found)
+    return _enlarged(grid, factor)[quads], grid.point_data[stress][quads]
+
+
+def _enlarged(grid: Grid, factor: float) -> Array:
+    return np.asarray(grid.point_data["deformed"] + (factor - 1.0) * grid.point_data["displacement"])
+
+
+def _ribbon(grid: Grid, size: float, factor: float) -> Body:
+    """Return the ribbon of a beam's height about the cubics through its points, with their rotations if it has some."""
+    from scipy.interpolate import CubicHermiteSpline, CubicSpline
+
+    steps = np.hypot(*np.diff(grid.points, axis=0).T)
+    arc, own = np.unique(np.append(0.0, np.cumsum(steps)), return_index=True)  # a jump has two points
+    data = {name: values[own] for name, values in grid.point_data.items()}
+    start = CubicSpline(arc, grid.points[own])(arc, 1)
+    if "rotation" in data:
+        cosine, sine = np.cos(data["rotation"])[:, None], np.sin(data["rotation"])[:, None]
+        tangent = cosine * start + sine * start @ LEFT
+    else:
+        tangent = CubicSpline(arc, data["deformed"])(arc, 1)
+    curve = CubicHermiteSpline(arc, _enlarged(grid, factor)[own], start + factor * (tangent - start))
+    count = len(arc) - 1
+    at = np.interp(np.linspace(0.0, count, PARTS * count + 1), np.arange(count + 1), arc)
+    along = curve(at, 1)
+    normal = along @ LEFT / np.hypot(*along.T)[:, None]
+
+    def read(name: str) -> Array:
+        return np.asarray(np.interp(at, arc, data.get(name, 0.0 * arc)))[:, None]
+
+    half = np.where(read("height") > 0.0, read("height"), THIN * size) / 2.0
+    across = np.linspace(-1.0, 1.0, LAYERS["shear_stress" in data] + 1)
+    stress = read("axial_stress_right") * (1 - across) / 2 + read("axial_stress_left") * (1 + across) / 2
+    if "shear_stress" in data:
+        stress = np.sqrt(stress**2 + 3.0 * (read("shear_stress") * (1.0 - across**2)) ** 2)
+    points = curve(at)[:, None] + (half * across)[..., None] * normal[:, None]
+
+    def corners(values: Array) -> Array:
+        found = (values[:-1, :-1], values[1:, :-1], values[1:, 1:], values[:-1, 1:])
+        return np.stack(found, axis=2).reshape(-1, 4, *values.shape[2:])
+
+    return corners(points), corners(stress)
+
+
+def _symbols(grids: Mapping[str, Grid], factor: float) -> Iterator[tuple[Array, Segments]]:
+    """Yield the symbols of supports, springs and hinges with their places."""
+    for place in _enlarged(grids[HINGES], factor) if HINGES in grids else ():
+        yield place, HINGE
+    if SUPPORTS not in grids:
+        return
+    data = grids[SUPPORTS].point_data
+    places = _enlarged(grids[SUPPORTS], factor)
+    for place, kinds, away in zip(places, data["held"], data["inward"], strict=True):
+        yield from ((place, symbol) for _, symbol in fixings(kinds, away))
+
+
+def _state(force: Array, slip: float) -> str:
+    if not force.any():
+        return OPEN
+    return "contact" if np.isnan(slip) else str(SLIPS[int(slip)])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scale:
+    """What pictures of panels share.
+
+    The view has a centre and an `extent`, half its width and half its height. `stress` are the lowest and the
+    highest stress of the colours, with their label. `force` is the length of an arrow per force, and `arrow`
+    says what the longest one is, nothing without forces.
+    """
+
+    centre: tuple[float, float]
+    extent: tuple[float, float]
+    stress: tuple[float, float]
+    force: float
+    label: str
+    arrow: str = ""
+
+    @classmethod
+    def of(cls, panels: Sequence[Panel], label: str, unit: str = "") -> "Scale":
+        """Return the scale that shows all of `panels`, with forces in `unit`; the colours of a stress with both signs are symmetric."""
+        points = np.concatenate([part for one in panels for part in one.outline()])
+        largest = max(float(np.hypot(*one.forces.T).max(initial=0.0)) for one in panels)
+        force = ARROW * float(np.ptp(points, axis=0).max()) / (largest or 1.0)
+        points = np.concatenate([points, *(one.pins - force * one.forces for one in panels)])
+        low, high = points.min(axis=0), points.max(axis=0)
+        top = max(float(np.abs(one.stress).max()) for one in panels)
+        signed = any(float(one.stress.min()) < 0.0 for one in panels)
+        return cls(
+            centre=tuple(((low + high) / 2.0).tolist()),
+            extent=tuple(((high - low) / 2.0).tolist()),
+            stress=(-top if signed else 0.0, top),
+            force=force if largest else 0.0,
+            label=label,
+            arrow=f"longest arrow {largest:.4g} {unit}".strip() if largest else "",
+        )
+
+    @property
+    def half(self) -> float:
+        """Half the size of what is shown."""
+        return max(self.extent)
+
+    @property
+    def colours(self) -> str:
+        """Name of the colour map: from blue over grey to yellow where the stress has both signs. Its brightness grows with the stress."""
+        return "cividis" if self.stress[0] < 0.0 else "viridis"

@@ -1,0 +1,179 @@
+"""Pictures by matplotlib: what all of them share, and the overlay of deflected shapes."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from comparisons.answer import Array, Response
+from comparisons.answer.table import unit_names
+from comparisons.files import replacing
+from comparisons.models import find
+from comparisons.report import palette
+from comparisons.report.symbols import SYMBOL, draw_symbols
+from comparisons.scene import Scene
+
+SOLID = {"linewidth": 6.0, "alpha": 0.55, "solid_capstyle": "butt", "zorder": 1.8}
+EXACT = {"linewidth": 1.0}
+BEAMS: tuple[dict[str, Any], ...] = (
+    {"marker": "o", "markersize": 7.0, "markerfacecolor": "none"},
+    {"marker": "s", "markersize": 4.0, "markerfacecolor": "none"},
+    {"marker": ".", "markersize": 4.0},
+    {"marker": "^", "markersize": 4.0},
+)
+CONTINUOUS = {"linewidth": 3.5, "zorder": 1.9}
+"""Exact elements, which have no nodes to mark, below the others."""
+FINE = 5
+"""Points of an axis for each line of its grid, below which the lines are no elements but pieces of an exact one."""
+SHOWN = (0.2, 0.4, 0.6, 0.8, 1.0)
+"""Load parameters of the overlay over the scene's last; the nearest ones of the scene are drawn."""
+LABELS = 0.06
+"""Least distance of two labels of pins, over the size of the picture."""
+WIDTH = 6.3
+"""Width of a picture [inch]: 160 mm, so that letters have their size in points on paper, and are legible on a telephone."""
+PIXELS = 1400
+"""Least width of a picture in pixels."""
+
+
+def figure(**options: Any) -> Any:
+    """Return a matplotlib figure that needs no display."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    result = Figure(layout="constrained", **options)
+    FigureCanvasAgg(result)
+    return result
+
+
+def save(fig: Any, *paths: Path) -> None:
+    """Write the figure to `paths`, in the formats of their suffixes; it is laid out once."""
+    fig.draw_without_rendering()
+    fig.set_layout_engine("none")
+    for path in paths:
+        with replacing(path) as temporary:
+            fig.savefig(temporary, dpi=max(150.0, PIXELS / fig.get_figwidth()))
+
+
+def arrow(axes: Any, tail: Array, tip: Array, colour: str, width: float = 1.2) -> None:
+    """Draw an arrow above all else; the axes reach to its ends."""
+    style = {"arrowstyle": "-|>", "color": colour, "linewidth": width, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", tip, tail, arrowprops=style, zorder=6)
+    axes.update_datalim([tail, tip])
+
+
+def logarithmic(axes: Any) -> None:
+    """Make both axes of a panel logarithmic, with a grid."""
+    axes.set(xscale="log", yscale="log")
+    axes.grid(visible=True, linewidth=0.3)
+
+
+def draw_legend(fig: Any, panels: Sequence[Any], place: str) -> None:
+    """Draw one legend for all panels: one entry for each label, with a filled marker where it has one."""
+    entries: dict[str, Any] = {}
+    for axes in panels:
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            if label not in entries or entries[label].get_markerfacecolor() == "none":
+                entries[label] = handle
+    fig.legend(list(entries.values()), list(entries), loc=place, ncols=3, fontsize="small", frameon=False)
+
+
+def nearest_steps(load_parameter: Array, last: float = 1.0) -> list[int]:
+    """Return the numbers of the load parameters nearest to those of `SHOWN` on the way to `last`, each once."""
+    return sorted({int(np.argmin(np.abs(load_parameter - part * last))) for part in SHOWN})
+
+
+def plot_shapes(scene: Scene, responses: dict[str, Response], *paths: Path) -> None:
+    """Draw axes by label over each other, as Fig. 8 of the paper, with the last tip enlarged."""
+    fig = figure(figsize=(WIDTH, 7.4))
+    places = fig.subplot_mosaic([["whole", "whole"], ["detail", "legend"]])
+    whole, detail = places["whole"], places["detail"]
+    reached = {label: response for label, response in responses.items() if len(response.load_parameter)}
+    for axes in (whole, detail):
+        _draw_shapes(axes, scene, reached)
+        axes.set_aspect("equal", adjustable="box")
+        axes.grid(visible=True, linewidth=0.3)
+    last = next(reversed(reached.values()), None)
+    symbols = {}
+    if last is not None:
+        lines = {beam.name: last.axis_line(beam.name, -1)[1] for beam in scene.beams}
+        symbols = draw_symbols(whole, scene, lines, SYMBOL * max(whole.dataLim.width, whole.dataLim.height))
+    length = unit_names(scene.units)["length"]
+    whole.set(xlabel=f"x [{length}]", ylabel=f"y [{length}]", title=f"{scene.name}: deflected axes")
+    whole.margins(0.06)
+    tall = float(np.clip(0.85 * WIDTH * whole.dataLim.height / max(whole.dataLim.width, 1e-300), 1.2, 5.5))
+    whole.get_gridspec().set_height_ratios((tall + 0.8, 2.8))
+    fig.set_figheight(tall + 3.6)
+    if last is not None:
+        _zoom_on_tip(whole, detail, scene, last)
+    places["legend"].set_axis_off()
+    handles, words = whole.get_legend_handles_labels()
+    entries = ([*handles, *symbols.values()], [*words, *symbols])
+    places["legend"].legend(*entries, loc="center", fontsize="small", frameon=False)
+    save(fig, *paths)
+
+
+def _draw_shapes(axes: Any, scene: Scene, responses: dict[str, Response]) -> None:
+    beam_styles = iter(BEAMS * len(responses))
+    drawn: set[float] = set()
+    for label, response in responses.items():
+        style = {"color": palette.colour(label), **_style(response, scene, beam_styles)}
+        for k in nearest_steps(response.load_parameter, scene.times[-1]):
+            drawn.add(float(response.load_parameter[k]))
+            for beam in scene.beams:
+                _, line = response.axis_line(beam.name, k)
+                if "marker" in style:
+                    style["markevery"] = max(1, (len(line) - 1) // _elements(response, scene, k))
+                axes.plot(*line.T, label=label, **{"linewidth": 0.8, **style})
+                label = "_"  # noqa: PLW2901 one entry of the legend per response
+    apart = LABELS * max(axes.dataLim.width, axes.dataLim.height)
+    first = next((one for one in scene.pins if one.moving), None)
+    for number, pin in enumerate(scene.pins):
+        path = "path of a pin" if pin is first else "_"
+        axes.plot(*np.array(pin.points).T, color="0.5", linewidth=0.8, linestyle=":", label=path)
+        places = {t: np.array(pin.position(t)) for t in sorted(drawn)}
+        _draw_places(axes, places, "_pin" if number else "pin", apart)
+
+
+def _draw_places(axes: Any, places: dict[float, Array], label: str, apart: float) -> None:
+    """Mark the places of a pin by load parameter, and name those that lie apart."""
+    mark = {"linestyle": "none", "marker": "*", "markersize": 9, "color": "0.2", "zorder": 5}
+    axes.plot(*np.array(list(places.values())).reshape(-1, 2).T, label=label, **mark)
+    last = None
+    for t, place in places.items():
+        if last is None or np.hypot(*(place - last)) > apart:
+            words = {"textcoords": "offset points", "fontsize": "small", "clip_on": True, "zorder": 6}
+            ground = {"facecolor": "white", "alpha": 0.75, "linewidth": 0.0, "pad": 0.5}
+            axes.annotate(f"t = {t:.3g}", place, (6, -11), bbox=ground, **words)
+            last = place
+
+
+def _style(response: Response, scene: Scene, beam_styles: Iterator[dict[str, Any]]) -> dict[str, Any]:
+    """Return the line of a model; beams with few elements take the next marker, which marks their nodes."""
+    model = find(response.model)
+    if not model.meshed:
+        return EXACT
+    if model.continuum:
+        return SOLID
+    points = len(response.axis_line(scene.beams[0].name, 0)[1])
+    return CONTINUOUS if FINE * _elements(response, scene, 0) > points else next(beam_styles)
+
+
+def _elements(response: Response, scene: Scene, k: int) -> int:
+    return len(response.grid(k).cells["line"]) // len(scene.beams)
+
+
+def _zoom_on_tip(whole: Any, detail: Any, scene: Scene, exact: Response) -> None:
+    """Show the surroundings of the last tip of a response: the models differ by a fraction of the line width."""
+    beam = scene.beams[0]
+    x, y = exact.tips[beam.name][-1]
+    half = 0.02 * beam.length
+    detail.set(
+        xlim=(x - half, x + half),
+        ylim=(y - half, y + half),
+        title=f"The framed tip, t = {exact.load_parameter[-1]:.3g}",
+    )
+    detail.ticklabel_format(useOffset=False)
+    detail.locator_params(nbins=3)
+    box = whole.indicate_inset(bounds=(x - half, y - half, 2.0 * half, 2.0 * half), edgecolor="0.3")
+    box.rectangle.set_zorder(4)

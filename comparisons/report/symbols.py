@@ -1,0 +1,162 @@
+"""Symbols of mechanics as line segments of unit size: supports by what they hold, springs, hinges, moments as arcs.
+
+Every symbol has its node at the origin. A picture turns, enlarges and moves its segments, so that the same symbols are drawn by
+matplotlib and by pyvista, and stand in a legend.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparisons.answer import Array
+from comparisons.answer.table import unit_names
+from comparisons.report import palette
+from comparisons.scene import HingeSpec, Scene, SpringSpec, SupportSpec
+from comparisons.scene.conditions import COMPONENTS
+
+Segments = NDArray[np.float64]
+"""Line segments, shape (n, 2, 2)."""
+SYMBOL = 0.03
+"""Size of a symbol over the size of a picture."""
+LARGEST = 13.0
+"""Largest size of a symbol in a legend, so that it stays in its row [point]."""
+LEFT = np.array([[0.0, 1.0], [-1.0, 0.0]])
+"""Turns rows of tangents to the left."""
+HATCHES = 5
+"""Strokes below a ground."""
+
+
+def chain(points: Any) -> Segments:
+    """Return the segments between neighbouring points."""
+    points = np.asarray(points, dtype=float)
+    return np.stack([points[:-1], points[1:]], axis=1)
+
+
+def arc(turn: float, points: int = 25, part: float = 0.75) -> Array:
+    """Return a part of a unit circle about the node, shape (points, 2), in the sense of `turn`, anticlockwise if positive."""
+    angle = np.linspace(-part * np.pi, part * np.pi, points)[:: 1 if turn > 0.0 else -1]
+    return np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+
+def _ground(y: float, half: float) -> Segments:
+    """Return a line with hatches below it."""
+    hatches = [((at, y), (at - 0.3, y - 0.35)) for at in np.linspace(-half, half, HATCHES + 1)[1:].tolist()]
+    return np.array([((-half, y), (half, y)), *hatches])
+
+
+_TRIANGLE = chain([(0, 0), (-0.6, -1), (0.6, -1), (0, 0)])
+_ROLLER = np.concatenate([_TRIANGLE, _ground(-1.25, 0.9)])
+_GUIDE = np.concatenate(
+    [chain([(-0.9, 0), (0.9, 0)]), chain([(-0.9, -0.25), (0.9, -0.25)]), _ground(-0.25, 0.9)]
+)
+_SQUARE = chain([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5)])
+_COIL = chain([(0, 0), (0, -0.4), (0.4, -0.6), (-0.4, -1), (0.4, -1.4), (-0.4, -1.8), (0, -2), (0, -2.4)])
+_SPRING = np.concatenate([_COIL, _ground(-2.4, 0.7)])
+_ANGLE = np.linspace(0.0, 4.0 * np.pi, 41)
+_SPIRAL = chain((0.25 + 0.15 * _ANGLE / np.pi)[:, None] * np.stack([np.cos(_ANGLE), np.sin(_ANGLE)], axis=1))
+HINGE = chain(0.35 * arc(1.0, points=17, part=1.0))
+SUPPORTS: dict[tuple[str, ...], tuple[str, Segments]] = {
+    ("x", "y", "rotation"): ("clamped", _ground(0.0, 1.0)),
+    ("x", "y"): ("pinned", np.concatenate([_TRIANGLE, _ground(-1.0, 0.9)])),
+    ("y",): ("roller, free in x", _ROLLER),
+    ("x",): ("roller, free in y", _ROLLER),
+    ("y", "rotation"): ("guided, free in x", _GUIDE),
+    ("x", "rotation"): ("guided, free in y", _GUIDE),
+    ("rotation",): ("rotation held", _SQUARE),
+}
+"""Names and symbols of supports by the components that they hold."""
+
+
+def _turned(segments: Segments, held: tuple[str, ...], away: Array) -> Segments:
+    """Return segments turned such that their second axis points from the ground to the node: along the beam at a clamp, else along an axis."""
+    up = away
+    if held != COMPONENTS:
+        up = np.array([1.0, 0.0] if held in (("x",), ("x", "rotation")) else [0.0, 1.0])
+        up = -up if away @ up < -0.5 else up
+    return np.asarray(segments @ np.array([[up[1], -up[0]], [up[0], up[1]]]))
+
+
+def fixings(kinds: Iterable[int], away: Array) -> Iterator[tuple[tuple[str, ...], Segments]]:
+    """Yield the symbols at an end of supports (kind 1) and springs (kind 2); `away` points into the beam."""
+    named = list(zip(COMPONENTS, kinds, strict=True))
+    held = tuple(name for name, kind in named if kind == 1)
+    if held:
+        yield held, _turned(SUPPORTS[held][1], held, away)
+    for name in (name for name, kind in named if kind == 2):
+        yield (name,), _SPIRAL if name == "rotation" else _turned(_SPRING, (name,), away)
+
+
+def fixed(scene: Scene) -> NDArray[np.int64]:
+    """Return the kinds of `fixings`, shape (n, 3), of everything in `scene.holding`."""
+    kinds = [1] * len(scene.all_supports) + [2] * len(scene.springs)
+    held = [[name in one.held for name in COMPONENTS] for one in scene.holding]
+    return np.asarray(np.array(kinds)[:, None] * np.array(held).reshape(-1, 3))
+
+
+class Symbol(NamedTuple):
+    """The symbol of what is at a beam's end: segments (n, 2, 2) of unit size about the node, and its words."""
+
+    item: SupportSpec | SpringSpec | HingeSpec
+    words: str
+    segments: Segments
+
+    def at(self, line: Array) -> Array:
+        """Return the place of the node on its beam's deformed axis, a line of shape (m, 2)."""
+        return np.asarray(line[0 if self.item.end == "start" else -1])
+
+
+def end_symbols(scene: Scene) -> list[Symbol]:
+    """Return the symbols of the supports, springs and hinges of a scene."""
+    units = unit_names(scene.units)
+    stiff = f"{units['moment']}/rad"
+    found = []
+    for one, kinds in zip(scene.holding, fixed(scene), strict=True):
+        for names, segments in fixings(kinds, inward(scene, one)):
+            words = SUPPORTS[names][0]
+            if isinstance(one, SpringSpec):
+                stiffness = dict(zip(COMPONENTS, (*one.stiffness, one.rotation), strict=True))[names[0]]
+                unit = stiff if names == ("rotation",) else f"{units['force']}/{units['length']}"
+                words = f"spring of {stiffness:.6g} {unit} in {names[0]}"
+            found.append(Symbol(one, words, segments))
+    for hinge in scene.hinges:
+        words = f"hinge with a spring of {hinge.stiffness:.6g} {stiff}" if hinge.stiffness else "hinge"
+        found.append(Symbol(hinge, words, HINGE))
+    return found
+
+
+def draw_symbols(axes: Any, scene: Scene, lines: Mapping[str, Array], size: float) -> dict[str, Any]:
+    """Draw the symbols at the ends of axes (m, 2) by beam; return their entries in a legend."""
+    from matplotlib.collections import LineCollection
+
+    symbols = end_symbols(scene)
+    for one in symbols:
+        drawn = one.at(lines[one.item.beam]) + size * one.segments
+        axes.add_collection(LineCollection(list(drawn), colors=palette.BLACK, linewidths=1.0, zorder=4))
+        axes.update_datalim(drawn.reshape(-1, 2))
+    return {one.words: legend_symbol(one.segments) for one in symbols}
+
+
+def legend_symbol(segments: Segments, colour: str = palette.BLACK) -> Any:
+    """Return an entry of a legend that shows segments of unit size."""
+    from matplotlib.lines import Line2D
+    from matplotlib.path import Path
+
+    vertices = segments.reshape(-1, 2)
+    vertices = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2
+    marker = Path(vertices, [Path.MOVETO, Path.LINETO] * len(segments))
+    size = min(13 * float(np.abs(vertices).max()), LARGEST)  # matplotlib enlarges all markers to one size
+    style: dict[str, Any] = {
+        "marker": marker,
+        "markersize": size,
+        "markerfacecolor": "none",
+        "linestyle": "none",
+    }
+    return Line2D([], [], color=colour, **style)
+
+
+def inward(scene: Scene, support: SupportSpec | SpringSpec) -> Array:
+    """Return the unit vector from a support or a spring into its beam."""
+    beam = scene.beam(support.beam)
+    return np.array(beam.tangent(0.0)) if support.end == "start" else -np.array(beam.tangent(1.0))

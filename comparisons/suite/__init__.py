@@ -1,0 +1,10 @@
+"""Suites: cases, the rows that they become, where they run, files of results, and studies as files."""
+
+from comparisons.suite.case import Case
+from comparisons.suite.measure import Row, measure
+
+__all__ = ["Case", "Row", "measure"]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,245 @@
+"""Rows: a case with its answer, what it cost, and its errors."""
+
+import ctypes
+import gc
+import json
+import statistics
+import subprocess
+import sys
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from importlib import import_module
+from math import nan
+from os import times
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from time import process_time
+from typing import Any
+
+import numpy as np
+
+from comparisons.answer import Response
+from comparisons.answer.axis import storable
+from comparisons.answer.errors import Errors, error_histories, largest
+from comparisons.answer.file import as_dict, restated
+from comparisons.answer.quantities import SCOPES
+from comparisons.models import certified, find, solve
+from comparisons.models.options import ModelError
+from comparisons.output import plain
+from comparisons.referee import Verdict
+from comparisons.scene import to_toml
+from comparisons.suite.case import Case
+
+REFUSED = "REFUSED"
+REFUSALS = {verdict.name for verdict in Verdict} - {Verdict.CERTIFIED.name, Verdict.NOT_JUDGED.name}
+"""Verdicts by which the referee refuses an answer."""
+SLOW = 10.0
+"""Time of a run [s] above which the first run is the measurement, without a warm-up."""
+STORED = ("seconds", "repeats", "peak_memory", "verdict", "process_seconds")
+"""What is kept of a row besides its answer."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Row:
+    """A case with its answer, its cost and its errors.
+
+    Attributes
+    ----------
+    case : Case
+        What was solved.
+    response : Response
+        The answer, up to the last load parameter reached; ``REFUSED`` if the model cannot state the scene.
+        That of `measure` is storable, has no wall time, and has no axes if no run is timed.
+    seconds : float
+        Processor time from the scene to the checked response without imports [s]: the median over `repeats`
+        runs after a warm-up, nan if no run is timed. On one thread it is the wall time on an idle core.
+    repeats : int
+        Number of timed runs; one, without a warm-up, where the first run took more than 10 s.
+    peak_memory : int
+        Largest rise of the process's resident memory in the first run [byte]; zero but on Linux.
+    verdict : str
+        Verdict of the certificate for the last load parameter and the neighbours of events; empty if none was
+        reached or no run is timed.
+    process_seconds : float
+        Processor time of a whole process of ``crossval solve`` without certificate [s]; nan if it was not asked for.
+    errors, own_errors : Errors, optional
+        Errors by scope and quantity against the reference, which has none, and against the model's limit.
+    name : str
+        Label of the run, if not that of the case.
+    cause : str
+        Largest part of the error that theory allows the model; empty where theory has no estimate.
+    """
+
+    case: Case
+    response: Response
+    seconds: float = nan
+    repeats: int = 0
+    peak_memory: int = 0
+    verdict: str = ""
+    process_seconds: float = nan
+    errors: Errors | None = None
+    own_errors: Errors | None = None
+    name: str = ""
+    cause: str = ""
+
+    @property
+    def label(self) -> str:
+        """Label of the run."""
+        return self.name or self.case.label
+
+    @property
+    def family(self) -> str:
+        """What the runs that differ in resolution only share."""
+        return self.case.family
+
+    @property
+    def resolution(self) -> float:
+        """Number of elements along a beam; nan without a mesh, or where the scene gives the number."""
+        return self.case.resolution
+
+    @property
+    def stable(self) -> str:
+        """Yes, no, a dash where no index is stated, or that it is at a part of the load parameters."""
+        index = self.response.index
+        if index is None or not np.any(index >= 0):
+            return "-"
+        return "no" if np.any(index > 0) else "yes" if np.all(index >= 0) else "in part"
+
+    @property
+    def wrong(self) -> bool:
+        """Whether the model reported success and its answer was refused by the checks or the referee."""
+        response = self.response
+        return response.false_success or (response.reported_success and self.verdict in REFUSALS)
+
+    @property
+    def outcome(self) -> str:
+        """``certified``, ``wrong`` for a refused answer that was reported as a success, or a stop's status."""
+        if self.wrong:
+            return "wrong"
+        if not self.response.completed:
+            return self.response.status
+        return self.verdict.lower().replace("_", " ") or "no verdict"
+
+    def against(self, reference: Response, quantities: Sequence[str]) -> "Row":
+        """Return the row with its errors as far as both answers came; of ``end`` at the reference's last state."""
+        response = self.response
+        if not np.isin(response.load_parameter, reference.load_parameter).any():
+            return replace(self, errors={scope: dict.fromkeys(quantities, nan) for scope in SCOPES})
+        shared, found = error_histories(response, reference, self.case.scene, quantities=quantities)
+        ends = {"end": shared == reference.load_parameter[-1], "path": slice(None)}
+        errors = {scope: {name: largest(found[name][at]) for name in found} for scope, at in ends.items()}
+        return replace(self, errors=errors)
+
+    def error(self, scope: str, quantity: str, *, own: bool = False) -> float:
+        """Return an error against the reference, or against the model's limit; nan where it is not known."""
+        errors = self.own_errors if own else self.errors
+        return nan if errors is None else errors[scope][quantity]
+
+    def spent(self, cost: str) -> float:
+        """Return the ``seconds``, the ``iterations`` or the ``unknowns``."""
+        return float(getattr(self if cost == "seconds" else self.response, cost))
+
+    def cost(self) -> dict[str, float]:
+        """Return the columns of all costs."""
+        own = {name: getattr(self.response, name) for name in ("iterations", "cutbacks", "unknowns")}
+        return own | {name: getattr(self, name) for name in ("seconds", "repeats", "peak_memory")}
+
+    def to_json(self) -> str:
+        """Return what was measured as JSON text, after what the case is; null for what is not finite."""
+        numbers = {name: getattr(self, name) for name in STORED}
+        data = {**self.case.description, **numbers, "response": as_dict(self.response)}
+        return json.dumps(plain(data), allow_nan=False)
+
+    @classmethod
+    def from_json(cls, case: Case, text: str) -> "Row":
+        """Return the row that `to_json` wrote, every number the same."""
+        data: dict[str, Any] = json.loads(text)
+        numbers: dict[str, Any] = {name: nan if data[name] is None else data[name] for name in STORED}
+        return cls(case=case, response=restated(data["response"]), **numbers)
+
+
+def measure(case: Case, *, repeats: int = 3, process: bool = False) -> Row:
+    """Solve `case` once to warm up, then `repeats` times with the clock on; if `repeats` is zero, the first time counts.
+
+    With `process` a whole process of ``crossval solve`` is timed in addition.
+
+    A solution that stops is measured like any other. A scene that the model refuses has the status ``REFUSED``. Neither raises.
+    """
+    for library in find(case.model).libraries:
+        import_module(library)
+    try:
+        (response, first), peak = _with_peak_memory(lambda: _timed(case))
+    except ModelError as error:
+        return unmeasured(case, REFUSED, str(error))
+    seconds = [first] if first > SLOW or not repeats else [_timed(case)[1] for _ in range(repeats)]
+    return Row(
+        case=case,
+        response=storable(replace(response, wall_seconds=nan), axes=repeats > 0),
+        seconds=statistics.median(seconds),
+        repeats=len(seconds),
+        peak_memory=peak,
+        verdict=verdict(certified(response, case.scene)) if repeats else "",
+        process_seconds=_process_seconds(case) if process else nan,
+    )
+
+
+def _process_seconds(case: Case) -> float:
+    """Processor time of ``crossval solve`` in a process of its own [s]; nan where the system does not count it."""
+    command = [sys.executable, "-c", "from comparisons.cli import main; main()", "solve"]
+    words = ["--model", case.model, "--certify", "none", "--quiet"]
+    for name, value in vars(case.options).items():
+        if value is not None:
+            text = "x".join(map(str, value)) if isinstance(value, tuple) else str(value)
+            words += ["--" + name.replace("_", "-"), text]
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / f"{case.scene.name}.toml"
+        file.write_text(to_toml(case.scene), encoding="utf-8")
+        before = times()
+        subprocess.run([*command, str(file), *words], capture_output=True, check=False)  # noqa: S603 - this program
+        after = times()
+    spent = after.children_user + after.children_system - before.children_user - before.children_system
+    return spent or nan
+
+
+def verdict(response: Response) -> str:
+    """Return the verdict of an answer's certificate; empty without one."""
+    return "" if response.certificate is None else response.certificate.verdict.name
+
+
+def _timed(case: Case) -> tuple[Response, float]:
+    began = _processor_seconds()
+    response = solve(case.scene, case.model, case.options)
+    return response, _processor_seconds() - began
+
+
+def _processor_seconds() -> float:
+    """Processor time of this process, and of child processes that have ended, which programs of others are [s]."""
+    now = times()
+    return process_time() + now.children_user + now.children_system
+
+
+def _with_peak_memory(action: Callable[[], tuple[Response, float]]) -> tuple[tuple[Response, float], int]:
+    """Return what `action` returns, and by how many bytes the memory rose: Linux can reset its peak."""
+    if sys.platform != "linux":
+        return action(), 0
+    gc.collect()
+    with suppress(AttributeError):  # not every C library can give freed memory back to the system
+        ctypes.CDLL(None).malloc_trim(0)
+    try:
+        Path("/proc/self/clear_refs").write_text("5")
+    except OSError:
+        return action(), 0
+    start = _kibibytes("VmRSS")
+    return action(), 1024 * max(_kibibytes("VmHWM") - start, 0)
+
+
+def _kibibytes(field: str) -> int:
+    """Return a field of the process's status."""
+    values = dict(line.split(":", 1) for line in Path("/proc/self/status").read_text().splitlines())
+    return int(values[field].split()[0])
+
+
+def unmeasured(case: Case, status: str, message: str) -> Row:
+    """Return the row of a case that gave neither answer nor cost, and why."""
+    return Row(case=case, response=storable(Response(status=status, message=message)))

@@ -1,0 +1,85 @@
+"""The settings of a case by the names of a study file: ``elements``, ``scene.load_parameters``, ``beam.upper.height``."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from comparisons.output import plain
+from comparisons.scene import LoadSpec, Scene, to_tables
+from comparisons.scene.read import HEAD, LISTS
+from comparisons.scene.rules import FieldError, RecordError
+from comparisons.scene.tables import check_keys
+from comparisons.suite.case import Case
+
+Path = tuple[str, ...]
+"""Where a setting stands: ``("scene", "load_parameters")``, ``("beam", "height")`` for every beam, ``("beam", "upper", "height")``."""
+Changes = Mapping[Path, object]
+"""New values of settings; None takes a key away."""
+Table = dict[str, Any]
+
+
+def _named(kind: str, records: list[Table]) -> dict[str, Table]:
+    """Return records by their names in a study file; the number from 2 on of a stage without one."""
+    name_of = {
+        "contact": lambda record: f"{record['node']}->{record['beam']}",
+        "load": lambda record: LoadSpec(**record).node,
+        **dict.fromkeys(("support", "hinge", "spring"), lambda record: f"{record['beam']}.{record['end']}"),
+    }
+    if kind in name_of:
+        return {name_of[kind](record): record for record in records}
+    return {str(record.get("name") or number): record for number, record in enumerate(records, 2)}
+
+
+def _places(tables: Table, path: Path, value: object) -> Iterator[tuple[str, Table]]:
+    """Yield the tables that a setting changes with their places in a scene file; `FieldError` for none."""
+    kind, *name, key = path
+    given: Table = {name[0]: {key: value}} if name else {key: value}
+    records = _named(kind, tables.get(kind, [])) if kind in LISTS else {"": tables["scene"]}
+    mistakes = list(check_keys({kind: given}, ("scene", *LISTS)))
+    if records and (kind == "scene" or name):
+        known = records if kind in LISTS else () if name else HEAD
+        mistakes += (item.within(f"{kind}.") for item in check_keys(given, known))
+    if mistakes:
+        raise RecordError(mistakes)
+    for number, (own, record) in enumerate(records.items()):
+        if not name or own == name[0]:
+            yield kind if kind == "scene" else f"{kind}[{number}]", record
+
+
+def changed(scene: Scene, changes: Changes) -> Scene:
+    """Return a scene with changed settings, named records last; one `FieldError` for all mistakes.
+
+    A setting of all records of a kind changes nothing where the scene has none.
+    """
+    tables: Table = to_tables(scene)
+    stated, mistakes = dict[str, str](), list[FieldError]()
+    for path, value in sorted(changes.items(), key=lambda item: len(item[0])):
+        try:
+            for place, record in _places(tables, path, value):
+                record[path[-1]] = value
+                stated[f"{place}.{path[-1]}"] = ".".join(path)
+                if value is None:
+                    del record[path[-1]]
+        except FieldError as error:
+            mistakes += error.mistakes
+    lists = {f"{kind}s": tables[kind] for kind in LISTS if kind in tables}
+    try:
+        if not mistakes:
+            return Scene(**tables["scene"], **lists)
+    except FieldError as error:
+        for item in error.mistakes:
+            key = f"scene.{item.key}" if item.key in HEAD else item.key
+            mistakes.append(FieldError(stated.get(key, key), item.value, item.rule))
+    raise RecordError(mistakes)
+
+
+def settings(case: Case) -> dict[str, object]:
+    """Return the settings of a case by key; the key omits the record's name if the scene has only one of its kind."""
+    tables = plain(to_tables(case.scene))
+    found = {name: plain(value) for name, value in vars(case.options).items() if value is not None}
+    found |= {f"scene.{key}": value for key, value in tables["scene"].items() if key != "name"}
+    for kind in LISTS:
+        records = tables.get(kind, [])
+        for name, record in _named(kind, records).items():
+            place = kind if len(records) == 1 else f"{kind}.{name}"
+            found |= {f"{place}.{key}": value for key, value in record.items()}
+    return found

@@ -1,0 +1,268 @@
+"""One scene through every model: table, pictures and files."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+import tsm
+from comparisons import models
+from comparisons.answer import Response
+from comparisons.answer.file import as_dict
+from comparisons.answer.quantities import event_differences, names
+from comparisons.answer.table import unit_names
+from comparisons.files import alone_in, writable_folder, write_text
+from comparisons.models import Model, certified, find, solve
+from comparisons.models.options import ModelError, Options
+from comparisons.models.progress import Count, Watch, uncounted, unwatched
+from comparisons.models.theory import bending
+from comparisons.output import Report, json_text
+from comparisons.report.budget_plot import budget_section, plot_budget, write_budget
+from comparisons.report.export import check_series, write_series
+from comparisons.report.findings import BUDGET, findings
+from comparisons.report.motion import motion_section, states_section, tracks
+from comparisons.report.pages import Section, picture, table, write_page
+from comparisons.report.palette import style
+from comparisons.report.panel import mises_panel
+from comparisons.report.plot import nearest_steps, plot_shapes
+from comparisons.report.render import NoOpenGLError, write_picture
+from comparisons.report.table import caption, line, table_csv
+from comparisons.scene import Scene, to_toml
+from comparisons.scene.keys import special_keys
+from comparisons.suite import Case, Row
+from comparisons.suite.budget import Budget, error_budget
+from comparisons.suite.measure import verdict
+from comparisons.version import versions
+from tsm.elements import TIMOSHENKO, ElementType
+
+Watching = Callable[[str], AbstractContextManager[Watch]]
+Staging = Callable[[str], AbstractContextManager[Count]]
+
+
+@dataclass(frozen=True)
+class Run:
+    """One model with its options, whatever the scene."""
+
+    label: str
+    model: str
+    options: Options
+
+    def case(self, scene: Scene) -> Case:
+        """Return the run of a scene."""
+        return Case(scene=scene, model=self.model, options=self.options)
+
+
+def run_of(model: Model, options: Options) -> Run:
+    """Return the run of a model with its label."""
+    return Run(label=model.run_label(options), model=model.name, options=options)
+
+
+def _beams(kind: ElementType, elements: int) -> Run:
+    return run_of(models.TSM, Options(element=kind.name, elements=elements))
+
+
+RUNS = tuple(
+    run_of(model, options)
+    for model in sorted(models.MODELS.values(), key=lambda model: (not model.meshed) * (1 + model.rod))
+    for options in model.compared()
+)
+"""The runs of a comparison, by the settings that each model states: models with a mesh first, the exact rod last."""
+PAPER = tuple(_beams(TIMOSHENKO, elements) for elements in (10, 20, 50))
+"""The paper's element."""
+MIXED = _beams(tsm.elements.MIXED, 20)
+SOLID, ROD, ELASTICA = (run_of(model, Options()) for model in (models.SOLID, models.ROD, models.ELASTICA))
+EXPORTED = (MIXED, SOLID)
+"""The beams and the solid that are exported and rendered."""
+DRAWN = tuple(
+    sorted((run for run in RUNS if run not in (MIXED, ELASTICA)), key=lambda run: -style(run.label).width)
+)
+"""The runs whose deflected axes are drawn over each other: the widest line first, the exact rod on top."""
+BRANCH = ("force", "moment", "tip")
+NAMES = ("report.html", "summary.json", "table.csv", "shapes.png", "shapes.svg", "side-by-side.png", "budget.png", "budget.svg", "budget.json")  # fmt: skip
+"""The files beside those of ParaView."""
+APART = 0.5
+"""Error of one of these quantities beyond which two answers are different equilibria."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Comparison:
+    """Result of a comparison: rows, the budget, who is left out and why by family, and the files written."""
+
+    scene: Scene
+    rows: list[Row]
+    budget: Budget | None
+    left_out: Mapping[str, str]
+    files: list[Path] = field(default_factory=list)
+
+    @property
+    def responses(self) -> dict[str, Response]:
+        """The answers by label."""
+        return {row.label: row.response for row in self.rows}
+
+    @property
+    def exported(self) -> list[tuple[Run, Response]]:
+        """The answers of beams and solid that are exported and rendered."""
+        return [(run, self.responses[run.label]) for run in EXPORTED if run.label in self.responses]
+
+    @property
+    def apart(self) -> list[Row]:
+        """The completed runs on another branch than the reference, without the elastica, another rod."""
+        judged = (row for row in self.rows if row.label != ELASTICA.label and row.response.completed)
+        return [row for row in judged if any(row.error("path", name) > APART for name in BRANCH)]
+
+    @property
+    def other_events(self) -> list[str]:
+        """A sentence for each completed run about the first event that it or the reference does not have."""
+        found = []
+        exact = next(row.response for row in self.rows if row.label == ROD.label)
+        for row in self.rows:
+            events = event_differences(row.response, exact) if row.response.completed else []
+            missing = [item for item in events if item.apart == np.inf]
+            found += [item.line(row.label, ROD.label) for item in missing[:1]]
+        return found
+
+    @property
+    def wrong(self) -> list[Row]:
+        """The runs that were refused by the checks or the referee, and the reference if it stopped."""
+        return [
+            row for row in self.rows if row.wrong or (row.label == ROD.label and not row.response.completed)
+        ]
+
+
+def compare(
+    scene: Scene,
+    folder: Path,
+    report: Report,
+    watching: Watching = lambda _: nullcontext(unwatched),
+    staging: Staging = lambda _: nullcontext(uncounted),
+    more: Sequence[Run] = (),
+) -> Comparison:
+    """Solve `scene` with every model that can state it, and with `more` runs, and write the results to `folder`.
+
+    Errors are measured against the exact rods. `report` receives lines about the progress. ``watching(label)`` gives a context with the
+    `Watch` of a run, ``staging(label)`` one with the `Count` of a stage of the work after the runs.
+
+    Raises
+    ------
+    ModelError
+        If the exact rods cannot state the scene; nothing is computed.
+    OutputError
+        If `folder` cannot be written; nothing is computed.
+    """
+    refused = find(ROD.model).refusal(scene)
+    if refused is not None:
+        raise ModelError(f"compare: errors are measured against the {ROD.label}; {refused}")
+    folder = writable_folder(folder, *NAMES)
+    for run in EXPORTED:
+        check_series(folder / run.model, run.model, scene)
+    left_out: dict[str, str] = {}
+    answers: dict[Run, Response] = {}
+    runs = [*more, *(run for run in RUNS if run not in more)]
+    for number, run in enumerate(runs, 1):
+        head = f"[{number}/{len(runs)}] {run.label}"
+        try:
+            with watching(head) as watch:
+                answers[run] = one = certified(solve(scene, run.model, run.options, watch), scene)
+            end = f"{one.wall_seconds:.2f} s" if one.completed else f"{one.status}: {one.message}"
+            report(f"{head}: {end}")
+        except ModelError as error:
+            report(f"{head}: left out, {error}")
+            left_out[run.case(scene).family] = str(error).removeprefix(f"{run.model}: ")
+    rows = [_row(scene, run, response, answers[ROD]) for run, response in answers.items()]
+    with staging("measuring the error budget") as count:
+        budget, lack = None, "it takes the solid"
+        if SOLID in answers and answers[SOLID].completed:
+            try:
+                budget = error_budget(scene, count)
+            except ModelError as error:
+                lack = str(error)
+        if budget is None:
+            left_out[BUDGET] = lack
+            report(f"budget.json: left out, {lack}")
+    found = Comparison(scene=scene, rows=rows, budget=budget, left_out=left_out)
+    with staging("drawing and writing files"), alone_in(folder):
+        found.files.extend(_write(found, folder, report))
+    return found
+
+
+def _row(scene: Scene, run: Run, response: Response, reference: Response) -> Row:
+    """Return the row of a run with its errors and their cause."""
+    case, judged = run.case(scene), verdict(response)
+    row = Row(case=case, response=response, verdict=judged, name=run.label, cause=_cause(case, reference))
+    return row if response is reference else row.against(reference, names(mesh=False))
+
+
+def _cause(case: Case, reference: Response) -> str:
+    """Return the largest part of the error that theory allows; empty but for a uniform cantilever along x."""
+    scene = case.scene
+    (beam, *others), ends = scene.beams, [support.node for support in scene.all_supports]
+    straight = not others and not any(special_keys(scene)) and beam.direction == (1.0, 0.0)
+    if not straight or ends != [f"{beam.name}.start"] or not len(reference.load_parameter):
+        return ""
+    parts = case.found.error_parts(scene, case.options, bending(beam, reference))
+    return max(parts, key=lambda why: parts[why]).partition(":")[0]
+
+
+def _write(found: Comparison, folder: Path, report: Report) -> Iterator[Path]:
+    """Write and yield all files, the page first."""
+    scene, responses = found.scene, found.responses
+    drawn = {run.label: responses[run.label] for run in DRAWN if run.label in responses}
+    files = [folder / name for name in ("summary.json", "table.csv", "shapes.png", "shapes.svg")]
+    write_text(files[1], table_csv(found.rows))
+    plot_shapes(scene, drawn, *files[2:])
+    files += _write_picture(found, folder, report)
+    if found.budget is not None:
+        *drawings, numbers = budget = [folder / name for name in NAMES[-3:]]
+        plot_budget(found.budget, *drawings)
+        write_budget(found.budget, numbers)
+        files += budget
+    for run, response in found.exported:
+        write_series(writable_folder(folder / run.model), response, scene)
+        files.append(folder / run.model / f"{run.model}.pvd")
+    files.insert(0, _write_page(found, files, folder))
+    summary = {
+        "scene": scene.name,
+        "scene_file": to_toml(scene),
+        "reference": ROD.label,
+        "versions": versions(),
+        "files": [str(path.relative_to(folder)) for path in files],
+        "runs": [{"label": row.label, **as_dict(row.response), "errors": row.errors} for row in found.rows],
+    }
+    write_text(files[1], json_text(summary))
+    yield from files
+
+
+def _write_page(found: Comparison, files: list[Path], folder: Path) -> Path:
+    scene, responses = found.scene, found.responses
+    vtu = {run.label: f"{run.model}/{run.model}-{{}}.vtm" for run, _ in found.exported}
+    shown, states = tracks(responses, ROD.label, scene), states_section(responses)
+    sections = [
+        Section("Errors", table(caption(ROD.label), [line(row) for row in found.rows])),
+        motion_section("Shapes and histories", scene, responses, shown, focus=ROD.label, vtu=vtu),
+        *([] if states is None else [states]),
+        *([] if found.budget is None else [budget_section(found.budget, folder / "budget.svg")]),
+    ]
+    stress = folder / "side-by-side.png"
+    if stress in files:
+        sections.append(Section("Stress", picture(stress, "Beams and solid, von Mises stress.")))
+    lead = " ".join(findings(scene, found.rows, ROD.label, found.budget, found.left_out))
+    return write_page(folder, f"{scene.name}: beams, solid and exact answers", lead, sections, [scene], files)
+
+
+def _write_picture(found: Comparison, folder: Path, report: Report) -> Iterator[Path]:
+    """Write and yield the picture of beams and solid side by side at load parameters that both reached."""
+    scene, path = found.scene, folder / "side-by-side.png"
+    times = min((response.load_parameter for _, response in found.exported), key=len, default=np.zeros(0))
+    if len(found.exported) < 2 or not len(times):
+        report(f"{path.name}: left out, it takes beams and solid")
+        return
+    ks = nearest_steps(times, scene.times[-1])
+    at = ", ".join(f"{times[k]:.3g}" for k in ks)
+    panels = [mises_panel(one, scene, ks, f"{run.label}\nt = {at}") for run, one in found.exported]
+    try:
+        write_picture(panels, f"von Mises stress [{unit_names(scene.units)['stress']}]", path)
+        yield path
+    except NoOpenGLError as error:
+        report(f"{path.name}: left out, {error}")

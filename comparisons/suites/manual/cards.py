@@ -1,0 +1,80 @@
+"""Benchmark cards: a problem of the manual as one JSON file, complete in itself."""
+
+import json
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from comparisons.files import writable_folder, write_text
+from comparisons.output import Report, json_text
+from comparisons.scene import to_tables
+from comparisons.scene.read import json_schema
+from comparisons.suites.manual.problem import Problem, Quantity, read_problem
+
+SYMBOLS = {
+    "t": "load parameter, 0 to 1; loads and prescribed motions grow with it, a pin is at the fraction t of its path's length",
+    "F": "magnitude of the contact force",
+    "s": "distance of the contact point from the beam's start, along the undeformed axis",
+    "M": "moment that a support exerts on the beam, anticlockwise",
+    "P": "the load",
+    "L": "length of the beam",
+    "EA, GA, EI": "stiffnesses of a beam's section in stretch, shear and bending; they are listed under stiffness",
+}
+"""Symbols that the names of quantities use."""
+SCHEMA = Path(__file__).with_name("card.schema.json")
+"""The JSON Schema of a card, but for its scene."""
+MOST_DIGITS = 15
+"""Digits of a value that is exact up to double precision."""
+
+
+def card(problem: Problem) -> dict[str, Any]:
+    """Return the card of a problem.
+
+    Examples
+    --------
+    >>> from comparisons.suites.manual import problems
+    >>> card(read_problem(*problems(["roll-up"])))["quantities"][0]
+    {'name': 'x/L of the tip, a quarter of a circle', 'value': 0.6366197723675814, 'digits': 14, 'uncertainty': 6.366197723675814e-15}
+    """
+    texts = {name: getattr(problem, name) for name in ("name", "title", "purpose", "statement", "source")}
+    beams = problem.scene.beams
+    return {
+        "$schema": "card.schema.json",
+        **texts,
+        "scene": to_tables(problem.scene),
+        "stiffness": {
+            beam.name: {name: getattr(beam, name) for name in ("EA", "GA", "EI")} for beam in beams
+        },
+        "quantities": [_quantity(one, problem.uncertainty) for one in problem.quantities],
+        "symbols": SYMBOLS,
+    }
+
+
+def _quantity(quantity: Quantity, uncertainty: float) -> dict[str, Any]:
+    """Return a quantity with its uncertainty, and the significant digits (decimals of zero) it leaves."""
+    size = abs(quantity.exact) or quantity.size
+    error = uncertainty * quantity.size
+    digits = MOST_DIGITS if error == 0.0 else min(MOST_DIGITS, max(0, math.floor(-math.log10(error / size))))
+    return {"name": quantity.name, "value": quantity.exact, "digits": digits, "uncertainty": error}
+
+
+def card_schema() -> dict[str, Any]:
+    """Return the JSON Schema of cards; the scene has the schema of scene files."""
+    schema: dict[str, Any] = json.loads(SCHEMA.read_text(encoding="utf-8"))
+    scene = {key: value for key, value in json_schema().items() if key != "$schema"}
+    schema["properties"]["scene"] = {**scene, **schema["properties"]["scene"]}
+    return schema
+
+
+def write_cards(folder: Path, report: Report, stated: Sequence[Path]) -> tuple[Path, ...]:
+    """Write the cards of problems, ``NAME.json``, and their schema; return the files, the schema last."""
+    writable_folder(folder)
+    written = {}
+    for problem in map(read_problem, stated):
+        written[folder / f"{problem.name}.json"] = card(problem)
+        report(f"{problem.name}: {len(problem.quantities)} quantities")
+    written[folder / "card.schema.json"] = card_schema()
+    for path, data in written.items():
+        write_text(path, json_text(data))
+    return tuple(written)

@@ -1,0 +1,121 @@
+"""What the errors of a trade-off are measured against: the exact rods, and the limit of the solid by extrapolation."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from comparisons.answer import Array, Response
+from comparisons.answer.axis import SampledAxes, sampled_axes
+from comparisons.answer.errors import Errors, errors
+from comparisons.answer.quantities import forces, moments, scales, size
+from comparisons.models import ROD
+from comparisons.scene import Scene
+from comparisons.suite import Case, Row
+from comparisons.suites.trade.settings import beams, limit_cases
+from tsm.elements import EXACT
+
+Measured = Mapping[Case, Row]
+ROUND_OFF = 2.0**-52
+"""Least uncertainty of a reference, also where two answers are equal."""
+
+
+class NoReferenceError(ValueError):
+    """The exact rods did not complete: one line."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Reference:
+    """A response that errors are measured against, its uncertainty by scope and quantity, and what it is in one sentence."""
+
+    response: Response
+    scene: Scene
+    uncertainty: Errors
+    sentence: str
+
+    @property
+    def end(self) -> float:
+        """The load parameter of the scope ``end``."""
+        return _end(self.response)
+
+    def errors(self, response: Response) -> Errors:
+        """Return the errors of a response."""
+        return errors(response, self.response, self.scene, end=self.end)
+
+
+def _end(response: Response) -> float:
+    """The last load parameter at which a response carries a force."""
+    carries = np.any([size(values) > 0.0 for values in forces(response).values()], axis=0)
+    times = response.load_parameter
+    return float(times[carries][-1] if carries.any() else times[-1])
+
+
+def reference_cases(scene: Scene) -> list[Case]:
+    """Return the exact rods, and the exact elements that confirm them."""
+    return [Case(scene=scene, model=ROD.name), beams(scene, EXACT, 1, tolerance=1e-12)]
+
+
+def best_reference(scene: Scene, measured: Measured) -> Reference:
+    """Return the answer of the exact rods, as uncertain as its difference from exact TSM elements."""
+    # the rods and not the elastica: every model of the sweep stretches and shears
+    rod, exact = (measured[case].response for case in reference_cases(scene))
+    if not rod.completed:
+        raise NoReferenceError(f"{scene.name}: the exact rods stopped: {rod.message}")
+    apart = errors(exact if exact.completed else rod, rod, scene, end=_end(rod))
+    confirmed = (
+        f"TSM exact, which shares no code with them, agrees within {apart['path']['force']:.1e} of the largest force"
+        if exact.completed
+        else "TSM exact, which would confirm them, did not complete"
+    )
+    least = {scope: {name: max(e, ROUND_OFF) for name, e in table.items()} for scope, table in apart.items()}
+    what = "the exact Reissner rods, with the beams' stretch and shear, which the elastica leaves out"
+    return Reference(response=rod, scene=scene, uncertainty=least, sentence=f"{what}; {confirmed}")
+
+
+def solid_limit(scene: Scene, measured: Measured, *, quick: bool = False) -> Reference | None:
+    """Return what the solid converges to, as uncertain as its last meshes differ; None if one stopped."""
+    cases = limit_cases(scene, quick=quick)
+    series = [measured[case].response for case in cases]
+    if not all(response.completed for response in series):
+        return None
+    limit = extrapolated(series)
+    apart = errors(series[-2], series[-1], scene, scale=scales(limit), end=_end(limit))
+    meshes = ", ".join(case.label.removeprefix(f"{case.family} ") for case in cases)
+    sentence = f"extrapolated from {meshes}, known to {apart['path']['force']:.1e} of the largest force"
+    return Reference(response=limit, scene=scene, uncertainty=apart, sentence=sentence)
+
+
+def extrapolated(responses: Sequence[Response]) -> Response:
+    """Return the limit ``q3 + d2 / (|d1|/|d2| - 1)`` of the last three responses (Richardson, Aitken)."""
+    # the norms are maxima over the load parameters, so that the order is observed; its uncertainty is |d2|,
+    # more than the error at a constant order, because a local singularity, as under a load on one node,
+    # lowers the order on fine meshes
+
+    def limit(read: Callable[[Response], Mapping[str, Array]]) -> dict[str, Array]:
+        coarse, middle, fine = (read(one) for one in responses[-3:])
+        d1, d2 = (
+            max((float(np.nanmax(np.abs(b[name] - a[name]), initial=0.0)) for name in fine), default=0.0)
+            for a, b in ((coarse, middle), (middle, fine))
+        )
+        factor = d2 / (d1 - d2) if 0.0 < 1.1 * d2 < d1 else 0.0
+        return {name: values + factor * (values - middle[name]) for name, values in fine.items()}
+
+    best = responses[-1]
+    force, moment = limit(forces), limit(moments)
+    arc = limit(lambda one: {pair: contact.arc_position for pair, contact in one.contacts.items()})
+    axis = limit(lambda one: sampled_axes(one).position)
+    return replace(
+        best,
+        contacts={
+            pair: replace(contact, force=force[pair], arc_position=arc[pair])
+            for pair, contact in best.contacts.items()
+        },
+        supports={
+            # with contacts only their forces are extrapolated
+            node: replace(support, force=force.get(node, support.force), moment=moment[node])
+            for node, support in best.supports.items()
+        },
+        material_force=limit(lambda one: one.material_force),
+        tips=limit(lambda one: one.tips),
+        axis_line=SampledAxes(arc_length=sampled_axes(best).arc_length, position=axis),
+    )

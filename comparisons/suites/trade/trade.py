@@ -1,0 +1,196 @@
+"""The trade-off of a scene: cost and errors of every setting, the cheapest ones, fronts and orders."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from math import inf, isfinite, nan
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from comparisons.models import MODELS, SOLID, TSM
+from comparisons.scene import Scene
+from comparisons.suite import Row
+from comparisons.suite.progress import Runner
+from comparisons.suites.trade.reference import Reference, best_reference, reference_cases, solid_limit
+from comparisons.suites.trade.settings import chains, sweep_cases
+
+FEWEST, MOST = 3, 4
+"""Points of a fit."""
+STEADY = 0.9
+"""A local order below this part of the median is not the order of the family."""
+
+
+def pareto(cost: ArrayLike, error: ArrayLike) -> list[int]:
+    """Return the numbers of the points that no other beats in both, by rising cost; a point with a nan is none of them.
+
+    Examples
+    --------
+    >>> pareto([1, 2, 3, 4], [0.5, 0.7, 0.1, 0.1])
+    [0, 2]
+    """
+    costs, errors = np.asarray(cost, dtype=float), np.asarray(error, dtype=float)
+    rising = np.lexsort((errors, costs))
+    rising = rising[np.isfinite(costs[rising]) & np.isfinite(errors[rising])]
+    before = np.minimum.accumulate(np.append(np.inf, errors[rising]))
+    return [int(k) for k in rising[errors[rising] < before[:-1]]]
+
+
+class Fit(NamedTuple):
+    """A power law ``y ~ x^exponent`` from x = first to last; scatter is the largest ``|ln y - ln y_fit|``."""
+
+    exponent: float | None = None
+    points: int = 0
+    first: float | None = None
+    last: float | None = None
+    scatter: float | None = None
+
+
+def power_law(x: Sequence[float], y: Sequence[float]) -> Fit:
+    """Return the power law through the points, without an exponent if they are fewer than three or not positive."""
+    if len(x) < FEWEST or not (min(x) > 0.0 and min(y) > 0.0):
+        return Fit()
+    lx, ly = np.log(x), np.log(y)
+    exponent, constant = np.polyfit(lx, ly, 1)
+    scatter = float(np.abs(ly - exponent * lx - constant).max())
+    return Fit(float(exponent), len(x), float(min(x)), float(max(x)), scatter)
+
+
+def convergence(resolution: Sequence[float], error: Sequence[float], floor: float) -> Fit:
+    """Return the power law of an error over rising resolution in its asymptotic range."""
+    # it is the longest run of meshes, before the first error below the floor, whose local orders are at least
+    # nine tenths of the median positive one: neither chance on coarse meshes nor round-off on fine ones
+    x, y = np.asarray(resolution, dtype=float), np.asarray(error, dtype=float)
+    above = np.logical_and.accumulate(y > floor)
+    x, y = x[above], y[above]
+    local = -np.diff(np.log(y)) / np.diff(np.log(x))
+    if not (local > 0.0).any():
+        return Fit()
+    falling = np.flatnonzero(local >= STEADY * np.median(local[local > 0.0]))
+    run = max(reversed(np.split(falling, np.flatnonzero(np.diff(falling) > 1) + 1)), key=len)
+    chosen = slice(max(run[0], run[-1] + 2 - MOST), run[-1] + 2)
+    return power_law(list(x[chosen]), list(y[chosen]))
+
+
+Line = dict[str, Any]
+"""A row of a table by its columns."""
+TARGETS = (5e-2, 1e-2, 1e-3, 1e-4, 1e-5)
+COSTS = ("seconds", "iterations", "unknowns")
+MESHED = tuple(model.name for model in MODELS.values() if model.meshed)
+"""The models that have a Pareto front."""
+THERE = "solid_against_reference"
+"""The solid whose error against the reference counts, too."""
+LARGEST = 4
+"""Number of the largest settings of a family to which the cost exponent is fitted; the cost of small settings does not depend on size."""
+ABOVE = 3.0
+"""Least error in a fit, over the uncertainty of the reference."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Trade:
+    """The sweep: rows with errors against the reference, and against the limit of their model if known."""
+
+    scene: Scene
+    rows: list[Row]
+    reference: Reference
+    limit: Reference | None
+
+    def uncertainty(self, model: str, scope: str, quantity: str) -> float:
+        """Return the uncertainty of a model's limit; nan if the limit is not known."""
+        known = self.limit if MODELS[model].continuum else self.reference
+        return nan if known is None else known.uncertainty[scope][quantity]
+
+    def of_model(self, model: str, scope: str) -> list[Row]:
+        """Return the completed rows of a model; for the scope ``path`` those with every load parameter of the scene."""
+        return [
+            row
+            for row in self.rows
+            if row.response.completed
+            and row.case.model == model
+            and (scope == "end" or row.case.scene.load_parameters == self.scene.load_parameters)
+        ]
+
+
+def measure_trade(scene: Scene, run: Runner, *, quick: bool = False) -> Trade:
+    """Measure every setting of `scene` and state its errors; nothing to measure them against is a `NoReferenceError`."""
+    cases = list(dict.fromkeys([*reference_cases(scene), *sweep_cases(scene, quick=quick)]))
+    measured = run(cases)
+    reference = best_reference(scene, measured)
+    limit = solid_limit(scene, measured, quick=quick)
+    rows = []
+    for case in cases:
+        response, own = measured[case].response, limit if case.found.continuum else reference
+        errors, own_errors = (None if one is None else one.errors(response) for one in (reference, own))
+        rows.append(replace(measured[case], errors=errors, own_errors=own_errors))
+    return Trade(scene=scene, rows=rows, reference=reference, limit=limit)
+
+
+def short(row: Row) -> str:
+    """Return a setting in a few words, its load steps in brackets."""
+    setting = row.label.partition(" ")[2] or row.label
+    return f"{setting.replace('tolerance', 'tol')} [{row.case.scene.load_parameters}]"
+
+
+def cheapest(trade: Trade, scope: str, quantity: str, target: float) -> Line:
+    """Return the settings with the least seconds for an error of `target`, and their ratios to TSM's."""
+
+    def least(model: str, *own: bool) -> Row | None:
+        """The larger error counts: on a coarse mesh, discretisation and model error may cancel."""
+
+        def error(row: Row) -> float:
+            errors = (row.error(scope, quantity, own=one) for one in own)
+            return max(filter(isfinite, errors), default=inf)
+
+        good = (row for row in trade.of_model(model, scope) if error(row) <= target)
+        return min(good, key=lambda row: row.seconds, default=None)
+
+    doubt = trade.uncertainty(SOLID.name, scope, quantity)
+    found = {
+        TSM.name: least(TSM.name, False),
+        SOLID.name: least(SOLID.name, True) if doubt <= target else None,
+        THERE: least(SOLID.name, False, True),
+    }
+    line: Line = {"scope": scope, "quantity": quantity, "target": target, "limit_uncertainty": doubt}
+    for name, row in found.items():
+        line |= {name: row and short(row), f"{name}_seconds": row and row.seconds}
+    for name, ratio in ((SOLID.name, "ratio"), (THERE, "ratio_against_reference")):
+        slow, fast = line[f"{name}_seconds"], line[f"{TSM.name}_seconds"]
+        line[ratio] = slow / fast if slow and fast else None
+    return line
+
+
+def front(trade: Trade, model: str, scope: str, quantity: str, cost: str) -> list[Line]:
+    """Return the Pareto front of a model against its limit, known no better than its uncertainty."""
+    rows, doubt = trade.of_model(model, scope), trade.uncertainty(model, scope, quantity)
+    costs = [row.spent(cost) for row in rows]
+    errors = [max(row.error(scope, quantity, own=True), doubt) for row in rows]
+    of = {"model": model, "scope": scope, "quantity": quantity, "cost": cost}
+    return [
+        {**of, "setting": short(rows[k]), "spent": costs[k], "own_error": errors[k]}
+        for k in pareto(costs, errors)
+    ]
+
+
+def orders(trade: Trade, quantity: str) -> Iterator[Line]:
+    """Yield a row per family: ``error ~ n^-order`` over the path, ``seconds ~ unknowns^cost_exponent``."""
+    rows = {row.case: row for model in MESHED for row in trade.of_model(model, "path")}
+    for chain in chains(rows):
+        case, known = chain[0], [rows[one] for one in chain]
+        floor = ABOVE * trade.uncertainty(case.model, "path", quantity)
+        errors = [row.error("path", quantity, own=True) for row in known]
+        order = convergence([row.resolution for row in known], errors, floor)
+        costs = ([row.spent(cost) for row in known[-LARGEST:]] for cost in ("unknowns", "seconds"))
+        given = [contact for contact in case.scene.contacts if contact.penetration is not None]
+        yield {
+            "family": case.family + (f", penetration {given[0].penetration:g}" if given else ""),
+            "settings": len(chain),
+            "order": None if order.exponent is None else -order.exponent,
+            **_range("order", order),
+            "cost_exponent": (cost := power_law(*costs)).exponent,
+            **_range("cost_exponent", cost),
+        }
+
+
+def _range(name: str, fit: Fit) -> Line:
+    columns = (f"{name}_{key}" for key in ("points", "from", "to", "scatter"))
+    return dict(zip(columns, fit[1:], strict=True))

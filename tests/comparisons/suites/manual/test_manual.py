@@ -1,0 +1,196 @@
+"""The verification manual: every problem with every model, its card, how answers are judged, and what is written."""
+
+import json
+import math
+import re
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import numpy as np
+import pytest
+from jsonschema import Draft202012Validator
+
+from comparisons.cli import main
+from comparisons.scene import read_scene
+from comparisons.suites.manual import judged, problems, read_problem
+
+# not public: measures that no model has, and the styles of pictures
+from comparisons.suites.manual.measures import MEASURES, StoppedError
+from comparisons.suites.manual.write import STYLES
+
+PROBLEMS = {path.stem: path for path in problems()}
+FAST = (
+    "clamped-column", "euler-column", "force-limit", "pinned-column", "portal-frame", "post-buckling", "sleeve", "touch-again", "two-pins",
+)  # fmt: skip
+"""Problems of less than a second; the golden answers have three more."""
+
+
+def cards(folder, *names):
+    """Return the cards that the command writes, and the check by their schema."""
+    assert main(["run", "cards", *names, "--out", str(folder)]) == 0
+    schema = Draft202012Validator(json.loads((folder / "card.schema.json").read_text()))
+    return [json.loads((folder / f"{name}.json").read_text()) for name in names], schema
+
+
+def toml(tables):
+    """Return the scene of a card as a scene file."""
+    lines = []
+    for kind, found in tables.items():
+        for table in found if isinstance(found, list) else [found]:
+            lines.append(f"[[{kind}]]" if isinstance(found, list) else f"[{kind}]")
+            lines += [f"{key} = {json.dumps(value)}" for key, value in table.items()]
+    return "\n".join(lines)
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name not in FAST)) for name in PROBLEMS]
+)
+def test_a_problem_of_the_table_passes(name, tmp_path):
+    """With every model, whose tolerance has a reason and exceeds the uncertainty of the value; its card has the same scene and values."""
+    problem = read_problem(PROBLEMS[name])
+    (card,), schema = cards(tmp_path, name)
+    schema.validate(card)
+    assert read_scene(toml(card["scene"]), name) == problem.scene
+    assert [item.failure for item in judged(problem).judgements if not item.passed] == []
+    for quantity, stated in zip(problem.quantities, card["quantities"], strict=True):
+        assert math.isfinite(quantity.exact)
+        assert stated["value"] == quantity.exact
+        assert stated["uncertainty"] < min(trial.allowed for trial in problem.trials) * quantity.size
+    for trial in problem.trials:
+        assert trial.model in STYLES
+        assert 0.0 < trial.allowed <= 0.3
+        assert trial.why
+
+
+def test_the_page_counts_the_problems_and_their_answers(stated):
+    stated("manual.problems", len(PROBLEMS))
+    assert sum(len(read_problem(path).trials) for path in PROBLEMS.values()) == 96
+
+
+def test_a_card_states_the_digits_that_its_uncertainty_leaves(tmp_path, monkeypatch, capsys):
+    """Of a value they are significant ones, of zero decimals of the scale; the schema refuses what is no card."""
+    monkeypatch.chdir(tmp_path)
+    (card, _), schema = cards(Path("cards"), "roll-up", "locking")
+    reported = capsys.readouterr()
+    assert reported.out == "2 cards and their schema in cards\n"
+    assert reported.err == "roll-up: 3 quantities\nlocking: 2 quantities\n"
+    files = {"card.schema.json", "cards", "locking.json", "roll-up.json"}
+    assert {path.name for path in tmp_path.rglob("[!.]*")} == files
+    quarter, _, whole = card["quantities"]
+    assert quarter["value"] == pytest.approx(2.0 / math.pi, rel=1e-15)
+    assert quarter["uncertainty"] == pytest.approx(1e-14 * quarter["value"])
+    assert (quarter["digits"], whole["digits"], whole["value"]) == (14, 14, 0.0)
+    for change in (
+        {"purpose": ""},
+        {"scene": {"scene": {"name": "a", "load_parameters": 1}}},
+        {"quantities": []},
+        {"quantities": [{"name": "F", "value": "1", "digits": 3, "uncertainty": 0.1}]},
+        {"remark": "one more"},
+    ):
+        assert not schema.is_valid(card | change)
+
+
+MADE_UP = """
+title = "Made | up"
+purpose = "a"
+statement = "b"
+source = "c"
+uncertainty = 0.0
+scene = "tip-load"
+measure = "told"
+quantities = [{ name = "a", exact = 2.0 }, { name = "|b|", exact = 0.0, scale = 4.0 }]
+trials = [
+"""
+
+
+def made_up(folder, count):
+    """The file of a problem with the exact values 2 and 0, and a bar in a name, for some models."""
+    trial = '  { model = "tsm exact", setting = "NUMBER", allowed = 0.01, why = "d" },\n'
+    path = folder / "made-up.toml"
+    path.write_text(MADE_UP + "".join(trial.replace("NUMBER", str(k)) for k in range(count)) + "]\n")
+    return path
+
+
+def telling(*answers):
+    """A measure by which the models answer so."""
+
+    def measure(_, given):
+        answer = answers[int(given.trial.setting)]
+        if isinstance(answer, StoppedError):
+            raise answer
+        return answer
+
+    return measure
+
+
+JUDGED = [
+    ((2.0, 0.0), (0.0, 0.0), None),
+    ((2.01, -0.03), (0.005, 0.0075), None),
+    ((1.97, 0.0), (0.015, 0.0), "a: 1.97, exact 2, error 0.015 > 0.01"),
+    ((2.1, 1.0), (0.05, 0.25), "|b|: 1, exact 0, error 0.25 > 0.01"),
+    ((math.nan, 1.0), (math.nan, 0.25), "a: nan, exact 2, error nan > 0.01"),
+    ((math.inf, 0.0), (math.inf, 0.0), "a: inf, exact 2, error inf > 0.01"),
+    (StoppedError("CUTBACK_FLOOR: too small"), (math.inf, math.inf), "CUTBACK_FLOOR: too small"),
+]
+
+
+def test_errors_are_relative_and_the_worst_is_named_on_every_way_out(tmp_path, monkeypatch, capsys):
+    """Screen, exit status, JUnit, JSON and page; what is no number fails, and a page escapes bars."""
+    monkeypatch.setitem(MEASURES, "told", telling(*(answer for answer, *_ in JUDGED)))
+    files = [made_up(tmp_path, len(JUDGED)), PROBLEMS["roll-up"]]
+    monkeypatch.setattr("comparisons.suites.manual.problems", lambda _: files)
+    folder = tmp_path / "m"
+    junit = folder / "junit.xml"
+    assert main(["run", "manual", "--out", str(folder), "--quiet"]) == 1
+    out, err = capsys.readouterr()
+    failures = [failure for *_, failure in JUDGED]
+    assert "2 cases, 10 answers, 5 beyond their tolerance" in out
+    assert str(junit) in out
+    for line, failure in zip(err.splitlines(), filter(None, failures), strict=True):
+        assert re.fullmatch(rf"crossval: made-up, tsm exact.*: {re.escape(failure)}", line)
+    root = ET.parse(junit).getroot()  # noqa: S314 our own file
+    assert (root.get("tests"), root.get("failures")) == ("10", "5")
+    assert [item[0].get("message") if len(item) else None for item in root[:7]] == failures
+    assert root[0].get("classname") == "manual.made-up"
+    data = json.loads((folder / "manual.json").read_text())
+    assert data["passed"] is False
+    assert [run["passed"] for run in data["cases"][0]["runs"]] == [failure is None for failure in failures]
+    assert data["cases"][1]["passed"] is True
+    for run, (_, errors, _) in zip(data["cases"][0]["runs"], JUDGED, strict=True):
+        assert [error is None for error in run["errors"]] == [not math.isfinite(error) for error in errors]
+        for found, error in zip(run["errors"], errors, strict=True):
+            assert found is None or found == pytest.approx(error, rel=1e-12)
+    page = (folder / "index.md").read_text()
+    assert "2 problems with exact answers" in page
+    assert "5 of 10 answers within their tolerances" in page
+    assert page.count("**FAILED**") == 10
+    assert "Stopped: CUTBACK_FLOOR: too small" in page
+    assert "![Made | up](made-up.svg)" in page
+    tables = [line for line in page.splitlines() if line.startswith("|")]
+    assert {len(re.findall(r"(?<!\\)\|", line)) for line in tables} == {9, 10, 6}
+    for target in re.findall(r"\]\(#(.*?)\)", page):
+        assert f'<a id="{target}"></a>' in page
+    for picture in re.findall(r"\]\((\S+\.svg)\)", page):
+        assert ET.parse(folder / picture).getroot().tag.endswith("svg")  # noqa: S314 our own file
+    monkeypatch.setitem(MEASURES, "told", telling((2.0,)))
+    with pytest.raises(ValueError, match="argument 2 is shorter"):
+        judged(read_problem(made_up(tmp_path, 1)))
+
+
+def test_a_scene_that_is_moved_is_the_scene():
+    """Turned by .7 and shifted, mirrored, reversed: paths and sides are where they must be; the answers show the rest."""
+    places = {"objectivity": lambda z: np.exp(0.7j) * z + 2 - 3j, "mirror": np.conj, "reversal": lambda z: z}
+    for name, place in places.items():
+        scene, other = (
+            (problem := read_problem(PROBLEMS[name])).scene,
+            read_scene(problem.settings["other"], name),
+        )
+        given, found = (np.array(one.pins[0].points) @ [1.0, 1.0j] for one in (scene, other))
+        assert found == pytest.approx(place(given), abs=1e-15)
+        assert (other.beams != scene.beams) == (name != "mirror")
+        assert [one.side for one in other.contacts] == ["right" if name == "objectivity" else "left"]
+
+
+def test_a_new_problem_is_one_file():
+    (path,) = problems(folder=Path(__file__).with_name("new"))
+    assert [item.passed for item in judged(read_problem(path)).judgements] == [True, False]
