@@ -2,11 +2,8 @@
 
 from typing import TYPE_CHECKING
 
-from fem_reference.conditions import Joint, Spring, Support
-from fem_reference.critical import CriticalPoint
-from fem_reference.loads import LineLoad, PointLoad
-from fem_reference.material import MATERIALS, PLANES
-from fem_reference.observe import (
+from fem_reference.path.critical import CriticalPoint
+from fem_reference.result.observe import (
     SectionForces,
     axis_line,
     axis_stations,
@@ -16,12 +13,15 @@ from fem_reference.observe import (
     nodal_stress,
     section_forces,
 )
-from fem_reference.problem import Contact, Pin, SolidProblem, default_penalty
-from fem_reference.result import ContactHistory, Result, SolveError, SupportHistory
-from fem_reference.settings import Settings
+from fem_reference.result.result import ContactHistory, Result, SolveError, SupportHistory
 from fem_reference.solve import solve
-from fem_reference.status import Status
-from fem_reference.strip import ELEMENTS, Strip
+from fem_reference.statement.conditions import Joint, Spring, Support
+from fem_reference.statement.loads import LineLoad, PointLoad
+from fem_reference.statement.material import MATERIALS, PLANES
+from fem_reference.statement.problem import Contact, Pin, SolidProblem, default_penalty
+from fem_reference.statement.settings import Settings
+from fem_reference.statement.status import Status
+from fem_reference.statement.strip import ELEMENTS, Strip
 
 __all__ = [
     "ELEMENTS",

@@ -5,18 +5,18 @@ from time import perf_counter
 
 import numpy as np
 
-from fem_reference.arrays import Floats, Ints
-from fem_reference.assembly import deformation_gradient
-from fem_reference.ends import nearest_end
-from fem_reference.events import SLIP_OFF
-from fem_reference.march import Step, march
-from fem_reference.model import Model, build
-from fem_reference.observe import section_means
-from fem_reference.problem import SolidProblem
-from fem_reference.result import ContactHistory, Result, SolveError, SupportHistory
-from fem_reference.settings import Settings
-from fem_reference.state import Reaction, State, reactions, tie_reactions
-from fem_reference.status import Status
+from fem_reference.path.ends import nearest_end
+from fem_reference.path.events import SLIP_OFF
+from fem_reference.path.march import Step, march
+from fem_reference.result.observe import section_means
+from fem_reference.result.result import ContactHistory, Result, SolveError, SupportHistory
+from fem_reference.solid.assembly import deformation_gradient
+from fem_reference.statement.arrays import Floats, Ints
+from fem_reference.statement.problem import SolidProblem
+from fem_reference.statement.settings import Settings
+from fem_reference.statement.status import Status
+from fem_reference.system.model import Model, build
+from fem_reference.system.state import Reaction, State, reactions, tie_reactions
 
 EVENTS = (Status.LIMIT_POINT, Status.BIFURCATION, Status.LINE_CONTACT, Status.END_CONTACT)
 _SMALL_STRAIN = 0.8
@@ -44,7 +44,7 @@ def solve(
     throw
         Whether to raise an error if the solution stops early.
     watch
-        Function that is called with the `fem_reference.march.Step` to every load parameter.
+        Function that is called with the `fem_reference.path.march.Step` to every load parameter.
 
     Returns
     -------

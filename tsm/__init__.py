@@ -3,13 +3,13 @@
 from typing import TYPE_CHECKING
 
 from tsm.arc_length import trace
+from tsm.contact.events import Event, EventKind
 from tsm.elements import ELEMENTS
-from tsm.events import Event, EventKind
-from tsm.result import ContactHistory, FrictionHistory, Result, SupportHistory
-from tsm.settings import Settings
+from tsm.result.result import ContactHistory, FrictionHistory, Result, SupportHistory
 from tsm.solve import SolveError, march, solve
-from tsm.status import Status
-from tsm.structure import (
+from tsm.statement.settings import Settings
+from tsm.statement.status import Status
+from tsm.statement.structure import (
     Beam,
     ContactPair,
     Hinge,

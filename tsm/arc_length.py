@@ -20,22 +20,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tsm.contact_set import initial_state
+from tsm.contact.contact_set import initial_state
+from tsm.contact.events import Event, EventKind
+from tsm.contact.root import find_root
 from tsm.elements.properties import Array
-from tsm.events import Event, EventKind
-from tsm.friction import regripped
-from tsm.margins import Margin, broken, margins
-from tsm.model import Model
-from tsm.newton import Newton
-from tsm.path import SMALLEST, Point
-from tsm.result import Result
-from tsm.root import find_root
-from tsm.settings import Settings
+from tsm.model.model import Model
+from tsm.path.friction import regripped
+from tsm.path.margins import Margin, broken, margins
+from tsm.path.path import SMALLEST, Point
+from tsm.path.step import Step
+from tsm.result.result import Result
 from tsm.solve import ended
-from tsm.status import Status
-from tsm.step import Step
-from tsm.structure import Structure
-from tsm.system import Drive
+from tsm.statement.settings import Settings
+from tsm.statement.status import Status
+from tsm.statement.structure import Structure
+from tsm.system.newton import Newton
+from tsm.system.system import Drive
 
 _LOCATED, _APART = 1e-9, 1e-12
 """Load component, in parts of the one before, and bracket of lengths, in parts of the step, at which a limit point is found."""

@@ -10,13 +10,13 @@ import numpy as np
 
 from tsm.elements import ELEMENTS, Integrated
 from tsm.elements.properties import Array
-from tsm.follow import Follower
-from tsm.model import Model
-from tsm.result import Result, collect
-from tsm.settings import Settings
-from tsm.status import Status
-from tsm.step import Step
-from tsm.structure import Structure
+from tsm.model.model import Model
+from tsm.path.follow import Follower
+from tsm.path.step import Step
+from tsm.result.result import Result, collect
+from tsm.statement.settings import Settings
+from tsm.statement.status import Status
+from tsm.statement.structure import Structure
 
 _MEMORY = 0.8
 """Part of the machine's memory that a solution may take."""

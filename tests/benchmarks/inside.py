@@ -13,13 +13,13 @@ from comparisons.models.tsm import to_structure
 from comparisons.scene import load_scene
 
 # not public: one iteration, one assembly and one factorisation, which no solution gives apart
-from fem_reference.assembly import element_entries
-from fem_reference.body import build_body
-from fem_reference.factor import factorise
+from fem_reference.solid.assembly import element_entries
+from fem_reference.solid.factor import factorise
+from fem_reference.system.body import build_body
 from tests.benchmarks.measure import Gate
 from tests.fem_reference import bilinear_reference as forms
-from tsm.model import Model
-from tsm.system import Assembler
+from tsm.model.model import Model
+from tsm.system.system import Assembler
 
 KS = load_scene("ks-cantilever")
 T = np.array(KS.times)

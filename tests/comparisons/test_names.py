@@ -15,7 +15,7 @@ REGISTRIES = (
 )
 OTHER_WORDS = {
     "comparisons/scene/beam.py": "a material law of the solid is called rod",
-    "fem_reference/strip.py": "a material law of the solid is called rod",
+    "fem_reference/statement/strip.py": "a material law of the solid is called rod",
     "comparisons/version.py": "the package tsm",
     "comparisons/cli/command.py": "the package tsm",
     "comparisons/referee/certificate.py": "a key of a certificate in JSON",

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fem_reference as fr
-from fem_reference import newton
+from fem_reference.system import newton
 from tests.fem_reference.conftest import (
     EI,
     PAIR,

@@ -6,7 +6,7 @@ from scipy.interpolate import CubicSpline
 from scipy.sparse import eye_array
 
 # Orders and derivatives of the curve: answers hold it to about 1e-4 only.
-from fem_reference.curve import ContactCurve, averaging, cardinal_slopes, closest
+from fem_reference.contact.curve import ContactCurve, averaging, cardinal_slopes, closest
 
 
 def curve_through(stations, offsets=(0.0,), kernel=(1.0,)):

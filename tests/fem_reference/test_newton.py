@@ -9,22 +9,22 @@ import pytest
 from scipy.linalg import block_diag, null_space
 
 import fem_reference as fr
-from fem_reference import newton
-from fem_reference.body import build_body  # the stiffness of a strip alone, against scikit-fem's
-from fem_reference.friction import force_before_slip  # a turn within a step is rare
-from fem_reference.march import slipped_off  # no path is known on which Newton's method diverges so
-from fem_reference.material import Law, lame_constants
-from fem_reference.model import build  # drawn states are in no equilibrium: no solution has them
-from fem_reference.newton import (  # steps that are cut would hide a status
+from fem_reference.contact.friction import force_before_slip  # a turn within a step is rare
+from fem_reference.path.march import slipped_off  # no path is known on which Newton's method diverges so
+from fem_reference.statement.material import Law, lame_constants
+from fem_reference.statement.status import Status
+from fem_reference.system import newton
+from fem_reference.system.body import build_body  # the stiffness of a strip alone, against scikit-fem's
+from fem_reference.system.model import build  # drawn states are in no equilibrium: no solution has them
+from fem_reference.system.newton import (  # steps that are cut would hide a status
     Attempt,
     Control,
     corrected,
     equilibrium,
     iterate,
 )
-from fem_reference.state import at_rest
-from fem_reference.status import Status
-from fem_reference.system import linearise  # the tangent: a wrong one costs iterations only
+from fem_reference.system.state import at_rest
+from fem_reference.system.system import linearise  # the tangent: a wrong one costs iterations only
 from tests.fem_reference import bilinear_reference as reference
 from tests.fem_reference.conftest import (
     EA,

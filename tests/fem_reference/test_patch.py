@@ -8,10 +8,10 @@ from scipy.sparse.linalg import spsolve
 from skfem import MeshQuad
 
 # Laws at every gradient, displacements of a whole boundary, body forces: strips have none of them.
-from fem_reference.assembly import deformation_gradient, element_entries, internal_force, pattern
-from fem_reference.factor import full
-from fem_reference.material import MATERIALS, PLANES, elastic_law, lame_constants
-from fem_reference.mesh import from_basis, scalar_basis
+from fem_reference.solid.assembly import deformation_gradient, element_entries, internal_force, pattern
+from fem_reference.solid.factor import full
+from fem_reference.solid.mesh import from_basis, scalar_basis
+from fem_reference.statement.material import MATERIALS, PLANES, elastic_law, lame_constants
 from tests.fem_reference.conftest import NU, E, elements, make_strip, rotation
 
 STEP = 1e-30

@@ -13,16 +13,16 @@ import tsm
 from tests.tsm.structures import SECTION, beam, cantilever
 
 # no structure brings these decisions to their bounds: the notes name mutants that survive every solution
-from tsm.contact_set import initial_state, rearm
-from tsm.crossing import crossing
-from tsm.events import EventKind, normal_force
-from tsm.margins import WATCHES, Margin, Watch, broken
-from tsm.model import Model
-from tsm.newton import Newton
-from tsm.projection import arc_position, slide
-from tsm.root import find_root
-from tsm.scales import joined_extents, sizes_of
-from tsm.status import Status
+from tsm.contact.contact_set import initial_state, rearm
+from tsm.contact.events import EventKind, normal_force
+from tsm.contact.root import find_root
+from tsm.model.model import Model
+from tsm.model.projection import arc_position, slide
+from tsm.model.scales import joined_extents, sizes_of
+from tsm.path.crossing import crossing
+from tsm.path.margins import WATCHES, Margin, Watch, broken
+from tsm.statement.status import Status
+from tsm.system.newton import Newton
 
 
 def open_states(*path):
@@ -91,7 +91,7 @@ def test_a_new_event_is_a_row(monkeypatch):
         lambda *_: Status.LINE_CONTACT,
     )
     rows = (row for row in WATCHES if row.kind is not most.kind)
-    monkeypatch.setattr("tsm.margins.WATCHES", (*rows, most))
+    monkeypatch.setattr("tsm.path.margins.WATCHES", (*rows, most))
     path = ((0.8, 0.0), (0.8, 0.3))
     result = tsm.solve(cantilever(path), [0.5, 1.0], throw=False)
     assert result.status is Status.LINE_CONTACT

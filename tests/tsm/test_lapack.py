@@ -9,7 +9,7 @@ CODE = {
     "alone, and the package imported after it": """
 import sys
 import numpy as np
-from tsm.lapack import lapack
+from tsm.system.lapack import lapack
 A = np.random.default_rng(0).normal(size=(9, 9))
 alone = lapack().dgesv(A, A[:, :2])
 assert lapack().__name__ == "scipy.linalg._flapack" and "scipy.linalg" not in sys.modules
@@ -19,11 +19,11 @@ for routines in (scipy.linalg.lapack, lapack()):
 """,
     "from the package that is there, or where there is no such file": """
 import sys
-from tsm import lapack
+from tsm.system import lapack
 lapack._NAME = "scipy.linalg._elsewhere"
 assert lapack.lapack() is sys.modules["scipy.linalg.lapack"]
-del sys.modules["tsm.lapack"]
-from tsm.lapack import lapack
+del sys.modules["tsm.system.lapack"]
+from tsm.system.lapack import lapack
 assert lapack() is sys.modules["scipy.linalg.lapack"]
 """,
 }

@@ -12,15 +12,15 @@ import tsm
 from tests.tsm.structures import CLAMP, SECTION, TENTHS, cantilever, raised, steps
 
 # no structure reaches these statuses: a part of the solver is replaced by one that fails
-from tsm.contact_set import initial_state
-from tsm.events import EventKind
-from tsm.follow import Follower
-from tsm.friction import with_grips
-from tsm.margins import Margin
-from tsm.model import Model
-from tsm.newton import Newton
-from tsm.state import Touch
-from tsm.status import Status
+from tsm.contact.contact_set import initial_state
+from tsm.contact.events import EventKind
+from tsm.model.model import Model
+from tsm.model.state import Touch
+from tsm.path.follow import Follower
+from tsm.path.friction import with_grips
+from tsm.path.margins import Margin
+from tsm.statement.status import Status
+from tsm.system.newton import Newton
 
 WAY = raised(0.83, 0.2)
 SETTINGS = tsm.Settings()
@@ -97,8 +97,8 @@ def test_a_failure_is_an_error_unless_it_is_asked_for():
 
 def test_step_limit(monkeypatch):
     """The first step is too long for one iteration."""
-    monkeypatch.setattr("tsm.follow._MOST_ATTEMPTS", 1)
-    monkeypatch.setattr("tsm.newton.MAX_ITERATIONS", 1)
+    monkeypatch.setattr("tsm.path.follow._MOST_ATTEMPTS", 1)
+    monkeypatch.setattr("tsm.system.newton.MAX_ITERATIONS", 1)
     result = tsm.solve(cantilever(WAY), TENTHS, throw=False)
     assert (result.status, len(result.load_parameter)) == (Status.STEP_LIMIT, 0)
 
@@ -120,14 +120,14 @@ def test_a_contact_that_begins_on_a_held_end(path, turn, element):
 def test_two_slips(monkeypatch):
     """The check by rates is replaced by one that admits both slips."""
     monkeypatch.setattr(
-        "tsm.friction._going_on", lambda point, chosen, *_: point.with_state(with_grips(point.state, chosen)) if chosen[0][1].slip else None
+        "tsm.path.friction._going_on", lambda point, chosen, *_: point.with_state(with_grips(point.state, chosen)) if chosen[0][1].slip else None
     )  # fmt: skip
     assert tsm.solve(cantilever(WAY, friction=0.3), TENTHS, throw=False).status is Status.TWO_SLIPS
 
 
 def test_inaccurate(monkeypatch):
     """Two turns ask for more Gauss nodes than are allowed."""
-    monkeypatch.setattr("tsm.groups.exact.MOST_NODES", 14)
+    monkeypatch.setattr("tsm.model.groups.exact.MOST_NODES", 14)
     load = tsm.Load(beam="b", end="end", moment=4 * np.pi * SECTION.EI)
     result = tsm.solve(cantilever(element="exact", load=load), steps(16), throw=False)
     assert result.integration_error <= 1e-9
@@ -144,14 +144,15 @@ def test_iteration_limit(monkeypatch):
     """Newton's method alone; a march tries a shorter step."""
     model = Model(cantilever(WAY))
     moved = replace(initial_state(model), load_parameter=0.5)
-    monkeypatch.setattr("tsm.newton.MAX_ITERATIONS", 1)
+    monkeypatch.setattr("tsm.system.newton.MAX_ITERATIONS", 1)
     assert Newton(model, SETTINGS).solve(moved).status is Status.ITERATION_LIMIT
 
 
 def test_ping_pong(monkeypatch):
     """A search of the owner that always answers with the other of two elements."""
     monkeypatch.setattr(
-        "tsm.newton.chord_owner", lambda *a: Touch(element=15 - a[-1].element, xi=0.5, force=a[-1].force)
+        "tsm.system.newton.chord_owner",
+        lambda *a: Touch(element=15 - a[-1].element, xi=0.5, force=a[-1].force),
     )
     model = Model(cantilever(WAY, element="timoshenko"))
     moved = replace(initial_state(model), load_parameter=0.5)
@@ -161,7 +162,7 @@ def test_ping_pong(monkeypatch):
 @pytest.mark.parametrize("allowed", [1, 5])
 def test_chatter(allowed, monkeypatch):
     """A margin that opens whatever closes: so many events are allowed at one load parameter, not one more."""
-    monkeypatch.setattr("tsm.follow._MOST_CHANGES", allowed)
+    monkeypatch.setattr("tsm.path.follow._MOST_CHANGES", allowed)
     follower = Follower(Model(cantilever(WAY)), tsm.Settings())
     held = follower._measure
 

@@ -9,8 +9,8 @@ import tsm
 from tests.tsm.structures import KS, KS_PATH, as_mixed, cantilever, hook, leaning, pushed
 
 # a residual and its tangent at a state that is no equilibrium are nowhere public
-from tsm.model import Model
-from tsm.newton import Newton
+from tsm.model.model import Model
+from tsm.system.newton import Newton
 
 
 def moving_end(element):

@@ -18,7 +18,7 @@ Without friction a force has no component along the beam, and ``C F`` is the sam
 loads are ``F . dp/dx + M dtheta/dx + dE/dx``, and the mean tangent is ``T = dp/ds + (dC/ds F_n n + ..)/2 + M
 rho n``, with the slope rho that a unit couple makes. These parts are such that ``F . T + M theta' = d(F . p +
 M theta + E)/ds``. So the work of the node less the nodal work and the change of E is F_t times the slip of
-`tsm.pairs`: what friction dissipates.
+`tsm.model.pairs`: what friction dissipates.
 """
 
 from __future__ import annotations

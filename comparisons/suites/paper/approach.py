@@ -10,13 +10,13 @@ import numpy as np
 
 from comparisons.answer import Array
 from tsm import Settings, Structure
-from tsm.contact_set import initial_state
-from tsm.model import Model
-from tsm.newton import Newton
-from tsm.path import extrapolate
-from tsm.projection import arc_position
-from tsm.state import State
-from tsm.status import Status
+from tsm.contact.contact_set import initial_state
+from tsm.model.model import Model
+from tsm.model.projection import arc_position
+from tsm.model.state import State
+from tsm.path.path import extrapolate
+from tsm.statement.status import Status
+from tsm.system.newton import Newton
 
 NEAREST = 2e-8
 """Distances from a node, in element lengths, that count as none.

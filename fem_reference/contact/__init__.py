@@ -1,0 +1,1 @@
+"""The contact curve, touch and friction."""

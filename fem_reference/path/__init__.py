@@ -1,0 +1,1 @@
+"""Following the path of equilibria."""

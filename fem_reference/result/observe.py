@@ -1,0 +1,206 @@
+"""Post-processing of a solution: axis lines, stresses, energies, section forces, material forces, and strains of the faces."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fem_reference.result.result import Result
+from fem_reference.solid.assembly import deformation_gradient
+from fem_reference.solid.mesh import gradient_at, section_points
+from fem_reference.statement.arrays import Floats, Ints
+from fem_reference.system.body import Body
+from fem_reference.system.state import State, stored_energy
+
+
+def section_means(state: State, strip: str) -> Floats:
+    """Section-mean positions ``(m, 2)`` of a strip in the global frame [m]."""
+    body = state.model.body(strip)
+    return body.strip.to_global(body.mesh.sections @ (body.mesh.nodes + state.u[body.part]))
+
+
+def axis_line(result: Result, strip: str, k: int) -> Floats:
+    """Section means ``(m, 2)`` from start to end at the accepted load parameter ``k``, in the global frame [m]."""
+    state = result.states[k]
+    before, bent = _bent_sections(result, strip)
+    origin = np.array(result.model.problem.strips[0].start)
+    means = np.reshape([origin + state.poses[number].position for _, number in bent], (-1, 2))
+    return np.insert(section_means(state, strip), before, means, axis=0)
+
+
+def axis_stations(result: Result, strip: str) -> Floats:
+    """Undeformed axial coordinates ``(m,)`` of the points in `axis_line` [m]: the mesh's sections, and those inside that bear a moment."""
+    before, bent = _bent_sections(result, strip)
+    return np.insert(result.model.body(strip).mesh.stations, before, [arc for arc, _ in bent])
+
+
+def _bent_sections(result: Result, strip: str) -> tuple[Ints, list[tuple[float, int]]]:
+    """Places among the mesh's sections, coordinates and numbers of the sections that bear a moment between two of them."""
+    body = result.model.body(strip)
+    stations, apart = body.mesh.stations, 1e-9 * body.strip.length
+    bent = sorted(
+        (section.arc, number)
+        for number, section in enumerate(result.model.sections)
+        if section.strip == strip and np.abs(stations - section.arc).min() > apart
+    )
+    return np.searchsorted(stations, [arc for arc, _ in bent]), bent
+
+
+def nodal_stress(result: Result, k: int) -> Floats:
+    """Cauchy stresses ``xx, yy, xy`` at the nodes, ``(n, 3)``, in the global frame [Pa].
+
+    ``sigma = P F^T / det F`` is the force per current length in the plane and per reference thickness. It is evaluated at
+    the nodes of every element and averaged over the elements with a common node.
+    """
+    found = []
+    for body in result.model.bodies:
+        _, local = _cauchy_stress(body, result.states[k].u[body.part])
+        sigma = np.einsum("ai,ijek,bj->abek", body.strip.frame, local, body.strip.frame)
+        found.append(_averaged(body, np.stack([sigma[0, 0], sigma[1, 1], sigma[0, 1]], axis=-1)))
+    return np.concatenate(found)
+
+
+def fibre_stress(result: Result, k: int) -> Floats:
+    """Cauchy stress ``t . sigma t`` ``(n,)`` at the nodes, with the unit vector t along the deformed fibre along the axis [Pa]."""
+    found = []
+    for body in result.model.bodies:
+        F, sigma = _cauchy_stress(body, result.states[k].u[body.part])
+        T, _ = body.strip.directions(body.mesh.places[body.mesh.cells, 0])
+        along = np.einsum("ijek,jek->iek", F, T)
+        stress = np.einsum("iek,ijek,jek->ek", along, sigma, along) / (along**2).sum(axis=0)
+        found.append(_averaged(body, stress[..., None])[:, 0])
+    return np.concatenate(found)
+
+
+def _cauchy_stress(body: Body, u: Floats) -> tuple[Floats, Floats]:
+    """Deformation gradient and Cauchy stress at the nodes of every element, in the strip's frame."""
+    F = deformation_gradient(body.mesh, u, body.mesh.at_nodes)
+    sigma = np.einsum("ikeq,jkeq->ijeq", body.law.stress(F), F) / (F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0])
+    return F, sigma
+
+
+def _averaged(body: Body, values: Floats) -> Floats:
+    """Mean over the elements with a common node."""
+    cells = body.mesh.cells.ravel()
+    return np.asarray((body.mesh.gather @ values.reshape(cells.size, -1)) / np.bincount(cells)[:, None])
+
+
+def energy(result: Result, k: int) -> tuple[float, float]:
+    """Strain energy and contact energy ``eps g^2 / 2`` at the accepted load parameter ``k`` [J]."""
+    return stored_energy(result.states[k])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SectionForces:
+    """Stress resultants of undeformed sections: the action of the part towards the end on the part towards the start.
+
+    All arrays have the shape ``(m,)`` unless stated.
+
+    Parameters
+    ----------
+    stations
+        Undeformed axial coordinates [m].
+    N, V
+        Normal force, positive in tension, and shear force, positive to the left of the axis [N].
+    M
+        Moment about the section mean, anticlockwise positive [N m].
+    rotation
+        Rotation of the section from the global x axis [rad].
+    force
+        Resultant of N and V in the global frame, ``(m, 2)`` [N].
+    material_force
+        J-integral ``integral (P N . F N - W) dA`` [N]. In a straight strip of one section without loads inside, it is constant between contacts and differs on the two sides of a contact by
+        the tangential force. It vanishes beyond the last contact of a free end.
+    """
+
+    stations: Floats
+    N: Floats
+    V: Floats
+    M: Floats
+    rotation: Floats
+    force: Floats
+    material_force: Floats
+
+
+def section_forces(result: Result, strip: str, k: int, stations: Floats | None = None) -> SectionForces:
+    """Integrate the stress over sections of a strip at the accepted load parameter ``k``.
+
+    The first Piola-Kirchhoff stress P gives the traction ``p = P N`` of an undeformed section with the normal N with mean position ``x_m``.
+    Force and moment are ``f = integral p dA`` and ``M = integral (x - x_m) x p dA``. N and V are the components of f on
+    the axes of the rotated section. The rotation is the least-squares fit of ``x - x_m`` to the undeformed section.
+
+    Parameters
+    ----------
+    result, strip, k
+        Solution, name of the strip and number of the load parameter.
+    stations
+        Undeformed axial coordinates [m]; None for the two Gauss points of each element along the strip, at which the
+        stress of biquadratic elements is most accurate.
+    """
+    body = result.model.body(strip)
+    X = gauss_stations(body) if stations is None else np.asarray(stations, dtype=float)
+    own = body.strip
+    points, shares, heights = section_points(own, body.mesh.places, body.mesh.edges, X)
+    weights = (own.width_at(X) * heights)[:, None] * shares
+
+    def integral(values: Floats) -> Floats:
+        """Integrals ``(m, ...)`` over the sections of values ``(p, ...)``."""
+        parts = values.reshape(*weights.shape, *values.shape[1:])
+        return np.asarray(np.einsum("mq,mq...->m...", weights, parts))
+
+    def from_mean(values: Floats) -> Floats:
+        """Values ``(p, ...)`` less their means over the sections."""
+        means = (integral(values).T / weights.sum(axis=1)).T
+        return np.asarray(values - np.repeat(means, weights.shape[1], axis=0))
+
+    u = result.states[k].u[body.part]
+    F = gradient_at(body.mesh, u, points)
+    N, _ = own.directions(points[:, 0])
+    p, along = (np.einsum("ijp,jp->pi", A, N) for A in (body.law.stress(F), F))
+    arm = from_mean(own.placed(points) + body.mesh.basis.probes(points.T) @ u)
+    up = integral(from_mean(points[:, 1])[:, None] * arm)
+    rotation, f = np.arctan2(-up[:, 0], up[:, 1]), integral(p)
+    turned = f @ (1, 1j) * np.exp(-1j * rotation)
+    return SectionForces(
+        stations=X,
+        N=np.asarray(turned.real, dtype=float),
+        V=np.asarray(turned.imag, dtype=float),
+        M=integral(arm[:, 0] * p[:, 1] - arm[:, 1] * p[:, 0]),
+        rotation=rotation + np.arctan2(*own.frame[::-1, 0]),
+        force=f @ own.frame.T,
+        material_force=integral((p * along).sum(axis=1) - body.law.energy(F)),
+    )
+
+
+def gauss_stations(body: Body) -> Floats:
+    """Axial coordinates ``(2 n,)`` of two-point Gauss rules between the element corners on the right face [m]."""
+    corners = np.unique(body.mesh.cells[:, :4])
+    face = body.mesh.edges["right"]
+    x = body.mesh.places[face[np.isin(face, corners)], 0]
+    offsets = (1 + np.array([-1.0, 1.0]) / np.sqrt(3)) / 2
+    return np.asarray((x[:-1, None] + offsets * np.diff(x)[:, None]).ravel())
+
+
+def face_strains(result: Result, strip: str, k: int) -> tuple[Floats, dict[str, Floats]]:
+    """Engineering strains along the two faces at the accepted load parameter ``k``.
+
+    Returns
+    -------
+    stations : (m,)
+        Axial coordinates from `gauss_stations` [m].
+    strains : dict
+        ``|F T| - 1`` ``(m,)`` by face, ``"right"`` and ``"left"``, with the unit tangent T of the undeformed face.
+    """
+    body = result.model.body(strip)
+    X = gauss_stations(body)
+    strains = {}
+    for name in ("right", "left"):
+        face = body.mesh.places[body.mesh.edges[name]]
+        y = np.interp(X, *face.T)
+        piece = np.searchsorted(face[:, 0], X)
+        along, across = (face[piece] - face[piece - 1]).T
+        tangent, normal = body.strip.directions(X)
+        T = ((1 - body.strip.curvature * y) * along * tangent + across * normal).T
+        T = T / np.hypot(*T.T)[:, None]
+        F = gradient_at(body.mesh, result.states[k].u[body.part], np.stack([X, y], axis=1))
+        strains[name] = np.hypot(*np.einsum("ijp,pj->ip", F, T)) - 1
+    return X, strains

@@ -1,0 +1,88 @@
+"""Factorisation of a body's tangent stiffness, and the number of its negative eigenvalues.
+
+The stiffness is a symmetric band matrix. If all its eigenvalues are positive, it is factorised by Cholesky's method.
+Otherwise SuperLU factorises it with its pivots on the diagonal, ``K = L D L^T``: the number of negative pivots is the number of
+negative eigenvalues (Sylvester's law of inertia). If these factors grow, they are inaccurate: then rows are exchanged, and the
+eigenvalues themselves are counted.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigvals_banded
+from scipy.linalg.lapack import dpbtrf, dtbtrs
+from scipy.sparse import csc_matrix, diags
+from scipy.sparse.linalg import SuperLU, splu
+
+from fem_reference.statement.arrays import Floats
+
+_GROWTH = 1e3
+"""Largest ratio of the row sums of ``|L| |U|`` and ``|K|`` at which the factors without row exchanges are used."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Factor:
+    """A factorised symmetric matrix K. A solution is found in two halves, of which columns need the first one only."""
+
+    half: Callable[[Floats], Floats]  # first half h(b) for ``b`` ``(m, ...)``: ``L^-1 b``, or b itself
+    rest: Callable[[Floats], Floats]  # second half: ``K^-1 b`` from ``h(b)``
+    product: Callable[[Floats, Floats], Floats]  # ``a^T K^-1 b`` from ``h(a)`` and ``h(b)``
+    negatives: Callable[[], int]  # the number of negative eigenvalues
+
+
+def factorise(band: Callable[[], Floats]) -> Factor | None:
+    """Factorise a symmetric matrix; None if it is singular. ``band`` makes its lower band storage ``(width + 1, m)`` anew."""
+    lower, failed = dpbtrf(band(), lower=1, overwrite_ab=1)
+    if failed:
+        return _indefinite(band())
+
+    def triangular(right: Floats, trans: str) -> Floats:
+        return np.asarray(dtbtrs(lower, right, uplo="L", trans=trans)[0]).reshape(right.shape)
+
+    return Factor(
+        half=lambda right: triangular(right, "N"),
+        rest=lambda half: triangular(half, "T"),
+        product=lambda a, b: np.asarray(a.T @ b),
+        negatives=lambda: 0,
+    )
+
+
+def _indefinite(band: Floats) -> Factor | None:
+    """Factorise a symmetric matrix that is not positive definite; None if it is singular."""
+    matrix = full(band)
+    symmetric = _superlu(matrix, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    accurate = symmetric is not None and bool((symmetric.perm_r == symmetric.perm_c).all())
+    if symmetric is not None and accurate:
+        rows = np.abs(symmetric.L) @ (np.abs(symmetric.U) @ np.ones(band.shape[1]))
+        accurate = bool(rows.max() <= _GROWTH * np.abs(matrix).sum(axis=1).max())
+    lu = symmetric if accurate else _superlu(matrix)
+    if lu is None:
+        return None
+
+    def negatives() -> int:
+        if accurate:
+            return int((lu.U.diagonal() < 0).sum())
+        bound = 2 * band.shape[0] * float(np.abs(band).max())
+        return int(eigvals_banded(band, lower=True, select="v", select_range=(-bound, 0.0)).size)
+
+    return Factor(
+        half=lambda right: right,
+        rest=lambda half: np.asarray(lu.solve(np.ascontiguousarray(half))),
+        product=lambda a, b: np.asarray(a.T @ lu.solve(np.ascontiguousarray(b))),
+        negatives=negatives,
+    )
+
+
+def full(band: Floats) -> csc_matrix:
+    """Symmetric matrix ``(m, m)`` from its lower band storage."""
+    below = diags([row[: band.shape[1] - k] for k, row in enumerate(band)], range(0, -len(band), -1))
+    return csc_matrix(below + below.T - diags(band[0]))
+
+
+def _superlu(matrix: csc_matrix, **options: object) -> SuperLU | None:
+    """Factors in the order of the band; None if the matrix is singular."""
+    try:
+        return splu(matrix, permc_spec="NATURAL", **options)
+    except RuntimeError:  # SuperLU's word for an exactly singular matrix
+        return None

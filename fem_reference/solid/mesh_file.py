@@ -1,0 +1,191 @@
+"""Mesh files of the user, read by meshio and checked."""
+
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
+from pathlib import Path
+from stat import S_ISREG
+from typing import Any
+
+import numpy as np
+from scipy.sparse import coo_matrix, csr_matrix, kron
+from scipy.sparse.csgraph import connected_components
+
+from fem_reference.solid.mesh import (
+    EDGES,
+    Discretisation,
+    edge_weights,
+    from_basis,
+    scalar_basis,
+    section_points,
+)
+from fem_reference.statement.arrays import Floats, Ints
+from fem_reference.statement.strip import Strip
+
+_ROUND_OFF = 1e-9
+_FACE_TOLERANCE = 1e-6
+"""Largest distance of a face from half the height, relative to the height: the file may hold few digits."""
+_LARGEST = 16 * 2**20
+"""Largest mesh file that is read [bytes]."""
+
+
+class MeshError(ValueError):
+    """A mesh file breaks a rule; the message is one line."""
+
+
+def read_mesh(strip: Strip) -> Discretisation:
+    """Read ``strip.mesh_file``, a mesh of straight-sided quadrilaterals in the strip's frame with four named edges.
+
+    The mesh lies in the plane z = 0 and fills the strip. The edges "start" and "end" lie at x = 0 and at the strip's length,
+    "right" and "left" at half the height below and above the axis. An edge is a named set of lines, either a physical
+    group of Gmsh or a cell set of meshio.
+
+    Raises ValueError if the file is not a regular file of at most 16 MB or cannot be read; if an edge is
+    missing or misplaced; if an element is clockwise, not convex or has no area; if a node belongs to no
+    element; if the mesh has several parts or holes.
+    """
+    from skfem import MeshQuad
+
+    assert strip.mesh_file is not None, "structured strips have no file"
+    try:
+        points, quads, lines = _contents(_read(Path(strip.mesh_file)))
+        _check_elements(points, quads)
+        # the first side of every element has the largest increase of x
+        x = points[quads, 0]
+        first = np.argmax(np.roll(x, -1, axis=1) - x, axis=1)
+        quads = np.take_along_axis(quads, (first[:, None] + np.arange(4)) % 4, axis=1)
+        basis = scalar_basis(MeshQuad(points.T, quads.T), strip.element)
+        edges = _edges(basis, lines)
+        _check_position(strip, basis.doflocs.T, edges)
+    except MeshError as error:
+        raise ValueError(f"Strip({strip.name!r}).mesh_file = {strip.mesh_file!r}: {error}") from None
+    stations = basis.doflocs[0, edges["right"]]
+    return from_basis(strip, basis, edges, stations, _sections(strip, basis, edges, stations))
+
+
+def _require(failed: Any, rule: str) -> None:
+    """Raise an error where something failed; the first number of what failed replaces ``#`` in the rule."""
+    if np.any(failed):
+        raise MeshError(rule.replace("#", str(int(np.argmax(failed)))))
+
+
+def _read(path: Path) -> Any:
+    """Read a regular file of at most `_LARGEST` bytes by meshio."""
+    import meshio
+
+    try:
+        info = path.stat()
+        _require(not S_ISREG(info.st_mode), "must be a regular file")
+        _require(info.st_size > _LARGEST, f"must not be larger than 16 MB, it has {info.st_size / 2**20:.4g}")
+        with redirect_stdout(StringIO()), redirect_stderr(StringIO()):  # meshio prints what it cannot read
+            return meshio.read(path)
+    except MeshError:
+        raise
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - meshio's readers raise anything on a broken file
+        reason = " ".join(str(getattr(error, "strerror", None) or error).split())[:80] or type(error).__name__
+        raise MeshError(f"cannot be read ({reason})") from None
+
+
+def _contents(mesh: Any) -> tuple[Floats, Ints, dict[str, Ints]]:
+    """Corners ``(n, 2)``, quadrilaterals ``(e, 4)`` and the lines ``(l, 2)`` of each named edge."""
+    points, used = mesh.points, np.zeros(len(mesh.points), dtype=bool)
+    flat = points.ndim == 2 and points.shape[-1] in (2, 3)
+    _require(not flat, "must hold nodes with two or three coordinates")
+    _require(~np.isfinite(points).all(axis=1), "node # must have finite coordinates")
+    off = np.abs(points[:, 2:]).sum(axis=1) > _ROUND_OFF * np.ptp(points[:, :2], axis=0).max(initial=0.0)
+    _require(off, f"node # must have z = 0, it has {points[np.argmax(off), -1]:g}" if off.any() else "")
+    quads, lines = list[Ints](), dict[str, list[Ints]]()
+    tags, groups = mesh.cell_data.get("gmsh:physical"), mesh.field_data.items()
+    for number, block in enumerate(mesh.cells):
+        nodes, kind = np.asarray(block.data), block.type
+        if not nodes.size:
+            continue
+        rule = f'cells of type "{kind}" must have nodes below {len(points)}'
+        _require(nodes.min() < 0 or nodes.max() >= len(points), rule)
+        if kind.startswith("quad"):
+            used[nodes] = True
+            _check_straight(points[:, :2], nodes)
+            quads.append(nodes[:, :4])
+        elif kind.startswith("line"):
+            chosen = {name: sets[number] for name, sets in mesh.cell_sets.items() if sets[number] is not None}
+            if tags is not None:
+                edges = {name: tag for name, (tag, dimension) in groups if dimension == 1}
+                chosen |= {name: np.flatnonzero(tags[number] == tag) for name, tag in edges.items()}
+            for name in set(chosen) & set(EDGES):
+                lines.setdefault(name, []).append(nodes[np.asarray(chosen[name], dtype=np.int64), :2])
+        else:
+            _require(kind != "vertex", f'must hold quadrilaterals only, it has cells of type "{kind}"')
+    _require(not quads, "must hold quadrilaterals, it has none")
+    _require(~used, "node # must belong to a quadrilateral")
+    corners, local = np.unique(np.concatenate(quads), return_inverse=True)
+    number_of = np.full(len(points), -1)
+    number_of[corners] = np.arange(corners.size)
+    edges = {name: number_of[np.concatenate(parts)] for name, parts in lines.items()}
+    return points[corners, :2].astype(float), local.reshape(-1, 4), edges
+
+
+def _check_straight(points: Floats, cells: Ints) -> None:
+    """Require midside nodes of quadrilaterals at the middle of their sides, and a centre node at the centre."""
+    corners = points[cells[:, :4]]
+    middles = (corners + np.roll(corners, -1, axis=1)) / 2
+    expected = np.concatenate([corners, middles, corners.mean(axis=1, keepdims=True)], axis=1)
+    off = np.abs(points[cells] - expected[:, : cells.shape[1]]).max(axis=(1, 2))
+    _require(off > _ROUND_OFF * np.ptp(corners, axis=1).max(axis=1), "element # must have straight sides")
+
+
+def _check_elements(points: Floats, quads: Ints) -> None:
+    """Require convex anticlockwise quadrilaterals in one connected part."""
+    x, y = points[quads].T
+    sides = np.roll(x + 1j * y, -1, axis=0) - (x + 1j * y)
+    turn = (sides.conj() * np.roll(sides, -1, axis=0)).imag
+    area, size = turn.sum(axis=0) / 4, (np.abs(sides) ** 2).max(axis=0)
+    _require(np.abs(area) <= _ROUND_OFF * size, "element # has no area")
+    _require(area < 0, "element # is clockwise, must be anticlockwise")
+    _require(turn.min(axis=0) <= _ROUND_OFF * size, "element # is not convex")
+    shares = coo_matrix((np.ones(quads.size), (np.repeat(np.arange(len(quads)), 4), quads.ravel())))
+    parts, _ = connected_components(shares.T @ shares)
+    _require(parts > 1, f"falls into {parts} parts without a common node")
+
+
+def _edges(basis: Any, lines: dict[str, Ints]) -> dict[str, Ints]:
+    """Nodes on the lines of the named edges, an end ordered upwards, a face from start to end; no other line is on the boundary."""
+    edges, mesh = dict[str, Ints](), basis.mesh
+    facets = {frozenset(nodes): facet for facet, nodes in enumerate(mesh.facets.T.tolist())}
+    left = set(mesh.boundary_facets().tolist())
+    for name in EDGES:
+        known = sorted(lines) or "none"
+        _require(not len(lines.get(name, ())), f'must name the lines of the edge "{name}", it names {known}')
+        chosen = [facets.get(frozenset(line), -1) for line in lines[name].tolist()]
+        boundary = set(mesh.boundary_facets().tolist())
+        _require(not set(chosen) <= boundary, f'the edge "{name}" must lie on the boundary')
+        left -= set(chosen)
+        dofs = np.unique(basis.get_dofs(np.array(chosen)).flatten())
+        edges[name] = dofs[np.argsort(basis.doflocs[int(name in ("start", "end")), dofs])].astype(np.int64)
+    for facet in left:
+        (xa, ya), (xb, yb) = mesh.p[:, mesh.facets[:, facet]].T
+        raise MeshError(f"the boundary from ({xa:g}, {ya:g}) to ({xb:g}, {yb:g}) must belong to an edge")
+    return edges
+
+
+def _check_position(strip: Strip, nodes: Floats, edges: dict[str, Ints]) -> None:
+    """Require that the edges, which are the whole boundary, are the ends and the faces of the strip."""
+    L, h = strip.length, strip.height
+    for name, place in (("start", 0.0), ("end", L)):
+        off = np.abs(nodes[edges[name], 0] - place).max() > _ROUND_OFF * L
+        _require(off, f'the edge "{name}" must lie at x = {place:g}')
+    low, high = (nodes[edges[name], 1] for name in ("right", "left"))
+    _require(low.mean() > high.mean(), 'the edge "right" must lie below the edge "left"')
+    for name, y, expected in (("right", low, -h / 2), ("left", high, h / 2)):
+        furthest = y[np.argmax(np.abs(y - expected))]
+        rule = f'the edge "{name}" must lie at y = {expected:g} (half the height), it reaches {furthest:g}'
+        _require(abs(furthest - expected) > _FACE_TOLERANCE * h, rule)
+
+
+def _sections(strip: Strip, basis: Any, edges: dict[str, Ints], stations: Floats) -> csr_matrix:
+    """Weights ``(m, n)`` of the nodes in the section means, by Gauss rules over the height; exact ones at the ends."""
+    nodes = basis.doflocs.T
+    points, shares, _ = section_points(strip, nodes, edges, stations)
+    means = (kron(np.eye(stations.size), shares[None], format="csr") @ basis.probes(points.T)).tolil()
+    for row, end in ((0, "start"), (-1, "end")):
+        means[row] = 0.0
+        means[row, edges[end]] = edge_weights(strip.element, nodes[edges[end], 1])
+    return csr_matrix(means)

@@ -1,0 +1,1 @@
+"""One equilibrium: residual, tangent, Newton's method."""

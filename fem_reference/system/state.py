@@ -1,0 +1,204 @@
+"""States of the model: displacements with contacts, and the forces in them."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from fem_reference.contact.contact import Touch
+from fem_reference.contact.end_section import ROTATION, Pose
+from fem_reference.contact.friction import slip_residual
+from fem_reference.statement.arrays import Floats
+from fem_reference.statement.loads import amount
+from fem_reference.statement.problem import Pin
+from fem_reference.system.model import Model
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class State:
+    """Displacements and contacts at a load parameter."""
+
+    model: Model  # what is solved
+    u: Floats  # nodal displacements ``(n, 2)``, each in the frame of its strip [m]
+    internal_force: Floats  # internal nodal forces ``(n, 2)`` at these displacements [N]
+    t: float  # load parameter
+    touches: tuple[Touch, ...]  # contacts, in the order of the model's pairs
+    poses: tuple[Pose, ...]  # motions of the model's end sections
+    tie_forces: Floats  # forces and moments of the model's ties on their ends ``(c,)`` [N or N m]
+
+    @cached_property
+    def closed(self) -> tuple[Touch, ...]:
+        """Closed contacts."""
+        return tuple(touch for touch in self.touches if touch.closed)
+
+    @cached_property
+    def rubbing(self) -> tuple[Touch, ...]:
+        """Closed contacts with friction."""
+        return tuple(touch for touch in self.closed if touch.rubs)
+
+    @cached_property
+    def contact_set(self) -> tuple[tuple[bool, int], ...]:
+        """Whether each contact is closed, and the direction in which it slips."""
+        return tuple((touch.closed, touch.direction) for touch in self.touches)
+
+    @cached_property
+    def forces(self) -> Floats:
+        """Forces ``(c,)`` of the constraints: of closed contacts, tangential ones of those with friction, of ties [N or N m]."""
+        normal, tangential = (
+            [touch.force for touch in self.closed],
+            [touch.tangential for touch in self.rubbing],
+        )
+        return np.array([*normal, *tangential, *self.tie_forces])
+
+    @cached_property
+    def residuals(self) -> Floats:
+        """Residuals ``(c,)`` of the constraints in the order of `forces` [m, in slip N, or rad]."""
+        ties = zip(self.model.ties, self.tie_forces, strict=True)
+        return np.array(
+            [
+                *(touch.gap_residual for touch in self.closed),
+                *map(slip_residual, self.rubbing),
+                *(tie.residual(self.poses, self.t, force) for tie, force in ties),
+            ]
+        )
+
+    @cached_property
+    def residual(self) -> Floats:
+        """Internal forces minus dead loads, contact and tie forces, ``(n, 2)``; in equilibrium the clamp forces [N]."""
+        R: Floats = self.internal_force - amount(self.model.loads, self.t)
+        for touch in self.closed:
+            R -= (touch.slopes[:, :2] @ (touch.force, touch.tangential)).reshape(-1, 2)
+        return R - self.nodal_forces(self.actions) if self.model.sections else R
+
+    @cached_property
+    def reduced(self) -> Floats:
+        """The `residual` on the unknowns ``(m,)`` [N]."""
+        return np.asarray(self.model.restriction @ self.residual.ravel())
+
+    @property
+    def actions(self) -> Floats:
+        """Forces x, y and moment of ties and dead moments on every end section, ``(e, 3)`` [N, N m]."""
+        actions = np.zeros((len(self.model.sections), 3))
+        actions[:, ROTATION] = amount(self.model.moments, self.t)
+        for tie, force in zip(self.model.ties, self.tie_forces, strict=True):
+            actions[tie.section, tie.component] += force
+            if tie.other is not None:
+                actions[tie.other, tie.component] -= force
+        return actions
+
+    def nodal_forces(self, actions: Floats) -> Floats:
+        """Nodal forces ``(n, 2)`` of ``actions`` ``(e, 3)`` on the end sections [N]."""
+        along = [pose.gradient @ action for pose, action in zip(self.poses, actions, strict=True)]
+        return np.asarray(self.model.columns @ np.concatenate(along)).reshape(-1, 2)
+
+    @property
+    def force_scale(self) -> float:
+        """Largest of contact and tie forces, dead loads and ``E I / L^2``, to which tolerances refer; moments count over L [N]."""
+        model, forces = self.model, np.abs(self.forces)
+        turning = [tie.component == ROTATION for tie in model.ties]
+        forces[forces.size - len(turning) :] /= np.where(turning, model.length, 1.0)
+        return float(max(model.force_scale, amount(model.largest_loads, self.t), forces.max(initial=0.0)))
+
+    def moved(self, u: Floats, t: float, forces: Floats | None = None) -> "State":
+        """Return the state at other displacements, with the same set of closed contacts, and other ``forces`` if given."""
+        changed = self if forces is None else self._loaded(forces)
+        touches = tuple(replace(touch, at=touch.pair.project(u, t)) for touch in changed.touches)
+        return build_state(self.model, u, t, touches, changed.tie_forces)
+
+    def _loaded(self, forces: Floats) -> "State":
+        """Return the state with other forces of the constraints."""
+        values = iter(forces.tolist())
+        normal = [replace(touch, force=next(values)) if touch.closed else touch for touch in self.touches]
+        touches = [replace(touch, tangential=next(values)) if touch.rubs else touch for touch in normal]
+        return replace(self, touches=tuple(touches), tie_forces=np.array(list(values)))
+
+    def touching(self, touches: "tuple[Touch, ...] | list[Touch]") -> "State":
+        """Return the state with other variables of its contacts at the same displacements."""
+        return replace(self, touches=tuple(touches))
+
+
+def build_state(model: Model, u: Floats, t: float, touches: tuple[Touch, ...], tie_forces: Floats) -> State:
+    """Build a state at given displacements."""
+    return State(
+        model=model,
+        u=u,
+        internal_force=np.concatenate([body.internal_force(u[body.part]) for body in model.bodies]),
+        t=t,
+        touches=touches,
+        poses=tuple(section.pose(u) for section in model.sections),
+        tie_forces=tie_forces,
+    )
+
+
+def at_rest(model: Model, t: float = 0.0) -> State:
+    """Return the undeformed state with all contacts open."""
+    u, touches = np.zeros((model.nodes, 2)), list[Touch]()
+    for pair in model.pairs:
+        at = pair.project(u, t)
+        touches.append(Touch(pair=pair, at=at, begin=at if pair.contact.friction else None))
+    return build_state(model, u, t, tuple(touches), np.zeros(len(model.ties)))
+
+
+Reaction = tuple[Floats, float, Floats]
+"""Force ``(2,)`` on a strip in the global frame [N], moment about the held point [N m], and the place of this point ``(2,)`` [m]."""
+
+
+def reactions(state: State) -> dict[str, Reaction]:
+    """Reactions of clamps and supports by end. The point is the middle of a clamped edge, or the mean of a section."""
+    found = dict[str, Reaction]()
+    for body in state.model.bodies:
+        for end in body.strip.clamped:
+            edge, frame, nodes = body.mesh.edges[end], body.strip.frame, body.mesh.nodes
+            middle = nodes[edge[[0, -1]]].mean(axis=0)
+            forces = state.residual[body.part][edge]
+            turning = moment(nodes[edge] + state.u[body.part][edge] - middle, forces)
+            found[f"{body.strip.name}.{end}"] = (
+                frame @ forces.sum(axis=0),
+                turning,
+                body.offset + frame @ middle,
+            )
+    return found | tie_reactions(state, springs=False)
+
+
+def tie_reactions(state: State, *, springs: bool) -> dict[str, Reaction]:
+    """Forces and moments by end of the supports, or of the ``springs`` to the ground, at the means of sections."""
+    forces, places = dict[str, Floats](), dict[str, Floats]()
+    for tie, value in zip(state.model.ties, state.tie_forces, strict=True):
+        if tie.other is None and (tie.flexibility > 0) == springs:
+            node = state.model.sections[tie.section].node
+            forces.setdefault(node, np.zeros(3))[tie.component] = value
+            places[node] = state.poses[tie.section].position
+    return {node: (found[:2], float(found[ROTATION]), places[node]) for node, found in forces.items()}
+
+
+def imbalance(state: State) -> float:
+    """Largest component of the sum of all external forces, and of their moment about the first strip's start over L [N]."""
+    model, nodal = state.model, amount(state.model.loads, state.t)
+    total, turning = np.zeros(2), float(amount(model.moments, state.t).sum())
+    for body in model.bodies:
+        loads = nodal[body.part] @ body.strip.frame.T
+        total += loads.sum(axis=0)
+        turning += moment(body.offset + (body.mesh.nodes + state.u[body.part]) @ body.strip.frame.T, loads)
+    for force, free_moment, place in (
+        *reactions(state).values(),
+        *tie_reactions(state, springs=True).values(),
+    ):
+        total += force
+        turning += free_moment + moment(place, force)
+    for touch in state.closed:
+        if isinstance(touch.pair.node, Pin):
+            total += touch.vector
+            turning += moment(touch.pair.position(state.u, state.t), touch.vector)
+        turning += touch.tangential * touch.at.distance  # T acts on the touched curve, not at the node
+    return float(np.abs([*total, turning / model.length]).max())
+
+
+def stored_energy(state: State) -> tuple[float, float]:
+    """Strain energy, and energy ``eps g^2 / 2`` of all closed contacts [J]."""
+    strain = sum(body.strain_energy(state.u[body.part]) for body in state.model.bodies)
+    return strain, sum(touch.pair.penalty * touch.gap**2 / 2 for touch in state.closed)
+
+
+def moment(arms: Floats, forces: Floats) -> float:
+    """Moment of forces ``(..., 2)`` with their arms ``(..., 2)`` [N m]."""
+    return float((arms[..., 0] * forces[..., 1] - arms[..., 1] * forces[..., 0]).sum())

@@ -1,0 +1,239 @@
+r"""Equilibrium linearised about a state: Newton corrections, rates, and the index.
+
+The unknowns are displacements, contact forces and tie forces. U has the columns of closed contacts and end sections, see
+`fem_reference.contact.contact` and `fem_reference.contact.end_section`. In these columns the curvature of a gap times its force, and of a
+rotation times its moment, is a block of A, and the gradient of a constraint is a column of N. The flexibility C of a
+contact is ``1 / eps``, or zero where augmented Lagrangian steps remove the penetration; that of a tie is zero or a spring's. The motion of the
+pin alone changes ``U^T u`` by p. With the constraint residual r,
+
+    K du - U A (U^T du + p) - U N dlam = -R,     M^T (U^T du + p) + C dlam = -r.
+
+Without friction M is N, A is symmetric and C diagonal; see `fem_reference.contact.friction` for the others. Only the stiffness K of
+the bodies is factorised, which is symmetric; the equations in the columns are solved by elimination with row exchanges. A strip without a clamp has an anchor in K, four springs on its start's
+section, whose stiffness in A cancels it.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import compress
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_reference.contact.contact import Touch
+from fem_reference.contact.end_section import COLUMNS, ROTATION
+from fem_reference.contact.friction import slip_gradient, stiffness
+from fem_reference.solid.factor import Factor
+from fem_reference.statement.arrays import Floats
+from fem_reference.statement.loads import increment
+from fem_reference.statement.problem import Pin
+from fem_reference.system.body import Body
+from fem_reference.system.state import State
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Correction:
+    """Change of a state."""
+
+    u: Floats  # change of the displacements ``(n, 2)`` [m]
+    forces: Floats  # change of the forces of the constraints ``(c,)``, see `State.forces`
+    t: float = 0.0  # change of the load parameter
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Border:
+    """Curvatures and constraints over the columns U: 3 or 4 of each closed contact, then 4 of each end section."""
+
+    A: Floats  # curvatures ``(k, k)``: the Hessian without constraints is ``K - U A U^T``
+    N: Floats  # directions ``(k, c)`` of the constraints' forces ``U N``: gaps, friction, then ties
+    M: Floats  # gradients ``(k, c)`` of the constraints ``U M``. They differ from N for friction only
+    C: Floats  # flexibilities ``(c, c)`` [m/N]; of a contact that slips 1, and ``-sigma mu`` at its normal force
+    rates: Floats  # the same for changes along the path, on which augmented Lagrangian steps remove a contact's flexibility
+    contacts: tuple[slice, ...]  # columns of each closed contact
+
+
+def build_border(state: State) -> Border:
+    """Curvatures and constraints of the closed contacts, ties, dead moments and anchors of a state."""
+    model, closed, rubbing = state.model, state.closed, state.rubbing
+    moments = state.actions[:, ROTATION]
+    blocks = [
+        *(stiffness(touch) for touch in closed),
+        *(
+            moment * pose.curvature + section.anchor_stiffness * np.eye(COLUMNS)
+            for section, pose, moment in zip(model.sections, state.poses, moments, strict=True)
+        ),
+    ]
+    places = [
+        slice(end - len(block), end)
+        for block, end in zip(blocks, np.cumsum([*map(len, blocks)]), strict=True)
+    ]
+    k = places[-1].stop if places else 0
+    A, N = np.zeros((k, k)), np.zeros((k, len(state.forces)))
+    for place, block in zip(places, blocks, strict=True):
+        A[place, place] = block
+    ties = len(closed) + len(rubbing)
+    for number, place in enumerate(places[: len(closed)]):
+        N[place.start, number] = 1.0
+    for number, tie in enumerate(model.ties, ties):
+        for section, sign in ((tie.section, 1.0), (tie.other, -1.0)):
+            if section is not None:
+                gradient = state.poses[section].gradient[:, tie.component]
+                N[places[len(closed) + section], number] += sign * gradient
+    M, soft = N.copy(), [1 / touch.pair.penalty for touch in closed]
+    C = np.diag([*soft, *[0.0] * len(rubbing), *(tie.flexibility for tie in model.ties)])
+    for number, touch in enumerate(rubbing, len(closed)):
+        contact = closed.index(touch)
+        N[places[contact].start + 1, number] = 1.0
+        if touch.direction:
+            C[number, number], C[number, contact] = 1.0, -touch.direction * touch.pair.contact.friction
+        else:
+            M[places[contact], number] = slip_gradient(touch)
+    rates = C.copy()
+    for number, touch in enumerate(closed):
+        if touch.augmented:
+            rates[number, number] = 0.0
+    return Border(A=A, N=N, M=M, C=C, rates=rates, contacts=tuple(places[: len(closed)]))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Tangent:
+    """Factorised stiffness of the bodies at a state, with the columns of closed contacts and end sections."""
+
+    state: State  # the state of linearisation
+    factors: tuple[Factor, ...]  # factorised stiffness of every body
+    V: Floats  # first half ``(m, k)`` of ``K^-1 U`` for the columns over the unknowns, see `Factor`
+    border: Border  # curvatures and constraints over the columns
+
+    @cached_property
+    def W(self) -> Floats:
+        """Flexibility ``U^T K^-1 U`` ``(k, k)`` of the columns."""
+        return self._product(self.V)
+
+    def _product(self, half: Floats) -> Floats:
+        """Product ``U^T K^-1 b`` from the first half of the solution."""
+        parts = zip(self.factors, self.state.model.bodies, strict=True)
+        products = (factor.product(self.V[body.unknowns], half[body.unknowns]) for factor, body in parts)
+        return np.asarray(sum(products))
+
+    def correction(self) -> Correction | None:
+        """Newton correction for the residuals of the state; None if the constraint equations are singular."""
+        state = self.state
+        return self._correction(
+            self._respond(state.reduced, np.zeros(len(self.W)), state.residuals, self.border.C)
+        )
+
+    def rate(self, before: float, after: float) -> Correction | None:
+        """Change per load parameter with the mean velocity of the pins between two load parameters."""
+        state, model = self.state, self.state.model
+        moving = [pin_motion(touch, before, after) for touch in state.closed]
+        p = np.concatenate([*moving, np.zeros(model.columns.shape[1])])
+        ties = [-increment(tie.rates, before, after) for tie in model.ties]
+        r = np.append(np.zeros(len(state.closed) + len(state.rubbing)), ties)
+        load = increment(model.loads, before, after)
+        if model.sections:
+            load = load + state.nodal_forces(
+                np.outer(increment(model.moments, before, after), np.eye(3)[ROTATION])
+            )
+        return self._correction(self._respond(-(model.restriction @ load.ravel()), p, r, self.border.rates))
+
+    def inverse(self, right: Floats) -> Floats | None:
+        """Product ``(m,)`` of the inverse Hessian and ``right``; None if the Hessian is singular."""
+        k, c = self.border.N.shape
+        response = self._respond(-right, np.zeros(k), np.zeros(c), self.border.rates)
+        return None if response is None else response[0]
+
+    def _respond(self, R: Floats, p: Floats, r: Floats, C: Floats) -> tuple[Floats, Floats] | None:
+        """Changes ``K^-1 (U z - R)`` of the unknowns and dlam of the constraint forces; None if singular.
+
+        With ``z = A (U^T du + p) + N dlam`` and ``W = U^T K^-1 U`` the remaining equations are
+        ``(I - A W) z - N dlam = A (p - U^T K^-1 R)`` and ``M^T W z + C dlam = -r - M^T (p - U^T K^-1 R)``.
+        """
+        A, N, M, W = self.border.A, self.border.N, self.border.M, self.W
+        k, bodies = len(A), self.state.model.bodies
+        rests = [factor.rest for factor in self.factors]
+        half = _by_body(bodies, [factor.half for factor in self.factors], R) if R.any() else R
+        if not k:
+            return _by_body(bodies, rests, -half), np.zeros(0)
+        matrix = np.empty((k + len(C), k + len(C)))
+        matrix[:k, :k], matrix[:k, k:] = np.eye(k) - A @ W, -N
+        matrix[k:, :k], matrix[k:, k:] = M.T @ W, C
+        known = p - self._product(half)
+        right = np.concatenate([A @ known, -r - M.T @ known])
+        scale = 1 / np.maximum(np.abs(matrix).max(axis=1), np.finfo(float).tiny)
+        try:
+            z = np.linalg.solve(scale[:, None] * matrix, scale * right)
+        except np.linalg.LinAlgError:
+            return None
+        return _by_body(bodies, rests, self.V @ z[:k] - half), z[k:]
+
+    def _correction(self, response: tuple[Floats, Floats] | None) -> Correction | None:
+        if response is None:
+            return None
+        return Correction(u=self.state.model.displacements(response[0]), forces=response[1])
+
+    def index(self, force_tolerance: float = 0.0) -> int:
+        """Number of negative eigenvalues of the energy's Hessian over the admissible displacements.
+
+        A closed contact is a spring ``eps`` along its gap, or a constraint where the penetration is removed. A contact
+        with a force of at most ``force_tolerance`` [N] may be open or closed. If the index depends on this choice, the
+        result is -1. With friction the Hessian is not symmetric and the result is -1: stability is not judged.
+        """
+        if self.state.rubbing:
+            return -1
+        loaded = np.array([touch.force > force_tolerance for touch in self.state.closed], dtype=bool)
+        index = self._count(loaded | True)
+        return index if loaded.all() or self._count(loaded) == index else -1
+
+    def _count(self, chosen: NDArray[np.bool_]) -> int:
+        """Index with the contacts ``chosen`` among the closed ones.
+
+        Of a matrix over du, ``y = U^T du`` with the multiplier z, and the forces of the constraints, the Hessian is one Schur complement.
+        By Haynsworth's theorem the other one, S, counts its negative eigenvalues, with one for every multiplier.
+        """
+        A, N = self.border.A.copy(), self.border.N
+        kept = np.append(chosen, np.ones(N.shape[1] - chosen.size, dtype=bool))
+        for place in compress(self.border.contacts, ~chosen):
+            A[place] = 0.0
+        N, C = N[:, kept], self.border.rates[np.ix_(kept, kept)]
+        (k, c), one = N.shape, np.eye(len(A))
+        S = np.block([[-A, one, -N], [one, -self.W, np.zeros((k, c))], [-N.T, np.zeros((c, k)), -C]])
+        tiny = np.finfo(float).tiny
+        units = np.sqrt(np.abs(np.diag(self.W)) + tiny)  # of y; those of z are their inverse
+        forces = 1 / np.maximum(
+            np.abs(np.vstack([units[:, None] * N, np.sqrt(C)])).max(axis=0, initial=0.0), tiny
+        )
+        scale = np.concatenate([units, 1 / units, forces])
+        negatives = int((np.linalg.eigvalsh(scale[:, None] * (S + S.T) / 2 * scale) < 0).sum())
+        return negatives + sum(factor.negatives() for factor in self.factors) - int(k + c)
+
+
+def pin_motion(touch: Touch, before: float, after: float) -> Floats:
+    """Change p ``(3,)`` or ``(4,)`` of ``U^T u`` per load parameter by the motion of the pin alone."""
+    pair, at, p = touch.pair, touch.at, np.zeros(touch.slopes.shape[1])
+    if isinstance(pair.node, Pin):
+        velocity = (pair.node.position(after) - pair.node.position(before)) / (after - before)
+        p[:2] = pair.contact.sign * at.normal @ velocity, -at.tangent @ velocity
+    return p
+
+
+def linearise(state: State) -> Tangent | None:
+    """Linearise equilibrium at a state; None if the stiffness of a body is singular or not finite."""
+    model = state.model
+    factors = [body.factorised(state.u[body.part]) for body in model.bodies]
+    regular = tuple(factor for factor in factors if factor is not None)
+    if len(regular) < len(factors):
+        return None
+    columns = np.hstack([*(touch.slopes for touch in state.closed), model.columns])
+    U = np.asarray(model.restriction @ columns)
+    V = _by_body(model.bodies, [factor.half for factor in regular], U) if U.size else U
+    border = build_border(state)
+    if not all(np.all(np.isfinite(part)) for part in (V, border.A, border.N)):
+        return None
+    return Tangent(state=state, factors=regular, V=V, border=border)
+
+
+def _by_body(bodies: tuple[Body, ...], solutions: list[Callable[[Floats], Floats]], right: Floats) -> Floats:
+    """Apply one of the ``solutions`` to the unknowns of every body."""
+    parts = zip(solutions, bodies, strict=True)
+    return np.concatenate([solution(right[body.unknowns]) for solution, body in parts])

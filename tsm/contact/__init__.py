@@ -1,0 +1,1 @@
+"""Which contacts are closed, and the events that change them."""

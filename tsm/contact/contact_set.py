@@ -1,0 +1,103 @@
+"""The set of closed contacts: its initial state, its changes, and the rules for opening and closing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from tsm.contact.events import ROUND_OFF, EventKind
+from tsm.model.contact import chord_owner, with_touches
+from tsm.model.groups.shape import undeformed
+from tsm.model.model import Model
+from tsm.model.pairs import PairModel
+from tsm.model.projection import Projection
+from tsm.model.state import UNDECIDED, State, Touch
+from tsm.statement.status import Status
+
+
+def changed(model: Model, state: State, k: int, touch: Touch | None, *, armed: bool) -> State:
+    """State with pair k closed by a touch, or open and armed or not."""
+    touches, flags = list(state.touches), list(state.armed)
+    touches[k], flags[k] = touch, armed
+    return with_touches(model, replace(state, armed=tuple(flags)), tuple(touches))
+
+
+def closed_at(pair: PairModel, seen: Projection) -> Touch:
+    """Closed contact without force at the closest point."""
+    grip = UNDECIDED if pair.rubs else None
+    return Touch(element=seen.element, xi=min(max(seen.xi, 0.0), 1.0), force=(0.0, 0.0), grip=grip)
+
+
+def rearm(model: Model, state: State) -> State:
+    """State in which a passed pair may close again once its node is off the beam or back on the stated side."""
+    if all(flag or touch for flag, touch in zip(state.armed, state.touches, strict=True)):
+        return state
+    armed = list(state.armed)
+    for k, pair in enumerate(model.pairs):
+        if state.touches[k] is None and not armed[k]:
+            seen = pair.group.project(pair, state)
+            armed[k] = seen.overshoot > ROUND_OFF * model.length or seen.gap > ROUND_OFF * model.length
+    return replace(state, armed=tuple(armed))
+
+
+def initial_state(model: Model) -> State:
+    """Undeformed state; pairs whose node lies on the surface are closed with zero force.
+
+    Raises ValueError if a node starts on the wrong side of its beam.
+    """
+    q = np.zeros(model.dof_count)
+    count = len(model.pairs)
+    none: tuple[Touch | None, ...] = (None,) * count
+    start = State(load_parameter=0.0, q=q, touches=none, armed=(True,) * count)
+    if model.rods:
+        start = undeformed(model.rods, start)
+    touches: list[Touch | None] = []
+    for pair in model.pairs:
+        seen = pair.group.project(pair, start)
+        small = ROUND_OFF * model.length
+        over = seen.overshoot <= small
+        if over and seen.gap < -small:
+            position = model.node_position(pair, q, 0.0)
+            raise ValueError(
+                f"ContactPair({pair.pair.name}).side = {pair.pair.side!r}: "
+                f"the node starts at {position}, {-seen.gap:.3g} behind the surface"
+            )
+        closed = over and seen.gap <= small
+        touches.append(closed_at(pair, seen) if closed else None)
+    return owned(model, with_touches(model, start, tuple(touches)))
+
+
+def crowded(model: Model, state: State) -> bool:
+    """Whether two nodes touch one element of the paper's, whose matrix knows a single contact."""
+    owners = [
+        touch.element
+        for pair, touch in zip(model.pairs, state.touches, strict=True)
+        if touch is not None and pair.slot < 0
+    ]
+    return len(set(owners)) < len(owners)
+
+
+def forbidden(model: Model, kind: EventKind, pair: PairModel, arc: float, *, alone: bool) -> Status | None:
+    """Status that ends the march where a contact may not open; `alone` if no other contact takes over."""
+    if kind is EventKind.LINE_CONTACT:
+        return Status.LINE_CONTACT
+    if kind is EventKind.SLIP_OFF:
+        end = "start" if arc < pair.target.beam.length / 2 else "end"
+        node = model.end_node(f"{pair.target.beam.name}.{end}")
+        if any(3 * node + c in model.prescribed for c in range(3)):
+            return Status.FOLDED
+        if pair.pair.keep:
+            return Status.SLIPPED_OFF
+        corner = alone and pair.pair.radius > 0 and (node, end == "end") in model.free_ends[pair.pair.beam]
+        return Status.END_CONTACT if corner else None
+    return Status.LOST_CONTACT if pair.pair.keep else None
+
+
+def owned(model: Model, state: State) -> State:
+    """State with the owners of projected contacts renewed."""
+    touches = [
+        chord_owner(model, pair, state, touch) if touch is not None and pair.slot < 0 else touch
+        for pair, touch in zip(model.pairs, state.touches, strict=True)
+    ]
+    return replace(state, touches=tuple(touches))

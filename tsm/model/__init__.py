@@ -1,0 +1,1 @@
+"""Numbering, the elements of a structure, and what varies along them."""

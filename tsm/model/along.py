@@ -1,0 +1,125 @@
+"""What varies along the elements of a structure: natural curvature, sections of tapered beams, and loads along the beams."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+from tsm.elements import ELEMENTS, EXACT, ElementType, Integrated
+from tsm.elements.properties import Array
+from tsm.elements.rod import Course, Flexibility
+from tsm.statement.beam import Beam, LineLoad, check
+from tsm.statement.stages import Increments
+
+
+class Along:
+    """Curvature, sections and loads over the elements of all beams, in the order of the structure.
+
+    ``varies`` (e,): elements of the beams that are curved or tapered, or have a load along them.
+    ``loaded``: whether there are loads along beams.
+    ``length, curvature`` (e,): undeformed length and natural curvature.
+    ``start, end`` (e,): angle of the undeformed axis at both ends.
+    ``gauge, gyration`` (2, e): radius of gyration ``sqrt(EI/EA)``, in proportion to the height, and `gauge`,
+        EA over this radius, in proportion to the width; at both ends. Both are linear between them.
+    ``ratio`` (e,): GA/EA, infinite where the elements do not shear.
+    ``resultants`` (stages, 2, d, e): resultants of the loads, ``P(s) = int_0^s q ds`` from the start of an
+        element: coefficients of the powers 1 to d of the part of its length.
+    """
+
+    def __init__(self, beams: Sequence[Beam], loads: Sequence[LineLoad], stages: int = 1) -> None:
+        self.loaded = bool(loads)
+        laden = {load.beam for load in loads}
+        spans = [(beam, *part) for beam in beams for part in pairwise(beam.parts)]
+        self.varies = np.array([beam.varies or beam.name in laden for beam, _, _ in spans])
+        self.length = np.array([(b - a) * beam.length for beam, a, b in spans])
+        self.curvature = np.array([beam.curvature for beam, _, _ in spans])
+        self.start = np.array([beam.direction(a) for beam, a, _ in spans])
+        self.end = np.array([beam.direction(b) for beam, _, b in spans])
+        self.gauge, self.gyration = np.array([_sections(*span) for span in spans]).transpose(2, 1, 0)
+        sheared = (ELEMENTS[beam.element].sheared for beam, _, _ in spans)
+        ratios = (beam.section.GA / beam.section.EA for beam, _, _ in spans)
+        self.ratio = np.array([r if s else np.inf for r, s in zip(ratios, sheared, strict=True)])
+        degree = max((len(load.force) for load in loads), default=0)
+        resultant = np.zeros((stages, 2, degree, len(spans)))
+        first: dict[str, int] = {}
+        for number, (beam, _, _) in enumerate(spans):
+            first.setdefault(beam.name, number)
+        for load in loads:
+            beam = next(beam for beam in beams if beam.name == load.beam)
+            for element in load.elements(beam):
+                place = first[beam.name] + element
+                resultant[load.stage, :, : len(load.force), place] += _integral(load, *spans[place])
+        self.resultants = Increments(resultant)
+
+    def total(self, load_parameter: float) -> Array:
+        """Sum (2,) of all loads along the beams at a load parameter."""
+        total: Array = self.resultants.at(load_parameter).sum(axis=(1, 2))
+        return total
+
+    def course(self, elements: Array, part: Array, resultant: Array, resultant_rate: Array) -> Course:
+        """What varies at parts (s, p) of the lengths of elements (s,), from resultants (2, d, s) and their rates."""
+        length = self.length[elements, None]
+        gauge, gyration = self.gauge[:, elements, None], self.gyration[:, elements, None]
+        wide, high = gauge[0] + (gauge[1] - gauge[0]) * part, gyration[0] + (gyration[1] - gyration[0]) * part
+        EA = wide * high
+        EA_slope = ((gauge[1] - gauge[0]) * high + wide * (gyration[1] - gyration[0])) / length
+        high_slope = (gyration[1] - gyration[0]) / length
+        stretch, bend = 1 / EA, 1 / (EA * high * high)
+        stretch_slope = -stretch * EA_slope / EA
+        bend_slope = -bend * (EA_slope / EA + 2 * high_slope / high)
+        ratio = self.ratio[elements, None]
+        powers = part ** np.arange(resultant.shape[1] + 1)[:, None, None]
+        risen = np.arange(1, resultant.shape[1] + 1)[:, None, None] * powers[:-1] / length
+        return Course(
+            Flexibility(stretch, stretch / ratio, bend),
+            Flexibility(stretch_slope, stretch_slope / ratio, bend_slope),
+            *(np.einsum("cds,dsp->csp", coefficients, on) for coefficients, on in (
+                (resultant, powers[1:]), (resultant, risen), (resultant_rate, powers[1:]))),
+        )  # fmt: skip
+
+
+def kind_of(beam: Beam, *, varies: bool) -> ElementType:
+    """Type of a beam's elements.
+
+    Raises ValueError if the beam has what its elements cannot state.
+    """
+    kind = ELEMENTS[beam.element]
+    if not varies:
+        return kind
+    able = ", ".join(name for name, other in ELEMENTS.items() if other.on_varying)
+    rule = f"such elements are straight and uniform, without loads along them; use {able}"
+    check(kind.on_varying is not None, f"Beam({beam.name})", "element", beam.element, rule)
+    return kind.on_varying or kind
+
+
+def gauss_nodes(beams: Sequence[tuple[Beam, ElementType]]) -> int | None:
+    """Fixed number of Gauss nodes of the elements that contacts cut, None where it follows from the accuracy.
+
+    Raises ValueError if it is fixed for some of them only.
+    """
+    counts = {kind.nodes: beam for beam, kind in beams if isinstance(kind, Integrated)}
+    fixed = next((beam for nodes, beam in counts.items() if nodes), beams[0][0])
+    rule = f'must be "{EXACT.name}" as of other beams here, since the beam is curved or tapered or has a load along it'
+    check(len(counts) < 2, f"Beam({fixed.name})", "element", fixed.element, rule)
+    return next(iter(counts), None)
+
+
+def _sections(beam: Beam, begin: float, end: float) -> list[tuple[float, float]]:
+    """``EA/sqrt(EI/EA)`` and ``sqrt(EI/EA)`` at two parts of the length of a beam."""
+    rows = []
+    for section in (beam.section, beam.end_section or beam.section):
+        gyration = (section.EI / section.EA) ** 0.5
+        rows.append((section.EA / gyration, gyration))
+    (wide, high), (wide_end, high_end) = rows
+    return [(wide + part * (wide_end - wide), high + part * (high_end - high)) for part in (begin, end)]
+
+
+def _integral(load: LineLoad, beam: Beam, begin: float, end: float) -> Array:
+    """Coefficients (2, d) of the powers 1 to d of the part of an element's length, of the load's integral from its start."""
+    inside = Polynomial([begin, end - begin])
+    length = beam.length * (end - begin)
+    rows = [(Polynomial(force)(inside) * length).integ().coef[1:] for force in np.array(load.force).T]
+    return np.array([np.pad(row, (0, len(load.force) - len(row))) for row in rows])

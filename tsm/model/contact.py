@@ -1,0 +1,47 @@
+"""Geometry of contact: where a node lies relative to a beam, and which element owns it.
+
+A contacting node has exactly one owner, the element that it touches. If the arc position is an unknown, the owner is the element in
+which the arc position lies. When the contact passes a beam node, the owner changes inside the iteration; at the beam node, both
+neighbours describe the same point.
+
+If the position follows from a projection on chords, the owner is the element whose chord has the projection inside. On the convex
+side of a kink no chord has it, and on the concave side two chords may. The owner is then the nearer element, or the first of two at
+the same distance.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from tsm.model.groups.shape import recut
+from tsm.model.model import Model
+from tsm.model.pairs import PairModel
+from tsm.model.projection import nearest_chord, slide
+from tsm.model.state import State, Touch
+
+
+def with_touches(model: Model, state: State, touches: tuple[Touch | None, ...]) -> State:
+    """State with other contacts."""
+    after = replace(state, touches=touches)
+    return recut(model.rods, state, after) if model.rods else after
+
+
+def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...], past: float = 0.0) -> State:
+    """State with moved contacts; a contact that left its element by a part of its length is handed over to the neighbour."""
+    owned: list[Touch | None] = []
+    for pair, touch in zip(model.pairs, touches, strict=True):
+        if touch is None:
+            owned.append(None)
+            continue
+        first = pair.target.first
+        k, xi = slide(pair.target.lengths, touch.element - first, touch.xi, max(past, pair.group.past_node))
+        owned.append(touch if first + k == touch.element else replace(touch, element=first + k, xi=xi))
+    return with_touches(model, replace(state, touches=touches), tuple(owned))
+
+
+def chord_owner(model: Model, pair: PairModel, state: State, touch: Touch) -> Touch:
+    """Touch with its owner and position renewed by projection on the chords."""
+    owner, xi = nearest_chord(
+        model.positions(pair.target, state.q), model.node_position(pair, state.q, state.load_parameter)
+    )
+    return Touch(element=pair.target.first + owner, xi=min(max(xi, 0.0), 1.0), force=touch.force)

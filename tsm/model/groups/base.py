@@ -1,0 +1,217 @@
+"""The interface of element groups, through which the solver uses elements of every kind."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
+
+import numpy as np
+
+from tsm.elements.contact_law import Vector
+from tsm.elements.properties import Array
+from tsm.model.contact_block import ContactBlock
+from tsm.model.projection import Projection, arc_position, overshoot, slide
+from tsm.model.state import State, Touch, Traction
+
+if TYPE_CHECKING:
+    from tsm.model.groups.shape import Stations
+    from tsm.model.model import Model
+    from tsm.model.pairs import BeamModel, PairModel
+
+_STEPS, _PROJECTED = 30, 1e-14
+"""Newton steps of a projection at most, and the step, in lengths of an element, at which the closest point is found."""
+_PARTS = 33
+"""Longest step, as a part of an element's length."""
+
+
+class GroupForces(Protocol):
+    """Forces of a group of e elements, each with n degrees of freedom, at a configuration."""
+
+    @property
+    def nodal(self) -> Array:
+        """Residual of the degrees of freedom, shape (n, e)."""
+
+    @property
+    def ends(self) -> Array:
+        """Forces and moments at both ends of the elements, shape (6, e)."""
+
+    @property
+    def inside(self) -> float:
+        """Largest residual of the unknowns inside the elements [rad]; 0 without such unknowns."""
+
+
+class GroupTangent(Protocol):
+    """Tangent of a group, the unknowns inside its elements eliminated."""
+
+    @property
+    def tangent(self) -> Array:
+        """Derivative of the residual, row by row, shape (n n, e)."""
+
+    @property
+    def condensed_residual(self) -> Array:
+        """Contribution of the inner residual to the residual after the inner unknowns are eliminated, shape (n, e)."""
+
+    @property
+    def by_load(self) -> Array:
+        """Derivative of the residual in the load parameter, by loads along the elements, shape (n, e)."""
+
+
+class Change(NamedTuple):
+    """Change of a configuration."""
+
+    dofs: Array  # change of all degrees of freedom; shape (dofs,)
+    contacts: Array  # change of the contacts' unknowns; shape (contact unknowns,)
+    residual: float  # part of the residual that the change removes
+    factor: float  # part of the change that is taken
+    load: float  # change of the load parameter
+
+
+class ElementGroup(ABC):
+    """Elements of a model with the same kind of equations.
+
+    What is not abstract is zero, or nothing, where an element has no unknowns inside and no loads along it.
+
+    ``elements`` (e,) are numbered globally. ``dofs`` (n, e): degrees of freedom of the elements.
+
+    ``number``: number of the group in the model. ``none`` (n, e): zeros.
+    ``pairs``: contact pairs on the elements, with their numbers.
+    ``internal``: whether an element has a force and a moment as degrees of freedom, and further unknowns
+        inside, which are eliminated.
+    ``past_node``: part of an element's length by which a contact may lie past its end.
+    """
+
+    internal: ClassVar[bool]
+    past_node: ClassVar[float]
+
+    def __init__(self, model: Model, number: int, elements: Array, dofs: Array) -> None:
+        self.model, self.number, self.elements, self.dofs = model, number, elements, dofs
+        self.none = np.zeros(dofs.shape)
+        self.pairs: list[tuple[int, PairModel]] = []
+
+    @abstractmethod
+    def forces(self, state: State, contacts: ContactBlock) -> GroupForces:
+        """Forces at a configuration; the residuals of the contacts are entered in their block."""
+
+    @abstractmethod
+    def tangent(self, state: State, forces: Any, contacts: ContactBlock) -> GroupTangent:
+        """Tangent where the forces are known; the tangents of the contacts are entered in their block."""
+
+    @abstractmethod
+    def traction(self, k: int, state: State, forces: Any) -> Traction:
+        """Force and place of closed pair k, which has friction."""
+
+    @abstractmethod
+    def slip_rate(self, k: int, state: State, tangent: Any, dofs: Array, contacts: Array) -> float:
+        """Slip rate of closed pair k at rates of all degrees of freedom and of the contacts' unknowns."""
+
+    @abstractmethod
+    def energy(self, state: State) -> float:
+        """Strain energy of elements and contacts in equilibrium."""
+
+    def with_change(self, _before: State, after: State, _tangent: Any, _change: Change) -> State:
+        """State `after` a change, with the unknowns inside changed too."""
+        return after
+
+    def alike(self, history: list[State]) -> list[State]:
+        """The latest states that can be extrapolated together."""
+        return history
+
+    def turned(self, _one: State, _other: State, _like: State) -> Array:
+        """Rotations inside the elements from one state to another, at the Gauss nodes of a third; nan where the elements are cut otherwise."""
+        return np.zeros(0)
+
+    def turning(self, _state: State, _tangent: Any, _dofs: Array, _contacts: Array) -> Array:
+        """Rates of the rotations inside the elements at rates of all degrees of freedom and of the contacts' unknowns."""
+        return np.zeros(0)
+
+    def refined(self, _state: State, _forces: Any, _tolerance: float) -> State | None:
+        """State with a finer integration inside the elements, None if the integration of `state` is fine enough."""
+        return None
+
+    def inaccurate(self, _forces: Any, _tolerance: float) -> bool:
+        """Whether the finest integration inside the elements does not suffice."""
+        return False
+
+    @abstractmethod
+    def project(self, pair: PairModel, state: State) -> Projection:
+        """Closest point of the deflected axis to the pair's node, with the dents of the contacts that are closed."""
+
+    @abstractmethod
+    def point(self, element: int, arc: float, state: State) -> tuple[Vector, Vector, Vector]:
+        """Point of the axis at an arc position in an element, tangent per arc, and its derivative, without dents."""
+
+    def end(self, pair: PairModel, state: State, *, last: bool) -> tuple[Vector, Vector]:
+        """Vector from a pair's node to the start of its beam, or to its end if `last`, and a tangent there."""
+        target = pair.target
+        element, arc = (target.last, target.lengths[-1]) if last else (target.first, 0.0)
+        (px, py), tangent, _ = self.point(element, arc, state)
+        x, y = self.model.node_position(pair, state.q, state.load_parameter)
+        return (px - x, py - y), tangent
+
+    def closest(
+        self,
+        pair: PairModel,
+        state: State,
+        e: int,
+        arc: float,
+        dent: Callable[[int, float], Array] | None = None,
+    ) -> Projection:
+        """Closest point by Newton's method from an arc position within element e of the pair's beam.
+
+        The axis goes on along its tangents beyond the ends of the beam. ``dent``: displacement (2,) of the
+        axis by contacts, at a position on an element.
+        """
+        target, steep = pair.target, pair.side * pair.steep
+        x, y = self.model.node_position(pair, state.q, state.load_parameter)
+        for _ in range(_STEPS):
+            l0 = target.lengths[e]
+            inside = min(max(arc, 0.0), l0)
+            (px, py), (tx, ty), (bx, by) = self.point(target.first + e, inside, state)
+            px, py = px + (arc - inside) * tx - x, py + (arc - inside) * ty - y
+            slope, along = tx * tx + ty * ty, px * tx + py * ty
+            if inside == arc:
+                slope += bx * px + by * py
+            if steep:
+                distance = math.hypot(px, py)
+                slope, along = slope - steep * along / distance, along - steep * distance
+            step = along / slope if slope > 0 else 0.0
+            arc -= min(max(step, -l0 / _PARTS), l0 / _PARTS)
+            e, place = slide(target.lengths, e, arc / l0)
+            arc = place * target.lengths[e]
+            if abs(step) < _PROJECTED * l0:
+                break
+        element = target.first + e
+        if dent is not None:
+            px, py = np.array([px, py]) + dent(element, place)
+        arc = arc_position(target, element, place)
+        height = (py * tx - px * ty) / math.hypot(tx, ty)
+        if steep:
+            height = math.copysign(math.hypot(px, py), height)
+        gap = pair.side * (height - pair.reach_at(arc))
+        return Projection(element, place, float(gap), overshoot(target, arc))
+
+    @abstractmethod
+    def direction(self, touch: Touch, q: Array) -> tuple[float, float]:
+        """Direction of the beam at a contact, to which its force is normal; of any length."""
+
+    @abstractmethod
+    def curvature(self, k: int, touch: Touch, state: State, forces: Any, push: tuple[float, float]) -> float:
+        """Curvature of the axis at closed pair k, on which `push` acts, positive where the beam bends to the left."""
+
+    @abstractmethod
+    def intervals(self, elements: int) -> int:
+        """Intervals in which an element is drawn, in a beam of so many elements."""
+
+    @abstractmethod
+    def axes(self, beam: BeamModel, state: State, forces: Any, xi: Array) -> Array:
+        """Deflected axes of the elements of a beam, shape (elements, m, 2), at parts xi (m,) of their lengths."""
+
+    @abstractmethod
+    def section_axes(self, beam: BeamModel, shape: Array) -> Array:
+        """Unit vectors (2, elements, 2) of the axial force at both ends of a beam's elements, from its deformed nodes."""
+
+    @abstractmethod
+    def stations(self, beam: BeamModel, state: State, shape: Array, section_forces: Array) -> Stations:
+        """Short lines along a beam, from its deformed nodes and the section forces at the ends of its elements."""

@@ -1,0 +1,335 @@
+"""Exact elements: the rod's equations are integrated from contact to contact.
+
+An element is cut at its contacts. Its unknowns are the nodes' displacements, the internal force n and moment
+m at its start, and for every contact the force F, the arc position and the section's angle there; between
+cuts the force is n less the contact forces before. Its equations are arrival at the end node and, at every
+cut, position and direction of the contact and arrival of the angle. The angles inside the segments are
+eliminated (`tsm.elements.rod`) and kept in the state.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from tsm.elements import rod
+from tsm.elements.collocation import collocation
+from tsm.elements.properties import Array
+from tsm.elements.rod import Arrival, Course, Field, Flexibility, Segments
+from tsm.elements.varied import STEP
+from tsm.model.contact_block import ContactBlock
+from tsm.model.groups.base import Change, ElementGroup
+from tsm.model.groups.cut import Cut, CutElement, Section, cut_element, enter, seen
+from tsm.model.groups.layout import COLUMNS, FIXED, OWN, ROWS, Layout, layout
+from tsm.model.groups.shape import (
+    RodShape,
+    profile_of,
+    touch_of,
+)
+from tsm.model.projection import Projection
+from tsm.model.state import Cuts, Profile, State, Traction
+
+if TYPE_CHECKING:
+    from tsm.model.model import Model
+
+_KEPT = 16
+"""Divisions into segments whose constants are kept."""
+_UNDEFORMED_ORDER = 24
+"""Gauss nodes of an undeformed element."""
+
+
+class Entry(NamedTuple):
+    """Where the segments of a state begin and end."""
+
+    place: Layout  # elements of the segments
+    segments: Segments
+    field: Field  # the rod's equations in them
+    start: Array  # start, end, moment: angles at both ends, moment at the start; shape (s, 1)
+    end: Array
+    moment: Array
+    gain: Array  # moment at the end minus moment at the start; shape (s,)
+    vector: Array  # vector from start to end; shape (2, s)
+    cuts: dict[int, Cut]  # the contacts, by pair; without friction, once forces are asked for
+
+
+class RodBalance(NamedTuple):
+    """Residual of the exact elements."""
+
+    entry: Entry  # the segments
+    arrival: Arrival  # their residuals
+    nodal: Array  # forces on node i, arrival at node j, forces on node j; shape (9, r)
+    inside: float  # largest residual inside [rad]
+
+    @property
+    def ends(self) -> Array:
+        """Forces and moments at both ends of the elements, shape (6, r)."""
+        ends: Array = self.nodal[[0, 1, 2, 6, 7, 8]]
+        return ends
+
+
+class RodTangent(NamedTuple):
+    """Tangent of the exact elements."""
+
+    # contribution of the inner residual to the residual after the inner unknowns are eliminated; shape (9, r)
+    condensed_residual: Array
+    tangent: Array  # derivative of the residual, row by row; shape (81, r)
+    by_load: Array  # derivative of the residual in the load parameter; shape (9, r)
+    cut: tuple[CutElement, ...]  # elements with contacts, whose first nine rows and columns are above too
+    inner: Array  # derivatives of the angles inside by the inputs of the segments; shape (s, p, i)
+    transfer: Array  # derivatives of their outputs, see `rod.Condensed`; shape (s, 4, i)
+
+
+class _Owned(NamedTuple):
+    """Constants of the elements, one for every segment."""
+
+    place: Layout  # the segments
+    dofs: Array  # degrees of freedom of the elements; shape (9, s)
+    angles: Array  # angles of the undeformed elements at both ends; shape (2, s)
+    length: Array  # their length; shape (s,)
+    flexibility: Flexibility
+    curvature: Array  # shape (s, 1)
+
+
+class Rods(ElementGroup):
+    """Equations of the exact elements of a model, r of them. ``dofs`` (9, r) are node i, force and moment, node j."""
+
+    internal = True
+    past_node = 0.0
+
+    def __init__(self, model: Model, number: int, elements: Array, dofs: Array) -> None:
+        super().__init__(model, number, elements, dofs)
+        along = model.along
+        self.varies, self.nodes = bool(along.varies[elements].any()), model.gauss_nodes
+        self.near, self.far = model.coordinates[model.element_nodes[elements].T].transpose(0, 2, 1)
+        self.angles, self.length = np.stack([along.start, along.end])[:, elements], along.length[elements]
+        self.natural = along.curvature[elements]
+        unloaded = np.zeros((2, 2, 0, len(elements)))
+        self.flexibility = along.course(elements, 0 * self.length[:, None], *unloaded).flexibility
+        self._constants: dict[Cuts, _Owned] = {}
+        self.memo: tuple[State, RodShape, dict[int, Projection]] | None = None
+
+    def course(self, owner: Array, arc: Array, load_parameter: Any) -> Course:
+        """What varies at arc positions (s, p) within elements (s,), counted over the exact ones."""
+        along, elements, t = self.model.along, self.elements[owner], load_parameter.real
+        at, rate = (part[:, :, elements] for part in (along.resultants.at(t), along.resultants.rate(t)))
+        if load_parameter.imag:
+            at = at + 1j * load_parameter.imag * rate
+        return along.course(elements, arc / self.length[owner, None], at, rate)
+
+    def undeformed_angle(self, element: Any, arc: Array) -> Any:
+        """Angle of the undeformed axis of elements at arc positions within them."""
+        return self.angles[0][element] + self.natural[element] * arc
+
+    def section(self, element: int, arc: Any, load_parameter: float) -> Section:
+        """Section of an element at an arc position within it."""
+        place = np.array([element]), np.array([[arc]])
+        course = self.course(*place, load_parameter) if self.varies else None
+        own = course.flexibility if course else (value[element] for value in self.flexibility)
+        stretch, shear, bend = (value.item() for value in own)
+        return Section(stretch, shear, bend, float(self.natural[element]), course)
+
+    def _owned(self, cuts: Cuts) -> _Owned:
+        if cuts not in self._constants:
+            if len(self._constants) == _KEPT:
+                self._constants.clear()
+            place = layout(len(self.length), cuts)
+            own = place.owner
+            self._constants[cuts] = _Owned(
+                place, self.dofs[:, own], self.angles[:, own], self.length[own],
+                Flexibility(*(value[own] for value in self.flexibility)), self.natural[own, None],
+            )  # fmt: skip
+        return self._constants[cuts]
+
+    def enter(self, state: State) -> Entry:
+        """Cut the elements at their contacts and evaluate the rod's equations inside."""
+        profile = profile_of(state)
+        place, dofs, (angle0, angle1), length, flexibility, curvature = self._owned(profile.cuts)
+        q = state.q[dofs]
+        length, begin = length.astype(q.dtype), np.zeros(len(length), q.dtype)
+        force, start, end, moment = q[3:5, :, None], q[2] + angle0, q[8] + angle1, q[5]
+        for element, pairs in profile.cuts:
+            s = int(place.first[element])
+            for k in pairs:
+                touch = touch_of(state, k)
+                begin[s + 1] = touch.xi * self.length[element]
+                length[s] = begin[s + 1] - begin[s]
+                end[s] = start[s + 1] = touch.angle
+                s += 1
+                force[0, s, 0] = force[0, s - 1, 0] - touch.force[0]
+                force[1, s, 0] = force[1, s - 1, 0] - touch.force[1]
+            length[s] = self.length[element] - begin[s]
+        whole = (
+            flexibility,
+            force,
+            length[:, None],
+            profile.angle,
+            force,
+            place.owner,
+            begin[:, None],
+            curvature,
+        )
+        segments = self.placed(Segments(*whole), state.load_parameter)
+        field = rod.field(segments)
+        gain, *vector = field.sums[:, :, 0] * length
+        cuts: dict[int, Cut] = {}
+        for element, pairs in profile.cuts:
+            for s, k in enumerate(pairs, int(place.first[element])):
+                moment[s + 1] = moment[s] + gain[s]
+                if touch_of(state, k).grip is not None:
+                    cuts[k] = self._cut(state, k, s, segments, moment[s + 1])
+                    moment[s + 1] = moment[s + 1] - cuts[k].couple
+        start, end, moment = (part[:, None] for part in (start, end, moment))
+        return Entry(place, segments, field, start, end, moment, gain, np.array(vector), cuts)
+
+    def placed(self, segments: Segments, load_parameter: float) -> Segments:
+        """Segments with what varies along them, from those with the constant part of their forces."""
+        if not self.varies:
+            return segments
+        nodes = collocation(segments.angle.shape[1]).c
+        course = self.course(segments.owner, segments.begin + segments.length * nodes, load_parameter)
+        return segments._replace(
+            flexibility=course.flexibility, force=segments.constant - course.resultant, course=course
+        )
+
+    def _cut(self, state: State, k: int, s: int, segments: Segments, moment: Any) -> Cut:
+        """Contact at the end of segment s, with the moment before it."""
+        pair, touch = self.model.pairs[k], touch_of(state, k)
+        element, t = int(segments.owner[s]), state.load_parameter
+        section = self.section(element, segments.begin[s + 1, 0], t)
+        at = (
+            touch.angle, *segments.constant[:, s, 0].tolist(), *touch.force, pair.arc_position(touch), moment, t
+        )  # fmt: skip
+        return Cut(s, pair, touch, section, at, *seen(pair, section, at, at))
+
+    def forces(self, state: State, contacts: ContactBlock) -> RodBalance:
+        """Residual of the elements and of the contacts that cut them."""
+        for k, pair in self.pairs:
+            if state.touches[k] is None:
+                contacts.leave_open(pair)
+        entry = self.enter(state)
+        arrival = rod.arrival(entry.segments, entry.field, entry.start, entry.moment, entry.end)
+        q = state.q[self.dofs]
+        first, last = entry.place.first, entry.place.last
+        residual = np.empty_like(q)
+        residual[0:3] = -q[3:6]
+        residual[3:5] = (self.near - self.far) + (q[0:2] - q[6:8]) + entry.vector[:, first]
+        residual[5] = arrival.end_residual[last]
+        residual[6:8] = entry.segments.constant[:, last, 0]
+        if self.varies:
+            residual[6:8] -= self._resultant(state)
+        residual[8] = entry.moment[last, 0] + entry.gain[last]
+        for element, pairs in profile_of(state).cuts:
+            x, y = (self.near[:, element] + q[:2, element]).tolist()
+            for s, k in enumerate(pairs, int(first[element])):
+                if k not in entry.cuts:
+                    entry.cuts[k] = self._cut(state, k, s, entry.segments, entry.moment[s + 1, 0])
+                cut = entry.cuts[k]
+                dx, dy = entry.vector[:, cut.s].tolist()
+                x, y = x + dx, y + dy
+                cx, cy = self.model.node_position(cut.pair, state.q, state.load_parameter)
+                px, py, row = cut.pair.rows(
+                    cut.touch.grip, cut.touch.force, cut.here, self.model.stick_stiffness
+                )
+                contacts.enter(
+                    k, cut.pair, cut.touch.force, (x - cx + px, y - cy + py, row, arrival.end_residual[cut.s])
+                )
+                residual[3:5, element] += entry.vector[:, cut.s + 1]
+        return RodBalance(entry, arrival, residual, float(np.abs(arrival.inside).max()))
+
+    def tangent(self, state: State, forces: RodBalance, contacts: ContactBlock) -> RodTangent:
+        """Tangent of the elements and of the contacts that cut them."""
+        entry = forces.entry
+        condensed = rod.condense(entry.segments, entry.field, forces.arrival, entry.moment)
+        first = entry.place.first
+        tangent = np.empty((len(first), OWN, OWN), dtype=state.q.dtype)
+        tangent[:] = FIXED
+        transfer = condensed.transfer[first]
+        tangent[:, ROWS[:, None], COLUMNS] = transfer[:, :, :5]
+        condensed_residual, by_load = np.zeros((2, *forces.nodal.shape))
+        condensed_residual[ROWS] = transfer[:, :, 6].T
+        if self.varies:
+            by_load[ROWS] = transfer[:, :, rod.LOAD].T
+        cut, unit = [], self.model.stick_stiffness
+        for e, pairs in profile_of(state).cuts:
+            part = cut_element(e, {k: entry.cuts[k] for k in pairs}, condensed.transfer[first[e] :], unit)
+            own = part.tangent[:OWN]
+            tangent[e], by_load[:, e], condensed_residual[:, e] = own[:, :OWN], own[:, -2], own[:, -1]
+            enter(part, self, contacts)
+            cut.append(part)
+        if self.varies:
+            by_load[6:8] = -self._resultant(state, rate=True)
+        flat = tangent.reshape(len(first), -1).T
+        return RodTangent(condensed_residual, flat, by_load, tuple(cut), condensed.inner, condensed.transfer)
+
+    def inside(self, tangent: RodTangent, state: State, change: Change) -> Array:
+        """Change (s, p) of the inner angles with all other unknowns; `residual` is 1 to remove the residual inside."""
+        place, x = layout(len(self.length), profile_of(state).cuts), change.dofs[self.dofs]
+        inputs = np.zeros((len(place.owner), tangent.inner.shape[2]))
+        inputs[:, :5] = x[COLUMNS][:, place.owner].T
+        inputs[:, 6], inputs[:, 8:] = change.residual, change.load
+        for part in tangent.cut:
+            own = (x[:, part.element], change.contacts[part.slots], [change.load, change.residual])
+            first = place.first[part.element]
+            inputs[first : first + len(part.inputs)] = part.inputs @ np.concatenate(own)
+        inside: Array = (tangent.inner @ inputs[:, :, None])[:, :, 0]
+        return inside
+
+    def turning(self, state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> Array:
+        """Rates of the angles at the Gauss nodes."""
+        return self.inside(tangent, state, Change(dofs, contacts, 0.0, 1.0, 1.0)).ravel()
+
+    def traction(self, k: int, _state: State, forces: RodBalance) -> Traction:
+        """Force and place of a contact with friction."""
+        cut = forces.entry.cuts[k]
+        return cut.pair.traction(cut.touch.force, cut.here)
+
+    def slip_rate(self, k: int, _state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> float:
+        """Slip rate of a contact."""
+        part = next(part for part in tangent.cut if k in part.pairs)
+        own = (dofs[self.dofs[:, part.element]], contacts[part.slots], [1.0, 0.0])
+        return float(part.slip[k] @ np.concatenate(own))
+
+    def energy(self, state: State) -> float:
+        """Strain energy of the elements; contacts have none."""
+        entry = self.enter(state)
+        segments, field, (stretch, shear, bend) = entry.segments, entry.field, entry.segments.flexibility
+        moment = rod.moments(segments, field, entry.moment)
+        density = bend * moment**2 + stretch * field.N**2 + shear * field.q**2
+        return float((segments.length * density @ collocation(segments.angle.shape[1]).w).sum()) / 2
+
+    def _resultant(self, state: State, *, rate: bool = False) -> Array:
+        """Resultants (2, r) of the loads along the elements, or their derivatives in the load parameter."""
+        resultants, t = self.model.along.resultants, state.load_parameter.real
+        at_end: Array = (resultants.rate(t) if rate else resultants.at(t))[:, :, self.elements].sum(axis=1)
+        return at_end
+
+    def load_work(self, state: State) -> Any:
+        """Work of the loads of a state on the displacements to it: ``[P . u] - int P . (r' - r_0') ds`` with ``P' = q``."""
+        entry, own, t = self.enter(state), np.arange(len(self.length)), state.load_parameter.real
+        segments, table = entry.segments, collocation(_UNDEFORMED_ORDER)
+        arc = segments.begin + segments.length * collocation(segments.angle.shape[1]).c
+        density = (self.course(segments.owner, arc, t).resultant * entry.field.values[1:]).sum(axis=0)
+        along = (density @ collocation(segments.angle.shape[1]).w) @ segments.length[:, 0]
+        arc = self.length[:, None] * table.c
+        angle = self.undeformed_angle(own[:, None], arc)
+        straight = (self.course(own, arc, t).resultant * np.stack([np.cos(angle), np.sin(angle)])).sum(axis=0)
+        return (
+            (self._resultant(state) * state.q[self.dofs[6:8]]).sum()
+            - along
+            + (straight @ table.w) @ self.length
+        )
+
+    def load_power(self, state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> float:
+        """Work of the loads at rates of all unknowns: a complex step of `load_work`, which holds the loads."""
+        step, profile = 1j * STEP, profile_of(state)
+        inside = self.turning(state, tangent, dofs, contacts).reshape(profile.angle.shape)
+        touches = tuple(
+            touch and pair.moved(touch, (step * contacts[pair.slots]).tolist())
+            for pair, touch in zip(self.model.pairs, state.touches, strict=True)
+        )
+        angle = Profile(cuts=profile.cuts, angle=profile.angle + step * inside)
+        t: Any = state.load_parameter + step
+        moved = replace(state, load_parameter=t, q=state.q + step * dofs, touches=touches, profile=angle)
+        return float(self.load_work(moved).imag / STEP)

@@ -1,0 +1,256 @@
+"""The deflected axis of exact elements between their Gauss nodes, and the angles inside.
+
+When contacts move, open or close, the elements are cut again and the angles interpolated. Where the
+integration is not accurate enough, they take more Gauss nodes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from tsm.elements import rod
+from tsm.elements.collocation import collocation, interpolation
+from tsm.elements.properties import Array
+from tsm.model.groups.layout import layout
+from tsm.model.projection import Projection
+from tsm.model.state import Cuts, Profile, State, Touch
+
+if TYPE_CHECKING:
+    from tsm.model.groups.rods import Entry, Rods
+
+START_ORDER = 14
+"""Gauss nodes of an undeformed element whose accuracy decides on their number."""
+_SMOOTH = 1e-13
+"""Error of an inner polynomial that counts as round-off."""
+
+
+def profile_of(state: State) -> Profile:
+    """Angles inside the exact elements of a model that has some."""
+    assert state.profile is not None, "a model with exact elements has their profile"
+    return state.profile
+
+
+def touch_of(state: State, k: int) -> Touch:
+    """Closed contact of pair k."""
+    touch = state.touches[k]
+    assert touch is not None, "a cut is a closed contact"
+    return touch
+
+
+class Station(NamedTuple):
+    """Points of the axis."""
+
+    position: Array  # position; shape (m, 2)
+    angle: Array  # angle of the section from the x axis; shape (m,)
+    moment: Array  # bending moment; shape (m,)
+    force: Array  # internal force; shape (m, 2)
+
+
+class Stations(NamedTuple):
+    """Short lines along a beam. Neighbours share no point: section forces may jump between them."""
+
+    arc: Array  # distance along the undeformed axis; shape (c, 2)
+    position: Array  # deformed position; shape (c, 2, 2)
+    rotation: Array  # rotation from the undeformed state; shape (c, 2)
+    forces: Array  # axial force, shear force and moment; shape (c, 2, 3)
+
+
+class RodShape(NamedTuple):
+    """Polynomials of angle, moment and position in every segment."""
+
+    first: Array  # first, last: first and last segment of every element; shape (r,)
+    last: Array
+    arc: Array  # arc position of the start of every segment within the element; shape (s,)
+    length: Array  # undeformed length of every segment; shape (s,)
+    force: Array  # internal force at the start of every segment; shape (2, s)
+    # position (x, y), angle and moment, and the internal force where it varies, at the start and the Gauss nodes;
+    # shape (4, s, p + 1) or (6, s, p + 1)
+    values: Array
+
+    def at(self, element: int, arc: Array) -> Station:
+        """Stations of an element, counted over the exact ones, at arc positions (m,) within it."""
+        first, last = int(self.first[element]), int(self.last[element])
+        within = np.searchsorted(self.arc[first + 1 : last + 1], arc, side="right")
+        if (within == within[0]).all():
+            segment = first + int(within[0])
+            length = self.length[segment]
+            sigma = (arc - self.arc[segment]) / length if length else np.zeros(len(arc))
+            return self.within(segment, sigma)
+        numbers = sorted(set(within.tolist()))  # `np.unique` imports numpy.ma
+        parts = [self.at(element, arc[within == n]) for n in numbers]
+        stations = Station(*(np.empty((len(arc), *value.shape[1:])) for value in parts[0]))
+        for n, part in zip(numbers, parts, strict=True):
+            for whole, value in zip(stations, part, strict=True):
+                whole[within == n] = value
+        return stations
+
+    def within(self, segment: int, sigma: Array) -> Station:
+        """Stations at parts sigma (m,) of a segment."""
+        x, y, angle, moment, *varying = (
+            self.values[:, segment] @ interpolation(self.values.shape[2] - 1, sigma).T
+        )
+        force = np.empty((len(sigma), 2))
+        force[:] = np.array(varying).T if varying else self.force[:, segment]
+        return Station(np.array([x, y]).T, angle, moment, force)
+
+
+def plain_shape(group: Rods, state: State, entry: Entry | None = None) -> RodShape:
+    """Polynomials through what is known at the Gauss nodes."""
+    entry = entry or group.enter(state)
+    segments, field, place = entry.segments, entry.field, entry.place
+    x, y = (group.near + state.q[group.dofs[:2]])[:, place.owner]
+    for element, _ in profile_of(state).cuts:
+        for s in range(place.first[element], place.last[element]):
+            x[s + 1], y[s + 1] = x[s] + entry.vector[0, s], y[s] + entry.vector[1, s]
+    start = np.stack([x, y, entry.start[:, 0], entry.moment[:, 0]])
+    rates = np.stack([*field.values[1:], turning(entry), field.values[0]])
+    force = segments.constant[:, :, 0]
+    if segments.course is not None:
+        force = force - group.course(segments.owner, segments.begin, state.load_parameter).resultant[:, :, 0]
+        start, rates = np.concatenate([start, force]), np.concatenate([rates, -segments.course.load])
+    arc, length = segments.begin[:, 0], segments.length[:, 0]
+    risen = start[:, :, None] + rates @ collocation(rates.shape[2]).once.T * length[:, None]
+    values = np.concatenate([start[:, :, None], risen], axis=2)
+    return RodShape(place.first, place.last, arc, length, force, values)
+
+
+def turning(entry: Entry) -> Array:
+    """Derivatives (s, p) of the angles at the Gauss nodes in the arc position."""
+    segments = entry.segments
+    bent = segments.flexibility.bend * rod.moments(segments, entry.field, entry.moment)
+    turn: Array = bent + segments.curvature
+    return turn
+
+
+def pieces(group: Rods, shape: RodShape, element: int, count: int) -> Stations:
+    """Lines along an element, `count` for every segment."""
+    lines = []
+    for s in range(shape.first[element], shape.last[element] + 1):
+        sigma = np.linspace(0, 1, count + 1)
+        at = shape.within(s, sigma)
+        c, sn = np.cos(at.angle), np.sin(at.angle)
+        nx, ny = at.force.T
+        forces = np.stack([nx * c + ny * sn, ny * c - nx * sn, at.moment], axis=1)
+        arc = shape.arc[s] + sigma * shape.length[s]
+        lines.append((arc, at.position, at.angle - group.undeformed_angle(element, arc), forces))
+    pairs = np.arange(count)[:, None] + np.arange(2)
+    return Stations(
+        *(np.concatenate([part[pairs] for part in column]) for column in zip(*lines, strict=True))
+    )
+
+
+def _profile(
+    group: Rods, state: State, cuts: Cuts, order: int, angle_at: Callable[[int, Array], Array]
+) -> State:
+    """State whose angles inside are those of a function of element and arc positions."""
+    place, nodes, inside = layout(len(group.length), cuts), collocation(order).c, dict(cuts)
+    angle = np.empty((len(place.owner), order))
+    for element, (first, last) in enumerate(zip(place.first, place.last, strict=True)):
+        arcs = [touch_of(state, k).xi * group.length[element] for k in inside.get(element, ())]
+        ends = np.array([0.0, *arcs, group.length[element]])
+        at = ends[:-1, None] + np.diff(ends)[:, None] * nodes
+        angle[first : last + 1] = angle_at(element, at.ravel()).reshape(at.shape)
+    return replace(state, profile=Profile(cuts=cuts, angle=angle))
+
+
+def undeformed(group: Rods, state: State) -> State:
+    """State with the angles of the undeformed elements."""
+    return _profile(group, state, _cuts(group, state), group.nodes or START_ORDER, group.undeformed_angle)
+
+
+def _cuts(group: Rods, state: State) -> Cuts:
+    """Where touches cut the elements."""
+    contacts_on: dict[int, list[tuple[float, int]]] = {}
+    for k, (pair, touch) in enumerate(zip(group.model.pairs, state.touches, strict=True)):
+        if touch is not None and pair.cuts:
+            contacts_on.setdefault(int(group.model.place[touch.element]), []).append((touch.xi, k))
+    return tuple((element, tuple(k for _, k in sorted(on))) for element, on in sorted(contacts_on.items()))
+
+
+def recut(group: Rods, state: State, after: State) -> State:
+    """State `after`, which has other touches, with its profile cut where they are; a new touch takes the angle that it finds."""
+    cuts = _cuts(group, after)
+    if cuts == profile_of(state).cuts:
+        return after
+    shape, touches, q = plain_shape(group, state), list(after.touches), state.q.copy()
+    for element, pairs in cuts:
+        for k in pairs:
+            old, touch = state.touches[k], touch_of(after, k)
+            if old is None:
+                angle = shape.at(element, np.array([touch.xi * group.length[element]])).angle[0]
+                touches[k] = replace(touch, angle=float(angle))
+            elif old.element != touch.element:
+                # a contact that passed to another element takes its force along from the starts in between
+                first, last = sorted((old.element, touch.element))
+                between = group.model.place[first + 1 : last + 1]
+                q[group.dofs[3:5, between]] += (
+                    np.sign(touch.element - old.element) * np.array(touch.force)[:, None]
+                )
+    cut = replace(after, q=q, touches=tuple(touches))
+    return _sampled(group, shape, cut, cuts, profile_of(state).angle.shape[1])
+
+
+def resampled(group: Rods, state: State, order: int) -> State:
+    """State with a number of Gauss nodes."""
+    profile = profile_of(state)
+    if profile.angle.shape[1] == order:
+        return state
+    return _sampled(group, plain_shape(group, state), state, profile.cuts, order)
+
+
+def _sampled(group: Rods, shape: RodShape, state: State, cuts: Cuts, order: int) -> State:
+    """State whose angles inside are taken from a shape."""
+    return _profile(group, state, cuts, order, lambda element, arc: shape.at(element, arc).angle)
+
+
+def truncation(group: Rods, entry: Entry) -> float:
+    """Estimated error of the integration, in positions over the longest beam's length and in angles.
+
+    At the ends of a segment the error is the product of two interpolation errors, of the solution and of the
+    influence of an error inside; both are measured by the last two Legendre coefficients of moment and
+    tangent vector, and both integrations divide by p.
+    """
+    segments, values = entry.segments, entry.field.values
+    order = values.shape[2]
+    last = collocation(order).legendre[-2:].T
+    tail = np.abs(values @ last).max(axis=2)
+    length = np.abs(segments.length[:, 0])
+    turn = tail[0] * length**2 * segments.flexibility.bend.max(axis=1)
+    if segments.course is not None:
+        turn = np.maximum(turn, np.abs(turning(entry) @ last).max(axis=1) * length)
+    largest = np.maximum(turn, tail[1:].max(axis=0) * length / group.model.length).max()
+    return float(largest / order) ** 2
+
+
+def deflected(group: Rods, state: State) -> tuple[RodShape, dict[int, Projection]]:
+    """Deflected axis, as accurate between the Gauss nodes as at the ends of the segments, and points found on it.
+
+    With p Gauss nodes the ends of a segment have order 2p, but the polynomial between them has order p. The
+    polynomial is therefore computed again with 2p nodes between the same ends.
+    """
+    if group.memo is None or group.memo[0] is not state:
+        entry = group.enter(state)
+        if math.sqrt(truncation(group, entry)) > _SMOOTH:
+            entry = _finer_inside(group, state)
+        group.memo = state, plain_shape(group, state, entry), {}
+    return group.memo[1:]
+
+
+def _finer_inside(group: Rods, state: State) -> Entry:
+    """Segments between the same ends, with twice the Gauss nodes."""
+    finer = resampled(group, state, 2 * profile_of(state).angle.shape[1])
+    entry = group.enter(finer)
+    for _ in range(5):
+        arrival = rod.arrival(entry.segments, entry.field, entry.start, entry.moment, entry.end)
+        if np.abs(arrival.inside).max() < _SMOOTH:
+            break
+        inner = rod.condense(entry.segments, entry.field, arrival, entry.moment).inner
+        profile = profile_of(finer)
+        finer = replace(finer, profile=replace(profile, angle=profile.angle + inner[:, :, 6]))
+        entry = group.enter(finer)
+    return entry

@@ -1,0 +1,225 @@
+"""Critical points of the equilibrium path, where the tangent is singular and a mode needs no force; mechanisms.
+
+At a limit point the load parameter is stationary along the path, and this branch has no equilibrium beyond.
+At a bifurcation point the path goes on, unstable, and another branch crosses it. Both kinds are located as
+the root of a number g. This number vanishes where the tangent K is singular and is smooth there (Griewank and
+Reddien 1984)::
+
+    [ K  b ] [ v ]   [ 0 ]
+    [ c  0 ] [ g ] = [ 1 ],     g = -1/(c . y),  v = y/(c . y),  K y = b
+
+The vectors b and c are arbitrary and fixed; v is the mode.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from tsm.contact.contact_set import changed
+from tsm.contact.root import find_root
+from tsm.elements.properties import Array
+from tsm.model.model import Model
+from tsm.model.state import State
+from tsm.path.path import Point
+from tsm.system.axis import axis_line
+from tsm.system.stability import IDLE, loose, mode
+from tsm.system.system import Drive
+
+_LOCATED = 1e-13
+"""Tolerance of the search: width of the bracket of the critical load parameter, and g over its value at the ends of the step."""
+_LEAST = 1e-9
+"""Singular value of the equations of rigid motions, in coordinates over the structure's size, that counts as zero."""
+_SHIFT = 1e-6
+"""Amplitude of the mode in the difference quotient that gives its shape along the axis."""
+_NOT_SMALL = 0.1
+"""Part of a mode's largest displacement across the axes that decides on its sign."""
+
+
+class CriticalKind(StrEnum):
+    """Kind of a critical point."""
+
+    LIMIT_POINT = "limit point"
+    BIFURCATION = "bifurcation"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CriticalPoint:
+    """A located critical point of the equilibrium path.
+
+    Attributes
+    ----------
+    kind : CriticalKind
+        Limit point or bifurcation.
+    load_parameter : float
+        Load parameter of the point.
+    mode : dict of ndarray, shape (m, 2)
+        Displacements of the beams' axes in the buckling mode, at the stations of `Result.axis_line`; the
+        largest is 1.
+    """
+
+    kind: CriticalKind
+    load_parameter: float
+    mode: dict[str, Array]
+
+
+def _bordered(point: Point, across: Array | None = None) -> tuple[float, Array]:
+    """Return g and v of the module's equation; the vector c is `across`, or by default along all displacements."""
+    newton = point.newton
+    size = len(newton.scale)
+    draw = np.random.default_rng(1)
+    b = draw.uniform(0.5, 1.0, size) * draw.choice([-1.0, 1.0], size) / newton.scale
+    c = draw.uniform(0.5, 1.0, size) * newton.per_unknown if across is None else across
+    solved = newton.assembler.solve(point.system, b)
+    if solved is None or not np.isfinite(solved[:, 1]).all():
+        return 0.0, np.zeros(size)
+    y = solved[:, 1]
+    along = float(c @ y)
+    with np.errstate(all="ignore"):
+        v = y / along if along else np.zeros(size)
+    return (-1 / along, v) if along and np.isfinite(v).all() else (0.0, np.zeros(size))
+
+
+def locate_bifurcation(before: Point, after: Point, solve: Callable[[float], Point | None]) -> Point | None:
+    """Locate a bifurcation, the point with a singular tangent on a path that goes on; None where the path is not found.
+
+    The index shows the side of the bifurcation, and g measures the distance to it.
+
+    ``before, after``: ends of a step between which the index changes. ``solve``: point of the path at a load
+    parameter.
+    """
+    _, v = _bordered(before)
+    weights = before.newton.per_unknown**2
+    length = float(v @ (weights * v))
+    if not 0 < length < np.inf:
+        return None
+
+    def distance(point: Point) -> float:
+        g = abs(_bordered(point, weights * v / length)[0])
+        return g if point.index == before.index else -g
+
+    def evaluate(t: float) -> tuple[float, Point] | None:
+        point = solve(t)
+        return None if point is None else (distance(point), point)
+
+    g0, g1 = distance(before), distance(after)
+    apart, small = _LOCATED * max(1.0, after.t), _LOCATED * max(g0, -g1)
+    return find_root(evaluate, (before.t, g0), (after.t, g1), small=small, apart=apart)
+
+
+def critical_point(kind: CriticalKind, point: Point, load_parameter: float) -> CriticalPoint:
+    """Critical point with the mode of the tangent at a point beside it."""
+    shape = mode_shape(point)
+    shapes = {} if shape is None else shape[1]
+    return CriticalPoint(kind=kind, load_parameter=load_parameter, mode=shapes)
+
+
+def mode_shape(point: Point) -> tuple[Array, dict[str, Array]] | None:
+    """Buckling mode near a critical point, of the sign with which it begins to the left: see `_side`.
+
+    Returns the change of the unknowns that moves some point of an axis by 1, and the displacements (m, 2) of
+    the axes; None without a single mode.
+    """
+    newton, model, state = point.newton, point.model, point.state
+    soft = mode(newton.assembler, state, point.system)
+    if soft is None:
+        return None
+    moved = newton.update(state, soft[0] * _SHIFT, point.system)
+    system = newton.assembler.linearise(moved)
+    axes = {beam: axis_line(model, state, point.system, beam)[1] for beam in model.beams}
+    shapes = {beam: axis_line(model, moved, system, beam)[1] - axis for beam, axis in axes.items()}
+    most = max(float(np.abs(shape).max()) for shape in shapes.values()) or 1.0
+    most *= _side(np.concatenate([_leftwards(axes[beam], shape) for beam, shape in shapes.items()]))
+    return soft[0] * (_SHIFT / most), {beam: shape / most for beam, shape in shapes.items()}
+
+
+def _leftwards(axis: Array, shape: Array) -> Array:
+    """Displacements to the left of an axis that is followed from start to end."""
+    x, y = np.gradient(axis, axis=0).T
+    left: Array = (x * shape[:, 1] - y * shape[:, 0]) / np.hypot(x, y)
+    return left
+
+
+def _side(left: Array) -> float:
+    """Sign of the first displacement, beam by beam from start to end, that is not small.
+
+    It does not depend on the frame of reference, the elements or round-off.
+    """
+    first = np.argmax(np.abs(left) > _NOT_SMALL * np.abs(left).max())
+    return 1.0 if left[first] >= 0 else -1.0
+
+
+def mechanism(point: Point, drive: Drive) -> bool:
+    """Whether a structure can move without strain as a drive begins. A contact without force holds it only if it begins to push."""
+    model, state = point.model, point.state
+    edge, opened = IDLE * model.force_scale, state
+    idle = [
+        (k, pair, touch)
+        for k, (pair, touch) in enumerate(zip(model.pairs, state.touches, strict=True))
+        if touch is not None and pair.slot >= 0 and math.hypot(*touch.force) <= edge
+    ]
+    for k, *_ in idle:
+        opened = changed(model, opened, k, None, armed=True)
+    if not (model.joints or _moves(model, opened)):
+        return False
+    if _free(point):
+        return True
+    by = point.rates(drive) if idle else None
+    if by is None:
+        return False
+    for k, pair, touch in idle:
+        x, y = pair.group.direction(touch, point.state.q)
+        fx, fy, *_ = by.contacts[pair.slots]
+        if pair.side * (fy * x - fx * y) <= edge:
+            state = changed(model, state, k, None, armed=True)
+    return state is not point.state and _free(point.with_state(state))
+
+
+def _free(point: Point) -> bool:
+    """Whether beams that are rigid can move, and no load stiffens the motion; the tangent of many slender elements is loose too."""
+    return loose(point.newton.assembler, point.state, point.system) and _moves(point.model, point.state)
+
+
+def _moves(model: Model, state: State) -> bool:
+    """Whether the beams, each rigid, can move against supports, hinges, springs and closed contacts."""
+    body, before = np.arange(len(model.coordinates)), np.array(-1)
+    while not np.array_equal(body, before):
+        before = body.copy()
+        for beam in model.beams.values():
+            body[beam.nodes] = body[beam.nodes].min()
+    numbers, body = np.unique(body, return_inverse=True)
+    q = state.q[: 3 * len(body)].copy()
+    q[model.slaves] = q[model.masters]
+    places = model.coordinates + q.reshape(-1, 3)[:, :2]
+
+    def rows(nodes: Array, at: Array) -> Array:
+        """Displacements and rotation (n, 3, columns) of the bodies of some nodes at some places, by the bodies' motions."""
+        found, n = np.zeros((len(nodes), 3, len(numbers), 3)), np.arange(len(nodes))
+        x, y = ((at - places[0]) / model.extent).T
+        found[n, :, body[nodes]] = np.eye(3)
+        found[n, 0, body[nodes], 2], found[n, 1, body[nodes], 2] = -y, x
+        return found.reshape(len(nodes), 3, 3 * len(numbers))
+
+    def held(dofs: Array) -> Array:
+        kept: Array = rows(dofs // 3, places[dofs // 3])[np.arange(len(dofs)), dofs % 3]
+        return kept
+
+    equations = [held(model.fixed), held(model.slaves) - held(model.masters)]
+    if model.springs is not None:
+        equations += [held(model.springs.ground), held(model.springs.second) - held(model.springs.first)]
+    for pair, touch in zip(model.pairs, state.touches, strict=True):
+        if touch is None:
+            continue
+        at = np.array([model.node_position(pair, state.q, state.load_parameter)])
+        moved = rows(model.element_nodes[[touch.element], 0], at)[0, :2]
+        if pair.node >= 0:
+            moved = moved - rows(np.array([pair.node]), at)[0, :2]
+        x, y = pair.group.direction(touch, state.q)
+        sticks = touch.grip is not None and not touch.grip.slip
+        equations.append(moved if sticks else np.array([[-y, x]]) / math.hypot(x, y) @ moved)
+    every = np.concatenate(equations)
+    return bool(np.linalg.matrix_rank(every, tol=_LEAST) < every.shape[1])

@@ -1,0 +1,172 @@
+"""Falls: the motion of a structure from a lost contact, or from a critical point, to the equilibrium where it rests.
+
+There may be no equilibrium nearby. The structure therefore moves against a viscous drag, in steps that each
+lower its potential and may be as short as necessary. Beams and pins that the structure meets on the way
+become contacts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from tsm.contact.contact_set import changed
+from tsm.contact.events import ROUND_OFF, EventKind, normal_force
+from tsm.elements.properties import Array
+from tsm.model.model import Model
+from tsm.model.state import State
+from tsm.path.critical import mode_shape
+from tsm.path.friction import grips
+from tsm.path.margins import Margin, least_push
+from tsm.path.path import Point
+from tsm.path.step import Step
+from tsm.statement.status import Status
+from tsm.system.newton import Newton
+from tsm.system.system import Drag
+
+_LAST_PART = 1e-2
+"""Accuracy of a touch within a fall, as a part of the lost force. It may be low, because the path of a fall has no physical meaning."""
+_FIRST_PACE = 1e-1
+"""First time step of a fall, in the units of `_resistance`."""
+_LEVEL = 1e-9
+"""Largest rise of the energy that counts as round-off, over the energy and over ``EI/L``."""
+_PUSH = 0.006
+"""Displacement along the mode of a critical point at which a fall starts, over the longest beam."""
+_TRIALS = 200
+"""Largest number of steps of a fall, with refused ones; a structure without supports and contacts never comes to rest."""
+_FAR = 1.0
+"""Largest distance of an equilibrium to which a structure goes without a fall, over the largest Newton step."""
+
+
+@dataclass(kw_only=True)
+class Fall:
+    """Falls of a structure."""
+
+    newton: Newton
+    measure: Callable[[Point], list[Margin]]  # margins at a point
+    log: Step  # told of iterations, touches and releases
+
+    def beside(self, critical: Point, ahead: float) -> tuple[Point, float] | Status:
+        """Return the point of least potential beside a critical one, and the potential that the fall there releases.
+
+        The structure is pushed along its mode, one way and the other. Of two points with the same potential
+        it is the one on the mode's positive side, see `mode_shape`. Returns FALLING if the structure finds no
+        rest, REST_UNKNOWN if it falls onto contacts with friction.
+        """
+        newton, shape = self.newton, mode_shape(critical)
+        if shape is None:
+            return Status.FALLING
+        held, push = newton.prescribed(critical.state, ahead), _PUSH * newton.model.length * shape[0]
+        rests = []
+        for way in (1.0, -1.0):
+            start = newton.update(held, way * push, critical.system)
+            rest = self.rest(start, newton.potential(start))
+            if rest is not None and rest.index <= 0:
+                rests.append((newton.potential(rest.state), rest))
+        if not rests:
+            return Status.FALLING
+        if any(grips(rest.state) for _, rest in rests):
+            return Status.REST_UNKNOWN
+        least = min(energy for energy, _ in rests)
+        rest = next(rest for _, rest in rests if self._descends(least, rest.state))
+        return rest, newton.potential(held) - least
+
+    def after(self, event: Point, state: State) -> tuple[Point, float] | Status:
+        """Return the point after a slip-off, and the released potential; contacts whose force would become tensile are released.
+
+        ``state``: the configuration of the slip-off without the lost contact. Returns FALLING if the
+        structure finds no rest, LOST_CONTACT if a contact opens that must persist.
+        """
+        model = self.newton.model
+        energy = began = self.newton.potential(event.state)
+        while True:
+            point = self._next(state, energy)
+            if point is None:
+                return Status.FALLING
+            state, energy = point.state, self.newton.potential(point.state)
+            pushes = [
+                (normal_force(model, point.equilibrium, k) / least_push(self.newton, k), k)
+                for k, touch in enumerate(state.touches)
+                if touch is not None
+            ]
+            least, k = min(pushes, default=(0.0, -1))
+            if least >= -1.0:
+                return point, began - energy
+            self.log.note(EventKind.RELEASE, event, state, k)
+            if model.pairs[k].pair.keep:
+                return Status.LOST_CONTACT
+            state = changed(model, state, k, None, armed=True)
+
+    def _next(self, state: State, energy: float) -> Point | None:
+        """Point near the state, of a potential of at most `energy`, or at the end of a fall."""
+        equilibrium = self.newton.solve(state)
+        self.log.iterations += equilibrium.iterations
+        near = equilibrium.converged and self.newton.apart(state, equilibrium.state) <= _FAR
+        point = Point(self.newton, equilibrium)
+        if near and self._descends(energy, equilibrium.state) and not met(self.measure(point)):
+            return point
+        return self.rest(state, energy)
+
+    def rest(self, state: State, energy: float) -> Point | None:
+        """Find the point that the structure reaches against a drag which is reduced from step to step; None if there is none.
+
+        ``state``: configuration at the start of the fall, without the lost contact and therefore out of
+        equilibrium. ``energy``: potential of this configuration with the lost contact.
+        """
+        newton, model, pace = self.newton, self.newton.model, _FIRST_PACE
+        over, resistance = _before(model, state), _resistance(model)
+        for _ in range(_TRIALS):
+            at_rest = pace > _FIRST_PACE * 1e8
+            drag = None if at_rest else Drag(resistance / pace, state.q)
+            point = Point(newton, newton.solve(state, drag=drag))
+            self.log.iterations += point.equilibrium.iterations
+            taken = 0.0 if drag is None else float(drag.per_way @ (point.state.q - state.q) ** 2) / 2
+            down = point.equilibrium.converged and self._descends(energy - taken, point.state)
+            margins = self.measure(point) if down else []
+            landed = met(margins)
+            if down and not landed:
+                if at_rest:
+                    return point
+                state, pace, energy = point.state, 10 * pace, newton.potential(point.state)
+                over = {m.pair for m in margins if m.kind is EventKind.TOUCH and m.value < 1.0}
+            elif landed and newton.apart(state, point.state) < _LAST_PART:
+                for margin in landed:
+                    touch = margin._replace(value=0.0) if margin.pair in over else margin
+                    closed = self.log.applied(point, state, touch)
+                    assert isinstance(closed, State), "a touch ends no path"
+                    state = closed
+            else:
+                pace /= 4
+        return None
+
+    def _descends(self, energy: float, after: State) -> bool:
+        """Whether the potential of an equilibrium is at most `energy`. A time step that is too long may end on another with more."""
+        scale = self.newton.model.force_scale * self.newton.model.length
+        return self.newton.potential(after) <= energy + _LEVEL * (scale + abs(energy))
+
+
+def _before(model: Model, state: State) -> set[int]:
+    """Open pairs whose node lies on the stated side of the beam or on the surface, and which must touch before they pass it."""
+    small = ROUND_OFF * model.length
+    open_ones = [k for k, touch in enumerate(state.touches) if touch is None and state.armed[k]]
+    seen = {k: model.pairs[k].group.project(model.pairs[k], state) for k in open_ones}
+    return {k for k, place in seen.items() if place.overshoot <= small and place.gap >= -small}
+
+
+def met(margins: list[Margin]) -> list[Margin]:
+    """Open pairs whose gap has closed."""
+    return [m for m in margins if m.kind is EventKind.TOUCH and m.value < -ROUND_OFF]
+
+
+def _resistance(model: Model) -> Array:
+    """Drag of the nodes, proportional to the lengths of their elements. In the unit of time a beam falls by L under ``EI/L^2``."""
+    l0 = model.properties.l0
+    share = np.bincount(model.element_nodes.ravel(), np.repeat(l0 / 2, 2), len(model.coordinates))
+    per_way = np.zeros(model.dof_count)
+    unit = model.force_scale * np.array([1 / model.length, 1 / model.length, model.length])
+    per_way[: 3 * len(share)] = (share[:, None] / model.length * unit).ravel()
+    np.add.at(per_way, model.masters, per_way[model.slaves])
+    per_way[model.slaves] = 0.0
+    return per_way

@@ -1,0 +1,186 @@
+"""Slip and stick of contacts with friction: the rates of the slips, and the state in which a contact goes on.
+
+A contact without force, or whose force lies on the edge of the cone ``|F_t| <= mu F_n``, may stick or slip.
+Its next state follows from rates: those of the structure with the contact in that state, as the load
+parameter grows. Stick is admissible if the force stays in the cone, slip if the surfaces slip the way in
+which the friction was taken.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import islice, product
+
+from tsm.model.model import Model
+from tsm.model.state import UNDECIDED, Grip, State, Traction
+from tsm.path.path import Point, Rates
+from tsm.statement.status import Status
+from tsm.system.system import Drive, Linearisation
+
+_EDGE = 1e-9
+"""Distance of a force from the edge of the cone, over ``EI/L^2``, that counts as zero."""
+_NOISE = 1e-13
+"""Rate of a force, over the largest EA, that is round-off: that of a contact which turns a beam without bending it."""
+_STILL = 1e-9
+"""Slip rate, in longest beams per whole load, that counts as zero."""
+_FLAT = 1e-6
+"""Rate at which a force leaves its cone, in ``EI/L^2`` per whole load, that counts as zero. Where a slip ends, the
+force moves along the cone. A slip at the rate `_STILL` moves the force of a stick by up to EA times this
+rate, which
+counts as zero where no other state is admissible."""
+_MOST = 4096
+"""Combinations of states that are tried: six contacts without force."""
+
+Grips = tuple[tuple[int, Grip], ...]
+"""Numbers and states of contacts."""
+
+
+def traction(model: Model, state: State, system: Linearisation, k: int) -> Traction:
+    """Force and place of closed pair k, which has friction."""
+    pair = model.pairs[k]
+    return pair.group.traction(k, state, system.groups[pair.group.number])
+
+
+def traction_at(point: Point, k: int) -> Traction:
+    """Force and place of closed pair k, which has friction."""
+    return traction(point.model, point.state, point.system, k)
+
+
+def cone(point: Point, k: int) -> float:
+    """Distance of the force of closed pair k from the edge of its cone, ``mu F_n - |F_t|``."""
+    here = traction_at(point, k)
+    return point.model.pairs[k].pair.friction * here.normal - abs(here.tangential)
+
+
+def slip_rate(point: Point, rates: Rates, k: int) -> float:
+    """Slip rate of closed pair k."""
+    group = point.model.pairs[k].group
+    tangent = point.system.tangent.groups[group.number]
+    return group.slip_rate(k, point.state, tangent, rates.dofs, rates.contacts)
+
+
+def regripped(point: Point, drive: Drive, last: State) -> Point | Status:
+    """Equilibrium whose contacts with friction slip or stick as the load parameter grows, after a state `last`.
+
+    Where a slip ends, its rate is zero, and the force of the stick that follows moves along the cone: its
+    rate out of the cone is round-off. Returns JAMMED if no state of the contacts is admissible, TWO_SLIPS if
+    a contact without force could slip either way.
+    """
+    model, now = point.model, grips(point.state)
+    here = {k: traction_at(point, k) for k, _ in now}
+    # a contact that has just closed has a force of round-off, which may be considerable near a support
+    here |= {k: here[k]._replace(tangential=0.0, normal=0.0) for k, grip in now if grip == UNDECIDED}
+    choices = [[(k, grip) for grip in _choices(model, k, grip, here[k])] for k, grip in now]
+    # the round-off of a slip rate is a force in a stiff beam, so more is allowed where a slip ends, and where nothing
+    # else is admissible
+    flat, more = _FLAT * model.force_scale, _STILL * _stiffest(model)
+    slipped = {k for k, grip in grips(last) if grip.slip}
+    ended = {k for k, grip in now if not grip.slip and k in slipped}
+    for least in (flat, flat + more):
+        leaving = {k: flat + more if k in ended else least for k in here}
+        for chosen in islice(product(*choices), _MOST):
+            going = _going_on(point, chosen, drive, here, leaving)
+            if going is None:
+                continue
+            if any(_going_on(point, other, drive, here, leaving) for other in _reversed(model, chosen, here)):
+                return Status.TWO_SLIPS
+            return going
+    return Status.JAMMED
+
+
+def turned(point: Point, k: int) -> Grip:
+    """State of pair k that sticks where it slipped, or slips the way of its force where it stuck."""
+    here = traction_at(point, k)
+    return Grip(0, here.place) if dict(grips(point.state))[k].slip else Grip(here.way, None)
+
+
+def grips(state: State) -> list[tuple[int, Grip]]:
+    """Numbers and states of the closed contacts with friction."""
+    return [
+        (k, touch.grip)
+        for k, touch in enumerate(state.touches)
+        if touch is not None and touch.grip is not None
+    ]
+
+
+def with_grips(state: State, grips: Grips) -> State:
+    """State whose contacts slip or stick otherwise."""
+    touches = list(state.touches)
+    for k, grip in grips:
+        touch = touches[k]
+        assert touch is not None, "only a closed contact slips or sticks"
+        touches[k] = replace(touch, grip=grip)
+    return replace(state, touches=tuple(touches))
+
+
+def _stiffest(model: Model) -> float:
+    return max(beam.section.EA for beam in model.structure.beams)
+
+
+def _idle(model: Model, here: Traction) -> bool:
+    return math.hypot(here.tangential, here.normal) <= _EDGE * model.force_scale
+
+
+def _choices(model: Model, k: int, grip: Grip, here: Traction) -> list[Grip]:
+    """States in which a contact may go on, the likely one first. A contact without force that opens is undecided up to there."""
+    stick = grip if grip.held is not None else Grip(0, here.place)
+    if _idle(model, here):
+        return [stick, Grip(1, None), Grip(-1, None), UNDECIDED]
+    if model.pairs[k].pair.friction * here.normal - abs(here.tangential) > _EDGE * model.force_scale:
+        return [stick]
+    slip = Grip(here.way, None)
+    return [slip, stick] if grip.slip else [stick, slip]
+
+
+def _reversed(model: Model, chosen: Grips, here: dict[int, Traction]) -> Iterator[Grips]:
+    """The same states with the slip of one contact without force reversed."""
+    for n, (k, grip) in enumerate(chosen):
+        if grip.slip and _idle(model, here[k]):
+            yield (*chosen[:n], (k, Grip(-grip.slip, None)), *chosen[n + 1 :])
+
+
+def _going_on(
+    point: Point, chosen: Grips, drive: Drive, here: dict[int, Traction], leaving: dict[int, float]
+) -> Point | None:
+    """Point with contacts in the chosen states, if they can go on; forces may leave their cones at the rates `leaving`."""
+    state = with_grips(point.state, chosen)
+    going = point if state.touches == point.state.touches else point.with_state(state)
+    by = going.rates(drive) if here else None
+    lasting = by and all(_lasts(going, by, k, grip, here[k], leaving[k]) for k, grip in chosen)
+    return going if lasting or not here else None
+
+
+def _lasts(point: Point, by: Rates, k: int, grip: Grip, here: Traction, leaving: float) -> bool:
+    """Whether a contact can go on in its state."""
+    model, idle = point.model, _idle(point.model, here)
+    if idle and not _grows(model, k, here, by, grip):
+        return False
+    if grip.slip:
+        return grip.slip * slip_rate(point, by, k) > _STILL * model.length
+    if idle or cone(point, k) > _EDGE * model.force_scale:
+        return True
+    return here.way * _row_rate(point, by, k, here.way) <= leaving
+
+
+def _grows(model: Model, k: int, here: Traction, by: Rates, grip: Grip) -> bool:
+    """Whether the force of a contact without force grows as its state says: into its cone, or below zero where it opens."""
+    pair = model.pairs[k]
+    fx, fy = by.contacts[pair.slots][:2]
+    c, s = math.cos(here.place.direction), math.sin(here.place.direction)
+    tangential, normal = fx * c + fy * s, pair.side * (fy * c - fx * s)
+    edge = _EDGE * model.force_scale + _NOISE * _stiffest(model)
+    if grip == UNDECIDED:
+        return bool(normal < -edge)
+    return bool(normal >= -edge if grip.slip else abs(tangential) <= pair.pair.friction * normal + edge)
+
+
+def _row_rate(point: Point, by: Rates, k: int, way: int) -> float:
+    """Derivative of ``F_t - sigma mu F_n``, times a positive number, along rates that do not hold it at zero."""
+    model, assembler = point.model, point.newton.assembler
+    slipping, slot = with_grips(point.state, ((k, Grip(way, None)),)), model.pairs[k].slot + 2
+    system, aside = assembler.linearise(slipping), model.border_dofs
+    held, tangent = assembler.rate(system)[model.equations + slot], system.tangent
+    along = tangent.below[aside + slot, : model.equations] @ by.unknowns[: model.equations]
+    return float(held + along + tangent.corner[aside + slot, aside:] @ by.contacts)

@@ -1,0 +1,300 @@
+"""Margins of the contact events that may come next: numbers that are positive before the event and negative after it.
+
+A step in which a margin becomes negative ends at the root of the margin, and the contact changes there. An
+event is a row of `WATCHES`: where it may happen, its margin, and what becomes of its contact.
+
+A node at a distance d from the axis touches at one point while the beam bends less than a circle of radius d:
+for a round pin of radius R on the face of a beam of height h, ``d = R + h/2``. Where the curvature reaches
+1/d, the distance to the node is no longer least at the contact point, and the beam would touch along a line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from tsm.contact.contact_set import changed, closed_at, forbidden
+from tsm.contact.ends import clearance
+from tsm.contact.events import ROUND_OFF, EventKind, normal_force
+from tsm.contact.root import find_root
+from tsm.elements.properties import Array
+from tsm.model import scales
+from tsm.model.state import UNDECIDED, Grip, State, Touch
+from tsm.path.friction import cone, slip_rate, turned, with_grips
+from tsm.path.path import Point, StepControl
+from tsm.statement.status import Status
+from tsm.system.newton import Newton
+from tsm.system.system import Drive
+
+GRIPS = frozenset({EventKind.SLIP, EventKind.STICK})
+"""Events at which a contact stays closed."""
+
+
+_GRIPS = frozenset({EventKind.SLIP, EventKind.STICK})
+"""Events at which a contact stays closed."""
+_PROBE = 1e-3
+"""Part of a step after which a margin that is zero at its start shows whether its event is there."""
+_COINCIDENT = 1e-6
+"""Distance over the longest beam below which a touch and a slip-off are one event, a hand-over."""
+_SHORT = 2e-3
+"""Length of a step within which contacts are not searched for a slip or stick that has passed at its end."""
+_DEGREE, _FINE = 4, 41
+"""Degree of the polynomial through a margin, and points at which it is evaluated."""
+_LOCATED = 1e-12
+"""Largest margin of a located event. Results at the event may depend on its load parameter with a factor of a thousand."""
+_APART = 1e-14
+"""Width of the bracket of load parameters at which a margin that jumps is located."""
+
+
+class Margin(NamedTuple):
+    """A dimensionless quantity that is positive until its event happens."""
+
+    kind: EventKind
+    pair: int
+    value: float
+
+
+class Watch(NamedTuple):
+    """An event that may come."""
+
+    kind: EventKind
+    awaited: Callable[[Point, int], bool]  # whether pair k may have it next
+    margin: Callable[[Point, int, Drive], float]  # under what changes on the way
+    # contacts after it, or why the path ends: at the event, in the state with the changes of events beside it,
+    # by its margin, and whether it is alone
+    apply: Callable[[Point, State, Margin, bool], State | Status]
+
+
+def _touch(state: State, k: int) -> Touch:
+    touch = state.touches[k]
+    assert touch is not None, "this happens at closed contacts"
+    return touch
+
+
+def _closed(point: Point, k: int) -> bool:
+    return point.state.touches[k] is not None
+
+
+def _thick(point: Point, k: int) -> bool:
+    return point.model.pairs[k].pair.offset > 0
+
+
+def _grip(point: Point, k: int) -> Grip:
+    """Slip or stick, neither where a contact is open or has no friction."""
+    touch = point.state.touches[k]
+    return touch.grip if touch is not None and touch.grip is not None else UNDECIDED
+
+
+def _inside(point: Point, k: int, _drive: Drive) -> float:
+    pair = point.model.pairs[k]
+    arc = pair.arc_position(_touch(point.state, k))
+    return min(arc, pair.target.beam.length - arc) / point.model.length
+
+
+def _push(point: Point, k: int, _drive: Drive) -> float:
+    return normal_force(point.model, point.equilibrium, k) * ROUND_OFF / least_push(point.newton, k)
+
+
+def _slip_rate(point: Point, k: int, drive: Drive) -> float:
+    """Slip rate, positive the way it slips; a pair without a rate slips on."""
+    rates = point.rates(drive)
+    return 1.0 if rates is None else _grip(point, k).slip * slip_rate(point, rates, k) / point.model.length
+
+
+def _roundness(point: Point, k: int, _drive: Drive) -> float:
+    """Curvature ``theta'/(1 + e)``, ``theta' = m/EI``, by which the beam may still bend round the node, over 1/d."""
+    pair, touch, system = point.model.pairs[k], _touch(point.state, k), point.system
+    forces, push = system.groups[pair.group.number], system.forces[k]
+    curvature = -pair.side * pair.group.curvature(k, touch, point.state, forces, push)
+    return 1.0 - abs(pair.reach_at(pair.arc_position(touch))) * curvature
+
+
+def _gap(point: Point, k: int, _drive: Drive) -> float:
+    pair, length = point.model.pairs[k], point.model.length
+    seen = pair.group.project(pair, point.state)
+    return seen.gap / length if seen.overshoot <= ROUND_OFF * length else 1.0
+
+
+def _close(point: Point, state: State, margin: Margin, _alone: bool) -> State:
+    """State with an open pair closed without force. A pair whose node is on the far side stays open and may not close (not armed)."""
+    k, model = margin.pair, point.model
+    if margin.value < -ROUND_OFF:
+        return changed(model, state, k, None, armed=False)
+    pair = model.pairs[k]
+    return changed(model, state, k, closed_at(pair, pair.group.project(pair, state)), armed=True)
+
+
+def _open(point: Point, state: State, margin: Margin, alone: bool) -> State | Status:
+    k, kind, pair = margin.pair, margin.kind, point.model.pairs[margin.pair]
+    refused = forbidden(point.model, kind, pair, pair.arc_position(_touch(state, k)), alone=alone)
+    return refused or changed(point.model, state, k, None, armed=kind is EventKind.RELEASE)
+
+
+def _turn(point: Point, state: State, margin: Margin, _alone: bool) -> State:
+    return with_grips(state, ((margin.pair, turned(point, margin.pair)),))
+
+
+def _end(_point: Point, _state: State, margin: Margin, _alone: bool) -> Status:
+    return Status[margin.kind.name]
+
+
+WATCHES = (
+    Watch(
+        EventKind.END_CONTACT,
+        _thick,
+        lambda point, k, _: clearance(point.model, point.state, k).distance / point.model.length,
+        _end,
+    ),
+    Watch(EventKind.SLIP_OFF, _closed, _inside, _open),
+    Watch(EventKind.RELEASE, _closed, _push, _open),
+    Watch(EventKind.STICK, lambda point, k: _grip(point, k).slip != 0, _slip_rate, _turn),
+    Watch(
+        EventKind.SLIP,
+        lambda point, k: _grip(point, k).held is not None,
+        lambda point, k, _: cone(point, k) / point.model.force_scale,
+        _turn,
+    ),
+    Watch(EventKind.LINE_CONTACT, lambda point, k: _closed(point, k) and _thick(point, k), _roundness, _end),
+    Watch(EventKind.TOUCH, lambda point, k: not _closed(point, k) and point.state.armed[k], _gap, _close),
+)
+"""The events of a contact."""
+
+
+def margins(point: Point, drive: Drive) -> list[Margin]:
+    """Margins of the events that may come next, under what changes on the way; computed once for each change."""
+    if drive not in point.margins:
+        point.margins[drive] = _margins(point, drive)
+    return point.margins[drive]
+
+
+def _margins(point: Point, drive: Drive) -> list[Margin]:
+    return [
+        Margin(watch.kind, k, watch.margin(point, k, drive))
+        for k in range(len(point.model.pairs))
+        for watch in WATCHES
+        if watch.awaited(point, k)
+    ]
+
+
+def applied(point: Point, state: State, margin: Margin, *, alone: bool) -> State | Status:
+    """State after an event at a point, or why the path ends there; `alone` if no contact takes over."""
+    watch = next(watch for watch in WATCHES if watch.kind is margin.kind)
+    return watch.apply(point, state, margin, alone)
+
+
+def least_push(newton: Newton, k: int) -> float:
+    """Tensile contact force that is round-off: of the touched beam, which may be far softer than others, unless a beam's end touches it."""
+    pair = newton.model.pairs[k]
+    beam, section = pair.target.beam, pair.target.beam.section
+    own = max(ROUND_OFF, newton.tolerance) * section.EI / beam.length**2
+    noise = scales.ROUND_OFF * section.EA * beam.elements
+    return max(own, noise if pair.node < 0 else newton.noise * newton.model.least_force)
+
+
+class Search(NamedTuple):
+    """Search from the last point of a path, which has margins, to a goal."""
+
+    last: Point
+    margins: list[Margin]
+    goal: float
+    solve: Callable[[float], Point | None]  # point at a load parameter, None where none is found
+    measure: Callable[[Point], list[Margin]]
+    control: StepControl  # told why a step is given up
+
+    def first(self, after: list[Margin], numbers: list[int]) -> tuple[Point, list[Margin]] | Status:
+        """First of the events with some numbers, with the margins of what happens there, or why the step is given up.
+
+        ``after``: margins at the goal. If a force or position jumps, the step is too long.
+        """
+        located: list[tuple[float, bool, int, Point]] = []
+        for n in numbers:
+            found = self._located(n, after[n].value)
+            if isinstance(found, Status):
+                return found
+            # at one load parameter a release comes last: another contact that opens may take its pull away
+            located.append((found.t, self.margins[n].kind is EventKind.RELEASE, n, found))
+        *_, n, event = min(located)
+        measured = self.margins if event is self.last else self.measure(event)
+        first = measured[n]
+        past = (other for other in measured if other.value < -_COINCIDENT)
+        if any(other.kind is not EventKind.TOUCH or other.pair != first.pair for other in past):
+            return self.control.refuse()
+        together = [
+            other
+            for before, other in zip(self.margins, measured, strict=True)
+            if {other.kind, first.kind} == {EventKind.TOUCH, EventKind.SLIP_OFF}
+            and other.value <= _COINCIDENT
+            and other.value < before.value
+        ]
+        return event, sorted([first, *together], key=lambda m: m.kind is EventKind.TOUCH)
+
+    def _located(self, n: int, value: float) -> Point | Status:
+        """Point at an event, by the number of its margin and the margin's value at the goal."""
+        before = self.margins[n]
+        if before.value <= ROUND_OFF:
+            if before.kind in _GRIPS:
+                return self.control.fail(Status.JAMMED)
+            ahead = self._ahead()
+            rises = ahead is not None and ahead[n].value > ROUND_OFF
+            return self.control.refuse(_PROBE) if rises else self.last
+
+        def evaluate(t: float) -> tuple[float, Point] | None:
+            point = self.solve(t)
+            return None if point is None else (self.measure(point)[n].value, point)
+
+        # the point at the root of the margin, or just past its jump to below zero, located to round-off
+        ends = (self.last.t, before.value), (self.goal, value)
+        found = find_root(evaluate, *ends, small=_LOCATED, apart=_APART)
+        if found is None:
+            return self.control.failure
+        touches = before.kind is EventKind.TOUCH and before.value < 1.0
+        jumps = touches and self.measure(found)[n].value < -ROUND_OFF
+        return self.control.refuse() if jumps else found
+
+    def _ahead(self) -> list[Margin] | None:
+        """Margins just after the last point."""
+        point = self.solve(self.last.t + _PROBE * (self.goal - self.last.t))
+        return None if point is None else self.measure(point)
+
+    def pulls_at_first(self) -> bool:
+        """Whether a contact that has no force pulls just after the last point, though it may push at the goal."""
+        margins = enumerate(self.margins)
+        idle = {n for n, m in margins if m.kind is EventKind.RELEASE and abs(m.value) <= ROUND_OFF}
+        ahead = self._ahead() if idle else None
+        if ahead is None or idle.isdisjoint(broken(self.margins, ahead)):
+            return False
+        self.control.refuse(_PROBE)
+        return True
+
+    def dips(self, points: list[Point]) -> float | None:
+        """Part of a step at which a margin of slip or stick is below zero, though not at its end; None if none is.
+
+        ``points``: points inside the step and at its end.
+        """
+        begin, length = self.last.t, points[-1].t - self.last.t
+        if length <= _SHORT or all(margin.kind not in _GRIPS for margin in self.margins):
+            return None
+        times = np.array([begin, *(point.t for point in points)])
+        trails = zip(self.margins, *map(self.measure, points), strict=True)
+        grips = ([margin.value for margin in trail] for trail in trails if trail[0].kind in _GRIPS)
+        dip = min(
+            (t for t in (below(np.array(values), times) for values in grips) if t is not None), default=None
+        )
+        return None if dip is None else (dip - begin) / length
+
+
+def broken(before: list[Margin], after: list[Margin]) -> list[int]:
+    """Numbers of the margins that became negative; a node over the beam touches its surface before the end."""
+    past = [n for n, (_, b) in enumerate(zip(before, after, strict=True)) if b.value < -ROUND_OFF]
+    over = {before[n].pair for n in past if before[n].kind is EventKind.TOUCH and before[n].value < 1.0}
+    return [n for n in past if before[n].kind is not EventKind.END_CONTACT or before[n].pair not in over]
+
+
+def below(values: Array, times: Array) -> float | None:
+    """Load parameter at which the polynomial through some values of a margin is least, if it is below zero there; else None."""
+    line = np.polynomial.Polynomial.fit(times, values, min(len(values) - 1, _DEGREE))
+    fine, low = line.linspace(_FINE)
+    least = int(np.argmin(found := np.append(values, low)))
+    return float(np.append(times, fine)[least]) if found[least] < -ROUND_OFF else None

@@ -1,0 +1,1 @@
+"""What is asked: beams, supports, pins, stages, settings."""

@@ -1,0 +1,1 @@
+"""Linear systems, Newton's method, the index."""

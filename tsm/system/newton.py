@@ -1,0 +1,298 @@
+"""Newton's method. It returns the last iterate with a status and never raises."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tsm.elements.properties import Array
+from tsm.model.contact import chord_owner, handed_over
+from tsm.model.groups import Change
+from tsm.model.model import Model
+from tsm.model.scales import ROUND_OFF, SHARP, TURN, WAY, largest, units_of
+from tsm.model.state import State, Touch
+from tsm.statement.settings import Settings
+from tsm.statement.status import Status
+from tsm.system.system import Assembler, Drag, Linearisation
+
+MAX_ITERATIONS = 25
+"""Iterations before a step is given up."""
+_LONGEST, _LONGEST_WHOLE = 1.0, 1.4
+"""Largest Newton step, over 0.3 L and 0.7 rad; the second value holds where no contact passes from element to element."""
+_RISE, _SHORTEST = 10.0, 0.1
+"""Merit test of exact elements. An iteration that raises the residual tenfold is halved, at most three times. A stricter test refuses
+iterations that would converge."""
+_NEAR = 1.0
+"""Residual below which the number of Gauss nodes may be raised."""
+_CARRIED = 16 * float(np.finfo(float).eps)
+"""Round-off of the forces that beams carry. It exceeds the tolerance in slender ones that are taut."""
+_PAST = 0.05
+"""Part of an element's length by which a contact may lie past a node to which the iteration sent it back and forth: the tangents of two
+elements differ there, and between them neither has an equilibrium within its ends."""
+_CRITICAL = 1e-6
+"""Largest round-off of the residual at which an equilibrium is accepted. A stiffer contact is in the critical area."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Equilibrium:
+    """A configuration with its residual, and the iterations that led to it."""
+
+    state: State
+    status: Status  # CONVERGED or the reason why not
+    iterations: int  # linear systems solved
+    residuals: tuple[float, ...]  # scaled norm before the first and after every iteration
+    system: Linearisation  # residual and tangent at the configuration
+
+    @property
+    def converged(self) -> bool:
+        """Whether it is one."""
+        return self.status is Status.CONVERGED
+
+
+def _scales(model: Model) -> tuple[Array, Array, float]:
+    """Factors that make residuals comparable, reciprocals of the largest step, over all unknowns, and scaled round-off of the residual.
+
+    Forces are counted in ``EI/L^2``, positions in L/1000. Round-off is ``4 eps (EA L/l0 + EI/l0^2)`` for an
+    element in closed form, and ``4 eps`` of the node positions where positions are equations.
+    """
+    sharp = np.where(np.isin(np.arange(10), (0, 1, 2, 8)), 1.0, SHARP)
+    # the forces of a long frame of short beams are those of its extent
+    residual = 1 / (units_of(model.sizes._replace(force_scale=model.least_force))[1] * sharp)
+    way, turn = 1 / (WAY * model.extent), 1 / TURN
+    step = np.array([way, way, turn, 0.0, 0.0, 0.0, 0.0, 0.0, way, turn])
+    EA, EI, l0 = (
+        value[model.closed] for value in (model.properties.EA, model.properties.EI, model.properties.l0)
+    )
+    noise = ROUND_OFF * (EA * model.extent / l0 + EI / l0**2).max(initial=0.0) / model.least_force
+    if len(model.kind) > model.equations or any(group.internal for group in model.groups):
+        noise = max(noise, ROUND_OFF * np.abs(model.coordinates).max() / (SHARP * model.length))
+    return residual[model.kind], step[model.kind], float(noise)
+
+
+class Newton:
+    """Newton's method on forces, contact positions and directions together.
+
+    The norm is the largest scaled entry of the residual: forces over ``EI/L^2``, moments over ``EI/L``,
+    positions over L/1000. L is the longest beam, so that no scale can vanish. An iteration has converged if
+    its norm is below `tolerance`. It has also converged if the last two norms are below the round-off of the
+    residual, ``4 eps (EA L/l0 + EI/l0^2)``, and ``4 eps k_c L`` for a contact of stiffness k_c, or the
+    round-off of the forces that the beams carry.
+    """
+
+    def __init__(self, model: Model, settings: Settings) -> None:
+        self.model = model
+        self.assembler = Assembler(model)
+        self.integration_tolerance = settings.integration_tolerance
+        self.tolerance = settings.tolerance
+        self.scale, self.per_step, self.noise = _scales(model)
+        kind = model.kind
+        self.per_unknown = self.per_step + np.where((kind > 2) & (kind < 6), 1 / model.units, 0.0)
+        if model.springs is not None:
+            self.noise = max(self.noise, model.springs.noise(model.extent, model.least_force))
+        self.longest = _LONGEST_WHOLE if model.whole else _LONGEST
+
+    def apart(self, one: State, other: State) -> float:
+        """Size of the motion from one state to another, the one measure of how far they are apart."""
+        return self.size(self.motion(one, other, other))
+
+    def motion(self, one: State, other: State, like: State) -> Array:
+        """Changes of the free displacements and rotations, then of the rotations inside the elements, at the places of a third state.
+
+        Positions inside need no entries: they follow from the rotations and the nodes.
+        """
+        inside = [group.turned(one, other, like) for group in self.model.groups]
+        return np.concatenate([(other.q - one.q)[self.model.free], *inside])
+
+    def potential(self, state: State) -> float:
+        """Strain energy less the work of the dead loads."""
+        work = self.model.loads.dot(state.load_parameter, state.q)
+        if self.model.along.loaded and self.model.rods:
+            work += self.model.rods.load_work(state)
+        return self.assembler.energy(state) - work
+
+    def size(self, motion: Array) -> float:
+        """Largest entry of a motion, in largest Newton steps; nan inside does not count."""
+        nodes = self.model.equations
+        size, inside = largest(motion[:nodes], self.per_step[:nodes]), motion[nodes:]
+        return max(size, float(np.fmax.reduce(np.abs(inside))) / TURN) if len(inside) else size
+
+    def norm(self, system: Linearisation) -> float:
+        """Scaled norm of a residual."""
+        inside = max(forces.inside for forces in system.groups)
+        return max(largest(system.residual, self.scale), inside / SHARP)
+
+    def at(self, equilibrium: Equilibrium, state: State) -> Equilibrium:
+        """The equilibrium in a state with other contacts."""
+        return replace(equilibrium, state=state, system=self.assembler.linearise(state))
+
+    def solve(self, start: State, drag: Drag | None = None, *, across: Array | None = None) -> Equilibrium:
+        """Iterate from a start to equilibrium, or to the last iterate with its status.
+
+        ``start``: its load parameter is held unless there is a constraint. ``drag``: resistance to leaving a
+        configuration. ``across`` (equations + contact unknowns,): constraint row; the load parameter is an
+        unknown too, and every step is orthogonal to this vector.
+        """
+        state, past, part = start, 0.0, 0.0
+        taken: tuple[State, Array, Linearisation] | None = None
+        residuals: list[float] = []
+        owners: list[tuple[int, ...]] = []
+        for iteration in range(MAX_ITERATIONS + 1):
+            system = self.assembler.linearise(state, drag)
+            residual, left = self.norm(system), MAX_ITERATIONS - iteration
+            risen = taken is not None and self.assembler.internal and not residual <= _RISE * residuals[-1]
+            if risen and part > _SHORTEST and left:
+                part /= 2
+            else:
+                residuals.append(residual)
+                owners.append(tuple(touch.element for touch in state.touches if touch is not None))
+                status = self._status(system, residuals, owners, left)
+                more = self.with_more_nodes(state, system, residuals) if left else None
+                if more is not None:
+                    state, taken = more, None
+                    continue
+                step = self._step(system, across) if status is None else None
+                if step is None:
+                    return Equilibrium(
+                        state=state,
+                        status=status or Status.SINGULAR_TANGENT,
+                        iterations=iteration,
+                        residuals=tuple(residuals),
+                        system=system,
+                    )
+                past = _PAST if past or _alternates(owners) else 0.0
+                (change, load), part = step, 1.0
+                taken = state, change, system
+            assert taken is not None, "a part of a step is of a step"
+            t = taken[0].load_parameter + part * load
+            state = self.update(*taken, t=t, residual=True, part=part, past=past)
+        raise AssertionError("the last iteration returns")
+
+    def _step(self, system: Linearisation, across: Array | None) -> tuple[Array, float] | None:
+        """Newton step of the unknowns and of the load parameter, None if the tangent is singular."""
+        if across is None:
+            solved = self.assembler.solve(system)
+            return None if solved is None else (solved[:, 0], 0.0)
+        solved = self.assembler.solve(system, -self.assembler.rate(system))
+        if solved is None:
+            return None
+        back, rate = solved.T
+        load = -float(across @ back) / float(across @ rate)
+        return back + load * rate, load
+
+    def _status(
+        self, system: Linearisation, residuals: list[float], owners: list[tuple[int, ...]], left: int
+    ) -> Status | None:
+        """Status with which the iteration ends, None if it goes on."""
+        if not np.isfinite(residuals[-1]):
+            return Status.NOT_FINITE
+        if self.converged(residuals, system):
+            return self.verdict(system)
+        if left:
+            return None
+        return Status.PING_PONG if _alternates(owners) else Status.ITERATION_LIMIT
+
+    def with_more_nodes(self, state: State, system: Linearisation, residuals: list[float]) -> State | None:
+        """State with more Gauss nodes in the exact elements; None if it is far from equilibrium or needs no more."""
+        near = residuals[-1] <= _NEAR
+        if not near or (
+            len(residuals) > 1 and residuals[-2] <= _NEAR and not self.converged(residuals, system)
+        ):
+            return None
+        refined = (
+            group.refined(state, forces, self.integration_tolerance)
+            for group, forces in zip(self.model.groups, system.groups, strict=True)
+        )
+        return next((finer for finer in refined if finer is not None), None)
+
+    def verdict(self, system: Linearisation) -> Status:
+        """Status of a small residual."""
+        groups = zip(self.model.groups, system.groups, strict=True)
+        if any(group.inaccurate(forces, self.integration_tolerance) for group, forces in groups):
+            return Status.INACCURATE
+        return Status.TWO_CONTACTS if system.crowded else Status.CONVERGED
+
+    def converged(self, residuals: list[float], system: Linearisation) -> bool:
+        """Whether the last residual is small enough, or the last two are round-off."""
+        small, left = residuals[-1] <= self.tolerance, max(residuals[-2:])
+        if small or len(residuals) == 1 or left > max(self.noise, _CRITICAL):
+            return small
+        carried = max(float(np.abs(forces.ends[[0, 1, 3, 4]]).max()) for forces in system.groups)
+        return left <= max(self.noise, max(system.noise, _CARRIED * carried) / self.model.least_force)
+
+    def prescribed(self, state: State, t: float) -> State:
+        """State at a load parameter, its supports where they are prescribed."""
+        if not self.model.moves:
+            return replace(state, load_parameter=t)
+        q = state.q.copy()
+        q[self.model.fixed] = self.model.motions.at(t)
+        self._share(q)
+        return replace(state, load_parameter=t, q=q)
+
+    def update(
+        self,
+        state: State,
+        step: Array,
+        system: Linearisation,
+        *,
+        t: float | None = None,
+        residual: bool = False,
+        part: float = 1.0,
+        past: float = 0.0,
+    ) -> State:
+        """State after a step, shortened so that no node and no contact moves too far at once.
+
+        ``state``: where the step starts. ``step`` (equations + contact unknowns,): change of the unknowns.
+        ``system``: linear system that the step solves. ``residual``: whether the step removes the residual.
+        ``part``: fraction of the admissible step that is taken. ``past``: part of an element's length by
+        which a contact may lie past its end.
+        """
+        model = self.model
+        dq, dz = step[: model.equations], step[model.equations :]
+        size = largest(step, self.per_step)
+        factor = part * (self.longest / size if size > self.longest else 1.0)
+        begin, end = state.load_parameter, state.load_parameter if t is None else t
+        if end != begin:
+            state = self.prescribed(state, end)
+        q = state.q.copy()
+        q[model.free] += factor * dq
+        self._share(q)
+        if not np.isfinite(size):
+            return replace(state, q=q)
+        dofs = np.zeros(model.dof_count)
+        dofs[model.free], dofs[model.fixed] = dq, model.motions.change(begin, end)
+        change = Change(dofs, dz, float(residual), factor, end - begin)
+        moved = State(
+            load_parameter=state.load_parameter,
+            q=q,
+            touches=state.touches,
+            armed=state.armed,
+            profile=state.profile,
+        )
+        for group, tangent in zip(model.groups, system.tangent.groups, strict=True):
+            moved = group.with_change(state, moved, tangent, change)
+        if not state.touches:
+            return moved
+        dz_taken = (factor * dz).tolist()
+        touches = tuple(
+            self._moved(k, moved, touch, dz_taken) if touch is not None else None
+            for k, touch in enumerate(state.touches)
+        )
+        return handed_over(model, moved, touches, past)
+
+    def _share(self, q: Array) -> None:
+        """Give the ends behind hinges the displacements of their joints."""
+        if self.model.joints:
+            q[self.model.slaves] = q[self.model.masters]
+
+    def _moved(self, k: int, state: State, touch: Touch, dz: list[float]) -> Touch:
+        pair = self.model.pairs[k]
+        if pair.slot < 0:
+            return chord_owner(self.model, pair, state, touch)
+        return pair.moved(touch, dz[pair.slots])
+
+
+def _alternates(owners: list[tuple[int, ...]]) -> bool:
+    """Whether the owners of the contacts alternated over the last six iterations."""
+    last = owners[-6:]
+    return len(last) == 6 and last[0] != last[1] and all(a == b for a, b in zip(last, last[2:], strict=False))
