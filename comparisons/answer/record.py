@@ -8,9 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from comparisons.referee.certificate import Certificate
     from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
@@ -161,7 +158,7 @@ class Response:
     #: equilibrium is stable, -1 where it is not defined.
     index: NDArray[np.int64] | None = None
     critical: tuple[CriticalPoint, ...] = ()  #: Critical points that the model met.
-    certificate: "Certificate | None" = None  #: Verdict of the referee on the answer.
+    certificate: Any = None  #: The `comparisons.referee.Certificate` of the answer, None if it is not judged.
     #: Sum of the tangential contact forces on a beam (s,), positive away from its clamp, by beam: see `comparisons.answer.material`.
     material_force: Mapping[str, Array] = field(default_factory=dict)
     reported_success: bool = False  #: Whether the model itself reported success, whatever the checks found.
@@ -195,15 +192,6 @@ class Response:
         from comparisons.answer.table import table
 
         return table(self)
-
-    def plot(self, scene: "Scene | None" = None) -> "Figure":
-        """Return a picture: deformed shape, section forces along each beam, and forces over the load parameter; needs matplotlib.
-
-        A response that was read from a file needs the `scene` that was solved.
-        """
-        from comparisons.report.answer import picture
-
-        return picture(self, scene)
 
     @property
     def false_success(self) -> bool:

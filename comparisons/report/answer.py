@@ -33,7 +33,10 @@ def plot_answer(response: Response, path: Path) -> None:
 
 
 def picture(response: Response, scene: Scene | None = None) -> "Figure":
-    """Return the picture that `Response.plot` states; at the last load parameter at which a force acts."""
+    """Return a picture: deformed shape at the last load parameter at which a force acts, section forces along each beam, and the forces.
+
+    A response that was read from a file needs the `scene` that was solved; a `ValueError` says so.
+    """
     scene = scene or response.definition
     if scene is None:
         raise ValueError("scene: must be given, the answer was read from a file")

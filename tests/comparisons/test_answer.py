@@ -13,6 +13,7 @@ from comparisons.answer import Response
 from comparisons.cli import main
 from comparisons.models import solve
 from comparisons.models.options import Options
+from comparisons.report.answer import picture
 from comparisons.scene import load_scene
 
 EXACT = Options(element="exact")
@@ -87,7 +88,7 @@ def test_beams_at_rest_again_have_no_forces_and_what_was_largest_is_kept():
 
 def test_a_picture_has_shape_diagrams_and_forces():
     response = answer("portal-frame")
-    shape, *diagrams, _ = response.plot().axes
+    shape, *diagrams, _ = picture(response).axes
     lines = [line.get_xydata() for line in shape.get_lines()]
     for beam in ("left", "girder", "right"):
         assert any(np.array_equal(line, response.axis_line(beam, -1)[1]) for line in lines)
@@ -97,7 +98,7 @@ def test_a_picture_has_shape_diagrams_and_forces():
     assert "  left.start  " in without.page()
     assert not any("bending_moment" in name for name in without.table())
     with pytest.raises(ValueError, match="scene: must be given"):
-        without.plot()
+        picture(without)
 
 
 def test_solve_writes_a_history_and_a_picture(tmp_path, monkeypatch, capsys):
