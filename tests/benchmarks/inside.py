@@ -2,6 +2,7 @@
 
 import time
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from scipy.sparse.linalg import splu
@@ -16,6 +17,7 @@ from comparisons.scene import load_scene
 from fem_reference.solid.assembly import element_entries
 from fem_reference.solid.factor import factorise
 from fem_reference.system.body import build_body
+from tests.benchmarks import plain
 from tests.benchmarks.measure import Gate
 from tests.fem_reference import bilinear_reference as forms
 from tsm.model.model import Model
@@ -36,6 +38,22 @@ def iterations(elements, count=20, **options):
             assembler.solve(assembler.linearise(state))
 
     return iterate
+
+
+def against_plain(bench):
+    """Solutions of KS over that of a plain NumPy program, all load parameters and the end state alone."""
+    bars = {"mixed 10": 0.35, "mixed 40": 0.45, "exact 1": 0.38}
+    asked = {name: {"element": name.split()[0], "elements": int(name.split()[1])} for name in bars}
+    built = {name: to_structure(KS, **options) for name, options in asked.items()}
+    actions = {name: partial(tsm.solve, structure, T) for name, structure in built.items()}
+    actions["exact 1, end state alone"], bars["exact 1, end state alone"] = (
+        partial(tsm.solve, built["exact 1"], np.array([1.0])), 0.10,
+    )  # fmt: skip
+    base, *found = bench.seconds(
+        7, min, time.process_time, **{"plain program": partial(plain.solved, KS)}, **actions
+    )
+    for (name, bar), value in zip(bars.items(), found, strict=True):
+        bench.add(Gate(f"{name} over a plain program", value / base, bar))
 
 
 def beams(bench):
@@ -110,4 +128,4 @@ def assembly(bench):
             bench.add(Gate(f"assembly over factorisation, {name}", own / factor, 1))
 
 
-PARTS = (beams, solution, assembly)
+PARTS = (against_plain, beams, solution, assembly)

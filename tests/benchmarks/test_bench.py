@@ -5,7 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from tests.benchmarks import bench
+from comparisons.models import solve
+from tests.benchmarks import bench, inside, plain
 from tests.benchmarks.measure import Bench, Gate
 from tests.stated import MARK, NUMBER, ROOT
 
@@ -42,11 +43,14 @@ def test_the_page_says_which_targets_are_missed():
         assert met == ("not met" not in target), (measured, target)
 
 
+def test_the_plain_program_is_as_near_the_rod_as_its_elements_allow():
+    force = solve(inside.KS, "rod").contacts["pin->cantilever"].force
+    assert np.abs(plain.solved(inside.KS) - force).max() < 6e-4 * force.max()
+
+
 @pytest.mark.slow
 def test_a_part_measures_what_the_page_states():
     """The modules of the benchmark import, and their shortest part runs."""
-    from tests.benchmarks import inside
-
     made = Bench()
     inside.beams(made)
     assert len(made.gates) == 3
