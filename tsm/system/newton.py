@@ -20,6 +20,8 @@ MAX_ITERATIONS = 25
 """Iterations before a step is given up."""
 _LONGEST, _LONGEST_WHOLE = 1.0, 1.4
 """Largest Newton step, over 0.3 L and 0.7 rad; the second value holds where no contact passes from element to element."""
+_START, _CLOSE = 1e-2, 1e-9
+"""Part of the tolerance within which a start is the solution; largest step that is taken from one which is only within the tolerance."""
 _RISE, _SHORTEST = 10.0, 0.1
 """Merit test of exact elements. An iteration that raises the residual tenfold is halved, at most three times. A stricter test refuses
 iterations that would converge."""
@@ -151,7 +153,9 @@ class Newton:
                 if more is not None:
                     state, taken = more, None
                     continue
-                step = self._step(system, across) if status is None else None
+                step = (
+                    self._step(system, across) if status is None else self._closer(system, residuals, status)
+                )
                 if step is None:
                     return Equilibrium(
                         state=state,
@@ -167,6 +171,15 @@ class Newton:
             t = taken[0].load_parameter + part * load
             state = self.update(*taken, t=t, residual=True, part=part, past=past)
         raise AssertionError("the last iteration returns")
+
+    def _closer(
+        self, system: Linearisation, residuals: list[float], status: Status
+    ) -> tuple[Array, float] | None:
+        """Step from a start within the tolerance, which leaves the square of its error; None where the tangent is nearly singular."""
+        if status is not Status.CONVERGED or len(residuals) > 1 or residuals[-1] <= _START * self.tolerance:
+            return None
+        step = self._step(system, None)
+        return step if step is not None and largest(step[0], self.per_step) <= _CLOSE else None
 
     def _step(self, system: Linearisation, across: Array | None) -> tuple[Array, float] | None:
         """Newton step of the unknowns and of the load parameter, None if the tangent is singular."""
