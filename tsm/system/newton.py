@@ -139,9 +139,12 @@ class Newton:
         taken: tuple[State, Array, Linearisation] | None = None
         residuals: list[float] = []
         owners: list[tuple[int, ...]] = []
+        near: Equilibrium | None = None
         for iteration in range(MAX_ITERATIONS + 1):
             system = self.assembler.linearise(state, drag)
             residual, left = self.norm(system), MAX_ITERATIONS - iteration
+            if near is not None and not residual <= self.tolerance:
+                return near
             risen = taken is not None and self.assembler.internal and not residual <= _RISE * residuals[-1]
             if risen and part > _SHORTEST and left:
                 part /= 2
@@ -160,6 +163,14 @@ class Newton:
                     return Equilibrium(
                         state=state,
                         status=status or Status.SINGULAR_TANGENT,
+                        iterations=iteration,
+                        residuals=tuple(residuals),
+                        system=system,
+                    )
+                if status is not None:
+                    near = Equilibrium(
+                        state=state,
+                        status=status,
                         iterations=iteration,
                         residuals=tuple(residuals),
                         system=system,
