@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 PLACED = ("beam", "beam", "node", "end")
 LISTS = {"contact": ("beam", "beam", "pair", "node"), "support": ("beam", "beam", "", "")}
 LISTS |= {**dict.fromkeys(("load", "hinge", "spring"), PLACED), "stage": ("", "", "name", "name")}
-"""Of each list: the key that names something, and what; the attribute that none has twice, and its key."""
+"""For each list of the scene: the key that names something and the kind of thing, then the attribute that is unique in it and its key."""
 IN_STAGES = {"pin": ("name", "pin", "name", "name"), "load": PLACED}
 """The same of the lists in a stage."""
 

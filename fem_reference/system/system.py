@@ -188,8 +188,9 @@ class Tangent:
     def _count(self, chosen: NDArray[np.bool_]) -> int:
         """Index with the contacts ``chosen`` among the closed ones.
 
-        Of a matrix over du, ``y = U^T du`` with the multiplier z, and the forces of the constraints, the Hessian is one Schur complement.
-        By Haynsworth's theorem the other one, S, counts its negative eigenvalues, with one for every multiplier.
+        A larger matrix has the unknowns du, ``y = U^T du`` with its multiplier z, and the forces of the constraints. The Hessian is one
+        of its Schur complements. By Haynsworth's theorem the other one, S, counts the Hessian's negative eigenvalues, and one for every
+        multiplier.
         """
         A, N = self.border.A.copy(), self.border.N
         kept = np.append(chosen, np.ones(N.shape[1] - chosen.size, dtype=bool))

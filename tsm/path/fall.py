@@ -46,7 +46,7 @@ class Fall:
 
     newton: Newton
     measure: Callable[[Point], list[Margin]]  # margins at a point
-    log: Step  # told of iterations, touches and releases
+    log: Step  # where iterations, touches and releases are noted
 
     def beside(self, critical: Point, ahead: float) -> tuple[Point, float] | Status:
         """Return the point of least potential beside a critical one, and the potential that the fall there releases.

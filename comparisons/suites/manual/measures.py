@@ -74,8 +74,8 @@ def _read(response: Response, quantity: Quantity) -> float:
 
 def value(response: Response, words: str, at: float) -> float:
     """Return a number of a response at a load parameter; nan for an event that it does not have."""
-    # a name of `comparisons.answer.table`, of a vector without _x for its size; "axis BEAM .5 x", a place
-    # of the axis at half the length; "slip-off PAIR"; "event KIND PAIR 0", that of the first one
+    # `words` is a name of `comparisons.answer.table`; a vector's name without _x is its size. Or it is one of
+    # "axis BEAM .5 x" (the axis at half the length), "slip-off PAIR" and "event KIND PAIR 0" (the first event)
     what, *more = words.split()
     if what == "slip-off":
         return response.contacts[more[0]].slip_off

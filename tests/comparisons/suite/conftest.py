@@ -12,7 +12,7 @@ from comparisons.cli import main
 from tests.comparisons.processes import COMMAND, begun
 
 CASES = 30
-"""Of the tiny study."""
+"""Number of cases in the tiny study."""
 TINY, MANY = (Path(__file__).with_name(f"{name}.toml") for name in ("tiny", "many"))
 
 
