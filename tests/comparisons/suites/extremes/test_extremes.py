@@ -241,7 +241,8 @@ def test_quick_matrix(tmp_path, capsys, stated):
     stated("extremes.cells", len(cells))
     for verdict in ("right", "stopped", "withdrawn"):
         stated(f"extremes.{verdict}", verdicts[verdict])
-    stated("extremes.needless", sum(cell["needless"] for cell in cells))
+    # `mixed` at slenderness 1e6 is withdrawn with an error of round-off, which is within its accuracy on some processors only
+    stated("extremes.needless", sum(cell["needless"] for cell in cells), relative=0.1)
     stated("extremes.not-completed", len(STOP))
     places = [f"{place} {by}" for place in ("node", "tip") for by in ("+ulp", "-ulp")]
     for name, *groups in (
