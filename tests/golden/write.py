@@ -140,10 +140,14 @@ def problem(name: str) -> Iterator[str]:
 
 
 def machine() -> str:
-    """Return what rounds: the processor's extensions and the versions of the libraries."""
+    """Return what rounds: the versions of the libraries, the processor's extensions and, behind a semicolon, the processor itself."""
     config = np.show_config(mode="dicts")
     found = " ".join(config["SIMD Extensions"]["found"])
-    return f"numpy {np.__version__}, scipy {scipy.__version__}, {found}"
+    cpu = Path("/proc/cpuinfo")
+    model = re.findall(
+        r"^(?:vendor_id|cpu family|model)\s*: (.*)$", cpu.read_text() if cpu.exists() else "", re.MULTILINE
+    )
+    return f"numpy {np.__version__}, scipy {scipy.__version__}, {found}; {' '.join(model[:3])}"
 
 
 def pages() -> dict[str, Any]:

@@ -46,9 +46,10 @@ JAMMING = cantilever(
     ((0.681, -0.019), (0.291, 0.559), (0.735, 0.173)),
     section=tsm.Section(EA=3e5, GA=1e5, EI=1.0), element="exact", friction=1.086,
 )  # fmt: skip
-STUCK = cantilever(raised(0.8, 0.2), element="timoshenko", elements=10)
+# the place of the node is a binary number, so that no processor's rounding moves the contact off it
+STUCK = cantilever(raised(0.5, 0.2), element="timoshenko", elements=4)
 CASES = {  # structure, how many load parameters are reached, what the message says
-    "cutback floor": (STUCK, 0, "the contact lies on a node, where elements \"timoshenko\" are rigid: try 11 elements"),
+    "cutback floor": (STUCK, 0, "the contact lies on a node, where elements \"timoshenko\" are rigid: try 5 elements"),
     # stiffnesses whose products overflow
     "not finite": (cantilever(WAY, section=tsm.Section(EA=1e308, GA=1e308, EI=1e308)), 0, ""),
     "lost contact": (cantilever(((0.83, 0.0), (0.83, 0.1), (0.83, -0.2)), keep=True), None, ""),

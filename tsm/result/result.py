@@ -278,7 +278,7 @@ def _where(model: Model, steps: list[Step], status: Status) -> str:
     reached = next((s.equilibrium.state.load_parameter for s in reversed(steps) if s.requested), 0.0)
     stopped = state.load_parameter if state else 0.0
     where = f"; stopped at load parameter {stopped:.6g}, last reported {reached:.6g}"
-    if status is Status.CUTBACK_FLOOR and state:
+    if status in {Status.CUTBACK_FLOOR, Status.LIMIT_POINT} and state:
         for pair, touch in zip(model.pairs, state.touches, strict=True):
             if touch is not None and pair.slot < 0 and min(touch.xi, 1 - touch.xi) < _AT_NODE:
                 beam = pair.target.beam
