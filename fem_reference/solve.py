@@ -79,11 +79,9 @@ def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
     done = [step for step in steps if step.status is Status.CONVERGED]
     states = tuple(step.state for step in done)
     status, message = _outcome(model, steps[-1])
-    displacement, cells = np.zeros((len(states), model.nodes, 2)), dict[str, list[Ints]]()
+    cells = dict[str, list[Ints]]()
     for body in model.bodies:
         cells.setdefault(CELL_TYPES[body.strip.element], []).append(body.mesh.cells + body.part.start)
-        for row, state in zip(displacement, states, strict=True):
-            row[body.part] = state.u[body.part] @ body.strip.frame.T
     return Result(
         status=status,
         message=message,
@@ -104,9 +102,9 @@ def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
         unknowns=model.unknowns,
         round_off=model.balance_round_off,
         wall_seconds=seconds,
-        mesh_points=np.concatenate([body.strip.to_global(body.mesh.nodes) for body in model.bodies]),
+        mesh_points=np.concatenate([body.mesh.nodes + body.strip.start for body in model.bodies]),
         mesh_cells={name: np.concatenate(parts) for name, parts in cells.items()},
-        displacement=displacement,
+        displacement=np.array([state.u for state in states]).reshape(-1, model.nodes, 2),
         model=model,
         states=states,
     )

@@ -37,8 +37,8 @@ from fem_reference.statement.problem import Contact, Pin
 class Carrier:
     """Vectors that are weighted means of the positions of a strip's nodes: points, or first moments of a section."""
 
-    reference: Floats  # undeformed, relative to the model's origin, in the global frame, ``(m, 2)`` [m]
-    rows: csr_matrix  # derivatives ``(2 m, 2 n)`` by the displacements, each in the frame of its strip
+    reference: Floats  # undeformed, relative to the model's origin, ``(m, 2)`` [m]
+    rows: csr_matrix  # derivatives ``(2 m, 2 n)`` by the displacements
     transposed: csr_matrix  # transposed rows ``(2 n, 2 m)``
 
     def points(self, u: Floats) -> Floats:

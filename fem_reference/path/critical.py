@@ -158,10 +158,7 @@ def smallest_eigenpair(at: Accepted) -> tuple[float, Floats]:
 def critical_point(near: Accepted, kind: str) -> CriticalPoint:
     """Return a critical point at a state, with the mode of the section means."""
     vector = smallest_eigenpair(near)[1]
-    mode = {
-        body.strip.name: (body.mesh.sections @ vector[body.part]) @ body.strip.frame.T
-        for body in near.state.model.bodies
-    }
+    mode = {body.strip.name: body.mesh.sections @ vector[body.part] for body in near.state.model.bodies}
     entries = np.concatenate([part.ravel() for part in mode.values()])
     largest = entries[np.argmax(np.abs(entries))]
     scaled = {name: part / largest for name, part in mode.items()}

@@ -15,7 +15,7 @@ from fem_reference.system.state import State, stored_energy
 def section_means(state: State, strip: str) -> Floats:
     """Section-mean positions ``(m, 2)`` of a strip in the global frame [m]."""
     body = state.model.body(strip)
-    return body.strip.to_global(body.mesh.sections @ (body.mesh.nodes + state.u[body.part]))
+    return np.asarray(body.mesh.sections @ (body.mesh.nodes + state.u[body.part]) + body.strip.start)
 
 
 def axis_line(result: Result, strip: str, k: int) -> Floats:
@@ -53,8 +53,7 @@ def nodal_stress(result: Result, k: int) -> Floats:
     """
     found = []
     for body in result.model.bodies:
-        _, local = _cauchy_stress(body, result.states[k].u[body.part])
-        sigma = np.einsum("ai,ijek,bj->abek", body.strip.frame, local, body.strip.frame)
+        _, sigma = _cauchy_stress(body, result.states[k].u[body.part])
         found.append(_averaged(body, np.stack([sigma[0, 0], sigma[1, 1], sigma[0, 1]], axis=-1)))
     return np.concatenate(found)
 
@@ -72,7 +71,7 @@ def fibre_stress(result: Result, k: int) -> Floats:
 
 
 def _cauchy_stress(body: Body, u: Floats) -> tuple[Floats, Floats]:
-    """Deformation gradient and Cauchy stress at the nodes of every element, in the strip's frame."""
+    """Deformation gradient and Cauchy stress at the nodes of every element."""
     F = deformation_gradient(body.mesh, u, body.mesh.at_nodes)
     sigma = np.einsum("ikeq,jkeq->ijeq", body.law.stress(F), F) / (F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0])
     return F, sigma
@@ -158,15 +157,16 @@ def section_forces(result: Result, strip: str, k: int, stations: Floats | None =
     p, along = (np.einsum("ijp,jp->pi", A, N) for A in (body.law.stress(F), F))
     arm = from_mean(own.placed(points) + body.mesh.basis.probes(points.T) @ u)
     up = integral(from_mean(points[:, 1])[:, None] * arm)
-    rotation, f = np.arctan2(-up[:, 0], up[:, 1]), integral(p)
+    rotation = np.angle(up @ (-1j, 1) * own.direction.conjugate()) + np.angle(own.direction)
+    f = integral(p)
     turned = f @ (1, 1j) * np.exp(-1j * rotation)
     return SectionForces(
         stations=X,
         N=np.asarray(turned.real, dtype=float),
         V=np.asarray(turned.imag, dtype=float),
         M=integral(arm[:, 0] * p[:, 1] - arm[:, 1] * p[:, 0]),
-        rotation=rotation + np.arctan2(*own.frame[::-1, 0]),
-        force=f @ own.frame.T,
+        rotation=rotation,
+        force=f,
         material_force=integral((p * along).sum(axis=1) - body.law.energy(F)),
     )
 

@@ -119,7 +119,7 @@ class Result:
     displacement
         Nodal displacements, ``(s, n, 2)`` [m].
     model, states
-        The discrete model, and the accepted states with displacements in the frames of the strips.
+        The discrete model, and the accepted states.
     """
 
     status: Status

@@ -1,4 +1,4 @@
-"""Meshes of quadrilaterals in the frame of the strip."""
+"""Meshes of quadrilaterals."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -50,9 +50,9 @@ class Points:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Discretisation:
-    """Elements of a strip in the strip's frame, with x along the axis from 0 to L and y to the left."""
+    """Elements of a strip."""
 
-    nodes: Floats  # reference positions ``(n, 2)`` [m]
+    nodes: Floats  # reference positions ``(n, 2)`` from the start of the strip [m]
     # axial coordinate and distance to the left of the axis of the nodes ``(n, 2)``; the positions of a
     # straight strip [m]
     places: Floats

@@ -5,7 +5,7 @@
 - Fields at quadrature points: tensor axes first, then element, then point; a displacement gradient is
   ``(i, j, e, q)`` and a tangent ``(i, j, k, l, e, q)``.
 - Element matrices: element axis first, ``(e, 2 k, 2 k)``, local degree of freedom ``2 a + i``.
-- Displacements are in the frame of their strip; contact positions and results are in the global frame.
+- All positions, displacements and forces are in the global frame.
 - Only `fem_reference.solid.mesh`, `mesh_file` and `end_section` read scikit-fem's arrays.
 
 Material laws accept complex arrays too, so that tests can check their derivatives by complex steps.

@@ -242,14 +242,14 @@ class SolidProblem:
             else:
                 name, end = contact.node.split(".")
                 start = getattr(self.strip(name), end)
-            axial, transverse = strip.place(strip.to_local(np.array(start, dtype=float)))
+            axial, transverse = strip.place(start)
             if contact.surface == "face":
                 height = strip.height_at(min(max(axial, 0.0), strip.length)) / 2
             gap, slack = contact.sign * transverse - height - radius, 1e-9 * strip.length
             rule = f"must not start beyond the {contact.side} {contact.surface} of the strip (gap {gap:.3g})"
             require(owner, field, gap >= -slack or not 0 < axial < strip.length, rule, start)
             if pin is not None and gap <= slack and 0 <= axial <= strip.length:
-                x, y = map(float, strip.frame @ strip.directions(np.array(axial))[1])
+                x, y = map(float, strip.directions(axial)[1])
                 found.append((strip.name, pin.path[0], (x, y)))
         return found
 

@@ -2,12 +2,12 @@
 
 from cmath import rect
 from dataclasses import dataclass
-from math import atan2, hypot, pi, sin
+from math import atan2, pi, sin
 from typing import Any
 
 import numpy as np
 
-from fem_reference.statement.arrays import Array, Floats
+from fem_reference.statement.arrays import Array
 from fem_reference.statement.checks import Point, require, require_choice, require_finite, require_positive
 from fem_reference.statement.material import MATERIALS, PLANES
 
@@ -37,7 +37,7 @@ def solution_cost(mesh: tuple[int, int], element: str) -> tuple[float, float]:
 class Strip:
     """A strip whose axis is straight or an arc of a circle.
 
-    Its frame has the origin at the start and x along the axis there.
+    Its own frame, that of a mesh file, has the origin at the start and x along the axis there.
 
     Parameters
     ----------
@@ -165,40 +165,29 @@ class Strip:
         return max(self.height, self.end_height or 0.0)
 
     @property
-    def frame(self) -> Floats:
-        """Rotation ``Q (2, 2)`` from the strip's frame (x along the axis, origin at start) to the global one."""
-        direction = self.chord / abs(self.chord)
-        if self.turn:
-            direction *= rect(1.0, -self.turn / 2)
-        c, s = direction.real, direction.imag
-        return np.array([[c, -s], [s, c]])
+    def direction(self) -> complex:
+        """Unit tangent of the undeformed axis at the start, in the complex plane."""
+        return self.chord / abs(self.chord) * (rect(1.0, -self.turn / 2) if self.turn else 1.0)
 
-    def directions(self, x: Array) -> tuple[Array, Array]:
-        """Tangents and left normals ``(2, ...)`` of the undeformed axis at axial coordinates, in the strip's frame."""
-        c, s = np.cos(self.curvature * x), np.sin(self.curvature * x)
-        return np.stack([c, s]), np.stack([-s, c])
+    def directions(self, x: Any) -> tuple[Array, Array]:
+        """Tangents and left normals ``(2, ...)`` of the undeformed axis at axial coordinates."""
+        t = self.direction * np.exp(1j * self.curvature * np.asarray(x))
+        return np.stack([t.real, t.imag]), np.stack([-t.imag, t.real])
 
     def placed(self, places: Array) -> Array:
-        """Positions ``(..., 2)`` in the strip's frame of undeformed ``places``: axial coordinate, and distance to the left of the axis."""
-        k = self.curvature
+        """Positions ``(..., 2)`` from the start of undeformed ``places``: axial coordinate, and distance to the left of the axis."""
+        k, (x, y) = self.curvature, np.moveaxis(places, -1, 0)
+        along, across = x, y
+        if k:
+            s = np.sin(k * x)
+            along, across = s / k - y * s, 2 * np.sin(k * x / 2) ** 2 / k + y * np.cos(k * x)
+        z = self.direction * (along + 1j * across)
+        return np.stack([z.real, z.imag], axis=-1)
+
+    def place(self, point: Point) -> tuple[float, float]:
+        """Axial coordinate, and distance to the left of the axis, of a ``point``."""
+        k, z = self.curvature, (complex(*point) - complex(*self.start)) * self.direction.conjugate()
         if not k:
-            return places
-        x, y = places[..., 0], places[..., 1]
-        s = np.sin(k * x)
-        return np.stack([s / k - y * s, 2 * np.sin(k * x / 2) ** 2 / k + y * np.cos(k * x)], axis=-1)
-
-    def place(self, point: Array) -> tuple[float, float]:
-        """Axial coordinate, and distance to the left of the axis, of a ``point`` ``(2,)`` in the strip's frame."""
-        k, (x, y) = self.curvature, point
-        if not k:
-            return float(x), float(y)
-        radius = hypot(k * x, 1 - k * y)
-        return atan2(k * x, 1 - k * y) / k, (2 * y - k * (x * x + y * y)) / (1 + radius)
-
-    def to_local(self, points: Array) -> Array:
-        """Transform points ``(..., 2)`` from the global frame to the strip's frame."""
-        return np.asarray((points - np.array(self.start)) @ self.frame)
-
-    def to_global(self, points: Array) -> Array:
-        """Transform points ``(..., 2)`` from the strip's frame to the global frame."""
-        return np.asarray(points @ self.frame.T + np.array(self.start))
+            return z.real, z.imag
+        radius = abs(1 + 1j * k * z)
+        return atan2(k * z.real, 1 - k * z.imag) / k, (2 * z.imag - k * abs(z) ** 2) / (1 + radius)

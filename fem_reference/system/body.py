@@ -1,4 +1,4 @@
-"""A strip as a discrete solid in the strip's frame: elements, material law and clamps."""
+"""A strip as a discrete solid: elements, material law and clamps."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -111,7 +111,7 @@ def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:
     """Matrix ``(2 n, m)`` from the unknowns, ordered along the strip, to the displacements that the clamps admit.
 
     Without a node at the middle of the edge, the rod's clamp holds the displacement interpolated there from the two adjacent
-    nodes. At the end of an arc the transverse direction is the section's there.
+    nodes.
     """
     n = len(mesh.nodes)
     factor = np.ones(2 * n)
@@ -119,18 +119,19 @@ def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:
     for end in strip.clamped:
         edge = mesh.edges[end]
         y = mesh.places[edge, 1] - mesh.places[edge[[0, -1]], 1].mean()
-        x, factor[2 * edge + 1] = strip.directions(np.array(0.0 if end == "start" else strip.length))[1]
-        factor[2 * edge] = x
-        master[2 * edge] = 2 * edge + 1
+        across = strip.directions(0.0 if end == "start" else strip.length)[1]
+        larger = int(abs(across[1]) >= abs(across[0]))
+        factor[2 * edge], factor[2 * edge + 1] = across if strip.clamp == "rod" else (0, 0)
+        master[2 * edge], master[2 * edge + 1] = 2 * edge + larger, 2 * edge + larger
         if strip.clamp == "full":
-            factor[2 * edge], factor[2 * edge + 1] = 0, 0
-        elif np.abs(y).min() < 1e-9 * strip.height:
+            continue
+        if np.abs(y).min() < 1e-9 * strip.height:
             middle = 2 * edge[np.argmin(np.abs(y))]
             factor[[middle, middle + 1]] = 0
         else:
             k = int(np.searchsorted(y, 0.0))
             above = [2 * edge[k], 2 * edge[k] + 1]
-            master[above] = 2 * edge[k - 1] + 1
+            master[above] = 2 * edge[k - 1] + larger
             factor[above] *= y[k] / y[k - 1]
     order = np.lexsort(np.round(mesh.places / strip.height, 9).T[::-1])
     along = (2 * order[:, None] + np.arange(2)).ravel()

@@ -34,7 +34,7 @@ class Model:
     pairs: tuple[Pair, ...]  # contacts
     expansion: csr_matrix  # matrix ``(2 n, m)`` from the unknowns to the displacements
     restriction: csr_matrix  # transposed expansion: from nodal forces to the forces on the unknowns
-    loads: Floats  # dead nodal forces added in every stage, in the frames of their strips, ``(s, n, 2)`` [N]
+    loads: Floats  # dead nodal forces added in every stage, ``(s, n, 2)`` [N]
     sections: tuple[EndSection, ...]  # sections with a support, joint, anchor or moment
     columns: Floats  # columns ``(2 n, 4 e)`` of the sections
     ties: tuple[Tie, ...]  # ties of these sections: components of supports, then of springs, then of joints
@@ -82,7 +82,7 @@ def build(problem: SolidProblem, settings: Settings | None = None) -> Model:
     for load in problem.loads:
         body = next(body for body in bodies if body.strip.name == load.strip)
         forces = load.on_sections(body.strip, body.mesh.stations)
-        loads[load.stage, body.part] += body.mesh.sections.T @ forces @ body.strip.frame
+        loads[load.stage, body.part] += body.mesh.sections.T @ forces
         if isinstance(load, PointLoad) and load.moment:
             moments[load.stage, numbers[load.node]] += load.moment
         size = max(float(np.hypot(*forces.sum(axis=0))), abs(load.moment) / length)
@@ -118,12 +118,12 @@ def _joined(problem: SolidProblem) -> set[str]:
 
 def _carrier(bodies: list[Body], body: Body, rows: csr_matrix) -> Carrier:
     """Points with the weights ``rows`` of a body's nodes."""
-    both = kron(rows, body.strip.frame, format="csr")
+    both = kron(rows, np.eye(2), format="csr")
     shape = both.shape[0], 2 * bodies[-1].part.stop
     everywhere = csr_matrix((both.data, both.indices + 2 * body.part.start, both.indptr), shape=shape)
     # the weights of a first moment sum to zero
     shift = np.outer(np.round(rows.sum(axis=1), 9), body.offset)
-    reference = shift + (rows @ body.mesh.nodes) @ body.strip.frame.T
+    reference = shift + rows @ body.mesh.nodes
     return Carrier(reference=reference, rows=everywhere, transposed=csr_matrix(everywhere.T))
 
 

@@ -19,7 +19,7 @@ class State:
     """Displacements and contacts at a load parameter."""
 
     model: Model  # what is solved
-    u: Floats  # nodal displacements ``(n, 2)``, each in the frame of its strip [m]
+    u: Floats  # nodal displacements ``(n, 2)`` [m]
     internal_force: Floats  # internal nodal forces ``(n, 2)`` at these displacements [N]
     t: float  # load parameter
     touches: tuple[Touch, ...]  # contacts, in the order of the model's pairs
@@ -140,7 +140,7 @@ def at_rest(model: Model, t: float = 0.0) -> State:
 
 
 Reaction = tuple[Floats, float, Floats]
-"""Force ``(2,)`` on a strip in the global frame [N], moment about the held point [N m], and the place of this point ``(2,)`` [m]."""
+"""Force ``(2,)`` on a strip [N], moment about the held point [N m], and the place of this point ``(2,)`` [m]."""
 
 
 def reactions(state: State) -> dict[str, Reaction]:
@@ -148,15 +148,11 @@ def reactions(state: State) -> dict[str, Reaction]:
     found = dict[str, Reaction]()
     for body in state.model.bodies:
         for end in body.strip.clamped:
-            edge, frame, nodes = body.mesh.edges[end], body.strip.frame, body.mesh.nodes
+            edge, nodes = body.mesh.edges[end], body.mesh.nodes
             middle = nodes[edge[[0, -1]]].mean(axis=0)
             forces = state.residual[body.part][edge]
             turning = moment(nodes[edge] + state.u[body.part][edge] - middle, forces)
-            found[f"{body.strip.name}.{end}"] = (
-                frame @ forces.sum(axis=0),
-                turning,
-                body.offset + frame @ middle,
-            )
+            found[f"{body.strip.name}.{end}"] = forces.sum(axis=0), turning, body.offset + middle
     return found | tie_reactions(state, springs=False)
 
 
@@ -176,9 +172,9 @@ def imbalance(state: State) -> float:
     model, nodal = state.model, amount(state.model.loads, state.t)
     total, turning = np.zeros(2), float(amount(model.moments, state.t).sum())
     for body in model.bodies:
-        loads = nodal[body.part] @ body.strip.frame.T
+        loads = nodal[body.part]
         total += loads.sum(axis=0)
-        turning += moment(body.offset + (body.mesh.nodes + state.u[body.part]) @ body.strip.frame.T, loads)
+        turning += moment(body.offset + body.mesh.nodes + state.u[body.part], loads)
     for force, free_moment, place in (
         *reactions(state).values(),
         *tie_reactions(state, springs=True).values(),

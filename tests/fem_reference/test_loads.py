@@ -99,7 +99,7 @@ def test_a_moment_straightens_a_curved_strip(turn):
     strip, axis, bent = result.model.problem.strips[0], fr.axis_line(result, STRIP, 0), (turn * H) ** 2
     middle = np.add(strip.start, strip.end) / 2 - (1 - np.cos(turn / 2)) / turn * np.array([-0.8, 0.6])
     np.testing.assert_allclose(axis[50], middle, atol=2e-9 * abs(turn) + H**2 * abs(turn) / 12)
-    straight = np.array(strip.start) + strip.frame[:, 0]
+    straight = np.add(strip.start, strip.directions(0.0)[0])
     np.testing.assert_allclose(result.tips[STRIP][-1], straight, atol=1e-7 + bent)
     forces = fr.section_forces(result, STRIP, -1)
     np.testing.assert_allclose(forces.M, -EI * turn, rtol=1e-5)
