@@ -1,6 +1,7 @@
 """Solve a problem and collect the histories."""
 
 from collections.abc import Callable
+from functools import partial
 from time import perf_counter
 
 import numpy as np
@@ -15,6 +16,7 @@ from fem_reference.statement.arrays import Floats, Ints
 from fem_reference.statement.problem import SolidProblem
 from fem_reference.statement.settings import Settings
 from fem_reference.statement.status import Status
+from fem_reference.statement.strip import Strip
 from fem_reference.system.model import Model, build
 from fem_reference.system.state import Reaction, State, reactions, tie_reactions
 
@@ -87,13 +89,12 @@ def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
         message=message,
         load_parameter=np.array([step.load_parameter for step in done]),
         reached=steps[-1].load_parameter,
-        contacts={pair.name: _contact(states, steps, number) for number, pair in enumerate(model.pairs)},
-        supports=_histories([reactions(state) for state in states], reactions(steps[-1].state)),
-        springs=_histories(
-            [tie_reactions(state, springs=True) for state in states],
-            tie_reactions(steps[-1].state, springs=True),
-        ),
-        tips={body.strip.name: _tips(model, body.strip.name, states) for body in model.bodies},
+        contacts={
+            pair.contact.name: _contact(states, steps, number) for number, pair in enumerate(model.pairs)
+        },
+        supports=_histories(reactions, states, steps[-1].state),
+        springs=_histories(partial(tie_reactions, springs=True), states, steps[-1].state),
+        tips={strip.name: _tips(strip, states) for strip in model.problem.strips},
         newton_iterations=np.array([step.iterations for step in done], dtype=np.int64),
         cutbacks=sum(step.cutbacks for step in steps),
         substeps=sum(step.substeps for step in steps),
@@ -117,7 +118,7 @@ def _outcome(model: Model, last: Step) -> tuple[Status, str]:
         return Status.COMPLETED, Status.COMPLETED.value
     if last.pair is not None:
         touched = model.pairs[last.pair]
-        pair = f" ({touched.name})"
+        pair = f" ({touched.contact.name})"
         if status is Status.END_CONTACT:
             end, contact = nearest_end(touched, last.state), touched.contact
             pair, comma = f": {contact.node} meets the {end} of {contact.strip}", ""
@@ -157,17 +158,20 @@ def _contact(states: tuple[State, ...], steps: list[Step], number: int) -> Conta
     )
 
 
-def _histories(rows: list[dict[str, Reaction]], nodes: dict[str, Reaction]) -> dict[str, SupportHistory]:
-    """Histories of forces and moments by end."""
+def _histories(
+    read: Callable[[State], dict[str, Reaction]], states: tuple[State, ...], last: State
+) -> dict[str, SupportHistory]:
+    """Histories of the forces and moments that are read off states, by end."""
+    rows = [read(state) for state in states]
     return {
         node: SupportHistory(
             force=np.array([row[node][0] for row in rows]).reshape(-1, 2),
             moment=np.array([row[node][1] for row in rows]),
         )
-        for node in nodes
+        for node in read(last)
     }
 
 
-def _tips(model: Model, strip: str, states: tuple[State, ...]) -> Floats:
-    end = 0 if model.problem.strip(strip).clamped == ("end",) else -1
-    return np.array([section_means(state, strip)[end] for state in states]).reshape(-1, 2)
+def _tips(strip: Strip, states: tuple[State, ...]) -> Floats:
+    end = 0 if strip.clamped == ("end",) else -1
+    return np.array([section_means(state, strip.name)[end] for state in states]).reshape(-1, 2)

@@ -59,7 +59,7 @@ class Solid(Model):
         from comparisons.models.sections import j_integrals, section_forces
 
         def report(step: Any) -> None:
-            touching = (f"{touch.pair.name} at {touch.at.zeta:.4g}" for touch in step.state.closed)
+            touching = (f"{touch.pair.contact.name} at {touch.at.zeta:.4g}" for touch in step.state.closed)
             watch(Reached(step.load_parameter, step.iterations, tuple(touching)))
 
         problem = to_solid(scene, mesh=options.mesh)

@@ -66,11 +66,6 @@ class Pair:
     origin: Floats  # origin of positions ``(2,)``, at the first strip: a distant scene loses no digits [m]
 
     @property
-    def name(self) -> str:
-        """Name of the contact."""
-        return self.contact.name
-
-    @property
     def radius(self) -> float:
         """Radius of the pin; zero for an end [m]."""
         return self.node.radius if isinstance(self.node, Pin) else 0.0

@@ -22,7 +22,6 @@ _PROJECTION_STEPS = 40
 _REACH, _WINDOW = 90, 256
 """Stations beyond which a cardinal spline vanishes, and stations whose slopes are computed at once."""
 
-
 _HERMITE = np.array(
     [
         [[1, 0, -3, 2], [0, 0, 3, -2], [0, 1, -2, 1], [0, 0, -1, 1]],

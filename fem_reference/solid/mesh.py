@@ -20,7 +20,6 @@ element locks. Three points across the strip avoid zero-energy modes.
 EDGES = ("start", "end", "right", "left")
 """Names of the two ends and of the faces to the right and left of the direction from start to end."""
 
-
 _BATCH = 1024
 """Number of elements in a batch."""
 SECTION_LAYERS = 8

@@ -150,12 +150,12 @@ def _edges(basis: Any, lines: dict[str, Ints]) -> dict[str, Ints]:
     """Nodes on the lines of the named edges, an end ordered upwards, a face from start to end; no other line is on the boundary."""
     edges, mesh = dict[str, Ints](), basis.mesh
     facets = {frozenset(nodes): facet for facet, nodes in enumerate(mesh.facets.T.tolist())}
-    left = set(mesh.boundary_facets().tolist())
+    boundary = set(mesh.boundary_facets().tolist())
+    left = boundary.copy()
     for name in EDGES:
         known = sorted(lines) or "none"
         _require(not len(lines.get(name, ())), f'must name the lines of the edge "{name}", it names {known}')
         chosen = [facets.get(frozenset(line), -1) for line in lines[name].tolist()]
-        boundary = set(mesh.boundary_facets().tolist())
         _require(not set(chosen) <= boundary, f'the edge "{name}" must lie on the boundary')
         left -= set(chosen)
         dofs = np.unique(basis.get_dofs(np.array(chosen)).flatten())

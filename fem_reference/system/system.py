@@ -119,9 +119,7 @@ class Tangent:
     def correction(self) -> Correction | None:
         """Newton correction for the residuals of the state; None if the constraint equations are singular."""
         state = self.state
-        return self._correction(
-            self._respond(state.reduced, np.zeros(len(self.W)), state.residuals, self.border.C)
-        )
+        return self._correction(state.reduced, np.zeros(len(self.W)), state.residuals, self.border.C)
 
     def rate(self, before: float, after: float) -> Correction | None:
         """Change per load parameter with the mean velocity of the pins between two load parameters."""
@@ -135,7 +133,7 @@ class Tangent:
             load = load + state.nodal_forces(
                 np.outer(increment(model.moments, before, after), np.eye(3)[ROTATION])
             )
-        return self._correction(self._respond(-(model.restriction @ load.ravel()), p, r, self.border.rates))
+        return self._correction(-(model.restriction @ load.ravel()), p, r, self.border.rates)
 
     def inverse(self, right: Floats) -> Floats | None:
         """Product ``(m,)`` of the inverse Hessian and ``right``; None if the Hessian is singular."""
@@ -167,10 +165,9 @@ class Tangent:
             return None
         return _by_body(bodies, rests, self.V @ z[:k] - half), z[k:]
 
-    def _correction(self, response: tuple[Floats, Floats] | None) -> Correction | None:
-        if response is None:
-            return None
-        return Correction(u=self.state.model.displacements(response[0]), forces=response[1])
+    def _correction(self, R: Floats, p: Floats, r: Floats, C: Floats) -> Correction | None:
+        found = self._respond(R, p, r, C)
+        return found and Correction(u=self.state.model.displacements(found[0]), forces=found[1])
 
     def index(self, force_tolerance: float = 0.0) -> int:
         """Number of negative eigenvalues of the energy's Hessian over the admissible displacements.
