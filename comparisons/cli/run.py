@@ -57,8 +57,8 @@ def _cards(given: Namespace) -> int:
     from comparisons.suites.manual.cards import write_cards
 
     folder = given.out or Path("out") / given.suite
-    cards = write_cards(folder, _told(given), problems(given.of or None))
-    print(f"{len(cards) - 1} cards and their schema in {folder}")
+    count = write_cards(folder, _told(given), problems(given.of or None))
+    print(f"{count} cards and their schema in {folder}")
     return DONE
 
 
@@ -71,11 +71,10 @@ def _manual(given: Namespace) -> int:
     from comparisons.suites.manual import write_manual
     from comparisons.suites.manual.write import checks
 
-    cases, files = write_manual(folder, _told(given), stated)
-    write_text(folder / "junit.xml", junit_text("crossval run manual", checks(cases)))
-    answers = [(case.problem.name, one) for case in cases for one in case.judgements]
-    failed = [f"{name}, {one.trial.label}: {one.failure}" for name, one in answers if not one.passed]
-    print(f"{len(cases)} cases, {len(answers)} answers, {len(failed)} beyond their tolerance")
+    answers, files = write_manual(folder, _told(given), stated)
+    write_text(folder / "junit.xml", junit_text("crossval run manual", checks(answers)))
+    failed = [f"{one.problem.name}, {one.trial.label}: {one.failure}" for one in answers if not one.passed]
+    print(f"{len(stated)} cases, {len(answers)} answers, {len(failed)} beyond their tolerance")
     return _ended([*files, folder / "junit.xml"], failed, WRONG)
 
 

@@ -1,31 +1,34 @@
 """The claims of [P], which ``claims.toml`` states, and its figures: verdicts, files and a page."""
 
-import tomllib
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import cache
 from pathlib import Path
-from string import Formatter
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from comparisons.files import writable_folder, write_text
 from comparisons.output import Report, markdown
 from comparisons.report.pages import Section, picture, table, write_page
 from comparisons.suites.names import FIGURES
-from comparisons.suites.paper.fig7 import cantilever_shapes, critical_areas, of_critical_areas, of_lifts
-from comparisons.suites.paper.fig8 import ks_shapes, of_shapes
-from comparisons.suites.paper.fig9 import double_beam, of_double_beam
-from comparisons.suites.paper.figure import Facts, Study, percent
+from comparisons.suites.paper.fig7 import cantilever_shapes, critical_areas
+from comparisons.suites.paper.fig8 import ks_shapes
+from comparisons.suites.paper.fig9 import double_beam
+from comparisons.suites.paper.figure import STATED, Numbers, Study
 
 PAPER = (
     "Nizam, Obiya, Ijima, Tokubuchi, Ishibashi, *Effect of Shear Deformation on Convergability of Simple Contact Analysis "
     "with Large Displacement*"
 )
+STUDIES: dict[str, Callable[..., Study]] = {
+    "fig7a": cantilever_shapes, "fig7b": critical_areas, "fig8": ks_shapes, "fig9": double_beam,
+}  # fmt: skip
+"""How each figure of `FIGURES` is computed."""
 COARSE = ("fig7a", "fig7b", "fig8")
 """Figures whose coarse settings bear on their claims: fewer starting positions, tolerances, samples, load parameters or elements."""
-
-
 HEADER = ("", "where", "claim", "verdict", "number", "why")
 
 
@@ -41,7 +44,7 @@ class Verdict(StrEnum):
 
 
 Bounds = Mapping[str, tuple[float, float]]
-"""The least and the greatest value of facts; of a list, of all its values."""
+"""The least and the greatest value of expressions; of a list, of all its values."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,46 +52,37 @@ class Claim:
     """One claim, however often the paper makes it: every place in [P] where it stands, with what is said there.
 
     It holds within the bounds `holds` together, or in each of the `readings` of what the paper does not say; in size within `in_size`, too.
-    The number behind the verdict and the reason have names of facts in braces.
+    The number behind the verdict and the reason are templates with the figure's numbers.
     """
 
     name: str
     figure: str
-    stated: tuple[tuple[str, str], ...]
+    stated: Sequence[tuple[str, str]]
     number: str
     why: str
     holds: Bounds = field(default_factory=dict)
     readings: Bounds = field(default_factory=dict)
     in_size: Bounds = field(default_factory=dict)
 
-    def judged(self, facts: Facts, *, decides: bool) -> "Judgement":
-        """Return what becomes of the claim by the numbers of its figure; coarse settings that bear on it decide nothing."""
-        cases = _within(self.readings, facts) if self.readings else [all(_within(self.holds, facts))]
-        found = verdict(cases, in_size=all(_within(self.in_size, facts)))
-        number, why = (WORDS.vformat(text, (), facts) for text in (self.number, self.why))
-        if not decides:
-            found, why = Verdict.PROVISIONAL, f"With coarse settings: {found}. {why}"
-        return Judgement(self, found, number, why)
+
+CLAIMS = tuple(Claim(**row) for row in STATED["claim"])
+"""By the section that makes them first, in the order of the paper; each once, however often the paper makes it."""
 
 
-class _Words(Formatter):
-    """Sentences with numbers: the format ``percent`` is that of `percent`."""
-
-    def format_field(self, value: Any, format_spec: str) -> str:
-        return percent(value) if format_spec == "percent" else str(super().format_field(value, format_spec))
-
-
-WORDS = _Words()
-
-
-def _within(bounds: Bounds, facts: Facts) -> list[bool | None]:
+def _within(bounds: Bounds, numbers: Numbers) -> list[bool | None]:
     """Whether each number lies within its bounds; None where there is none."""
-    found = []
-    for name, (least, most) in bounds.items():
-        value = WORDS.get_field(name, (), facts)[0]
-        values = value if isinstance(value, list) else [value]
-        found += [None if one is None else bool(least <= one <= most) for one in values]
-    return found
+    found = (
+        (np.ravel(_words().compile_expression(of, undefined_to_none=False)(**numbers)).tolist(), *limits)
+        for of, limits in bounds.items()
+    )
+    return [None if one is None else least <= one <= most for values, least, most in found for one in values]
+
+
+@cache
+def _words() -> Any:
+    from jinja2 import Environment, StrictUndefined
+
+    return Environment(undefined=StrictUndefined)  # noqa: S701 - Markdown; the page escapes its cells
 
 
 class Judgement(NamedTuple):
@@ -106,30 +100,29 @@ class Judgement(NamedTuple):
         return "; ".join(places), " ".join(texts), verdict.format(self.verdict), number, self.why
 
 
-CLAIMS = tuple(
-    Claim(**{**row, "stated": tuple(map(tuple, row["stated"]))})
-    for row in tomllib.loads((Path(__file__).parent / "claims.toml").read_text(encoding="utf-8"))["claim"]
-)
-"""By the section that makes them first, in the order of the paper; each once, however often the paper makes it."""
-
-
 def verdict(readings: Sequence[bool | None], *, in_size: bool = True) -> Verdict:
     """Return whether a claim holds in every reading; None is a reading that this program cannot finish."""
-    if not readings:
-        raise ValueError("readings = (): a claim without a reading cannot be judged")
-    if all(readings):
+    seen = set(readings)
+    if seen == {True}:
         return Verdict.REPRODUCED if in_size else Verdict.IN_DIRECTION
-    return Verdict.NOT_REPRODUCED if all(one is False for one in readings) else Verdict.CANNOT_BE_TOLD
+    return Verdict.NOT_REPRODUCED if seen == {False} else Verdict.CANNOT_BE_TOLD
 
 
-def judged(found: Mapping[str, Study], *, quick: bool) -> list[Judgement]:
-    """Return the judgements on the claims whose figure was studied."""
-    facts = {figure: STUDIES[figure][1](study) for figure, study in found.items()}
-    return [
-        claim.judged(facts[claim.figure], decides=not (quick and claim.figure in COARSE))
-        for claim in CLAIMS
-        if claim.figure in found
-    ]
+def judged(found: Mapping[str, Numbers], *, quick: bool) -> list[Judgement]:
+    """Return the judgements on the claims whose figure was studied, by the numbers of the figures."""
+    judgements = []
+    for claim in (claim for claim in CLAIMS if claim.figure in found):
+        numbers = found[claim.figure]
+        cases = _within(claim.readings, numbers) or [all(_within(claim.holds, numbers))]
+        became = verdict(cases, in_size=all(_within(claim.in_size, numbers)))
+        number, why = (
+            _words().from_string(STATED["macros"].strip() + text).render(numbers).strip()
+            for text in (claim.number, claim.why)
+        )
+        if quick and claim.figure in COARSE:
+            became, why = Verdict.PROVISIONAL, f"With coarse settings: {became}. {why}"
+        judgements.append(Judgement(claim, became, number, why))
+    return judgements
 
 
 def counted(judgements: Sequence[Judgement]) -> str:
@@ -154,15 +147,6 @@ whose contact force is an unknown. EI/L^2 is the unit of the unbalanced force.
 {markdown([HEADER, *rows])}"""
 
 
-STUDIES: dict[str, tuple[Callable[..., Study], Callable[[Study], Facts]]] = {
-    "fig7a": (cantilever_shapes, of_lifts),
-    "fig7b": (critical_areas, of_critical_areas),
-    "fig8": (ks_shapes, of_shapes),
-    "fig9": (double_beam, of_double_beam),
-}
-"""How each figure of `FIGURES` is computed, and what it tells of its claims."""
-
-
 def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[list[Path], list[str]]:
     """Draw a figure of `FIGURES` or "all" and judge its claims; return the files and what stopped."""
     folder = writable_folder(folder)
@@ -170,9 +154,9 @@ def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[
     files: list[Path] = []
     for number, figure in enumerate(names := list(FIGURES) if name == "all" else [name], 1):
         report(f"[{number}/{len(names)}] {figure}: {FIGURES[figure]}")
-        found[figure] = STUDIES[figure][0](quick=quick, report=lambda line: report(f"  {line}"))
+        found[figure] = STUDIES[figure](quick=quick, report=lambda line: report(f"  {line}"))
         files += found[figure].write(figure, folder)
-    judgements = judged(found, quick=quick)
+    judgements = judged({figure: study.numbers for figure, study in found.items()}, quick=quick)
     files.append(folder / ("claims.md" if name == "all" else f"claims-{name}.md"))
     write_text(files[-1], claims_text(judgements, quick=quick))
     rows = [
