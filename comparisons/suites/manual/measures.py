@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from comparisons.answer import Array, Response
 from comparisons.answer.axis import STATIONS, axes_at_stations
+from comparisons.answer.errors import difference
 from comparisons.answer.table import table
 from comparisons.models import ROD, SOLID, solve
 from comparisons.models.options import Options
@@ -107,9 +108,7 @@ def histories(response: Response) -> dict[str, NDArray[Any]]:
 
 def step(response: Response, load_parameter: float) -> int:
     """Return the number of a load parameter of the scene."""
-    k = int(np.argmin(np.abs(response.load_parameter - load_parameter)))
-    assert abs(response.load_parameter[k] - load_parameter) < 1e-9, "must be one of the scene's"
-    return k
+    return int(np.flatnonzero(np.abs(response.load_parameter - load_parameter) < 1e-9)[0])
 
 
 def deflected(scene: Scene, response: Response, label: str, shown: Sequence[float]) -> Iterator[Line]:
@@ -132,12 +131,12 @@ def critical_load(answers: Answers) -> Iterable[float]:
 
     def sideways(load: float) -> float:
         loaded = varied(scene, {"scene.load_parameters": 1, "load.force": (0.0, -load)})
-        return float(answers.solved(loaded, draw=False).supports["column.end"].force[-1, 0])
+        return value(answers.solved(loaded, draw=False), "column.end.force_x", 1.0)
 
-    loads = estimate * np.linspace(0.0, 1.2, 13)[1:]
-    stiffness = np.array(list(map(sideways, loads.tolist()))) / (scene.supports[0].motion[0] or 1.0)
+    aside, loads = scene.supports[0].motion[0] or 1.0, (estimate * np.linspace(0.1, 1.2, 12)).tolist()
+    stiffness = [sideways(load) / aside for load in loads]
     answers.draw(loads, stiffness)
-    answers.draw([estimate, estimate], [0.0, stiffness.max()], ANSWER)
+    answers.draw([estimate, estimate], [0.0, max(stiffness)], ANSWER)
     yield float(brentq(sideways, 0.8 * estimate, 1.2 * estimate, xtol=1e-12, rtol=1e-12))
 
 
@@ -162,9 +161,9 @@ def greatest_load(answers: Answers) -> Iterable[float]:
     answers.draw(rise, load)
     _draw_levels(answers, answers.problem.quantities[::2], rise.max())
     there = t <= max(pin.corners, default=1.0)
-    for leg in (there, ~there):
-        if leg.any():
-            yield from summit(rise[leg], load[leg])
+    yield from summit(rise[there], load[there])
+    if not there.all():
+        yield from summit(rise[~there][::-1], load[~there][::-1])
 
 
 def _draw_levels(answers: Answers, quantities: Iterable[Quantity], width: float) -> None:
@@ -174,13 +173,12 @@ def _draw_levels(answers: Answers, quantities: Iterable[Quantity], width: float)
 
 
 def summit(x: Array, y: Array) -> tuple[float, float]:
-    """Return the greatest value of a history and its place, by the polynomial of degree 8 through eleven samples around it."""
-    k = int(np.clip(np.argmax(y), 5, len(y) - 6))
-    part = slice(k - 5, k + 6)
-    fit = np.polynomial.Polynomial.fit(x[part] - x[k], y[part], 8)
-    turns = [float(root.real) for root in fit.deriv().roots() if abs(root.imag) < 1e-9]
-    place = min(turns, key=abs, default=np.nan)
-    return float(fit(place)), float(place + x[k])
+    """Return the greatest value of a history over rising places, and its place, by a spline of degree 7."""
+    from scipy.interpolate import PPoly, make_interp_spline
+
+    history = make_interp_spline(x, y, 7)
+    place = max(PPoly.from_spline(history.derivative()).roots(extrapolate=False), key=history)
+    return float(history(place)), float(place)
 
 
 def sleeve(answers: Answers) -> Iterable[float]:
@@ -224,17 +222,16 @@ def limit_points(answers: Answers) -> Iterable[float]:
 def power_law(answers: Answers) -> Iterable[float]:
     """Exponent of the error of the force against the rod, or of the penetration, in what is varied."""
     # ``varies`` is ``elements`` or a setting of the scene; ``sign`` is -1 for that of the inverse
-    given, found = answers.problem.settings, []
+    given, found = answers.problem.settings, list[float]()
     for one in given["values"]:
         elements = given["varies"] == "elements"
         scene = answers.scene if elements else varied(answers.scene, {given["varies"]: one})
         options = replace(answers.trial.options, elements=one) if elements else None
-        (contact,) = answers.solved(scene, options=options, draw=False).contacts.values()
+        response = answers.solved(scene, options=options, draw=False)
         if given["of"] == "penetration":
-            found.append(-contact.gap[-1])
+            found.append(-value(response, f"{scene.contacts[0].pair}.gap", 1.0))
         else:
-            (exact,) = answered(scene, ROD.name).contacts.values()
-            found.append(np.abs(contact.force - exact.force).max() / exact.force.max())
+            found.append(difference(response, answered(scene, ROD.name), scene, "force"))
     answers.draw(given["values"], found)
     yield float(given["sign"] * np.polyfit(np.log(given["values"]), np.log(found), 1)[0])
 

@@ -135,11 +135,11 @@ def page(cases: Sequence[Sequence[Judgement]]) -> str:
 
 def _numbers(case: Sequence[Judgement]) -> dict[str, Any]:
     """Return everything but the picture as nested numbers."""
-    problem, asked = case[0].problem, ("name", "exact", "scale")
+    problem = case[0].problem
     stated = ("name", "title", "purpose", "statement", "source", "uncertainty")
     return {
         **{name: getattr(problem, name) for name in stated},
-        "quantities": [{name: getattr(one, name) for name in asked} for one in problem.quantities],
+        "quantities": problem.quantities,
         "runs": [
             {
                 "model": item.trial.model,

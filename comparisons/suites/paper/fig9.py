@@ -53,12 +53,7 @@ def double_beam(*, quick: bool, report: Report) -> Study:
         open_pair = np.isnan(contact.arc_position)
         columns[f"{pair} {prefix}force"] = np.where(open_pair, np.nan, contact.force)
         columns[f"{pair} {prefix}arc"] = contact.arc_position
-    names = ("kind", "pair", "element", "force", "released")
-    events = [
-        {name: getattr(one, name) for name in names}
-        | {"depth": travel * one.load_parameter, "arc": one.arc_position}
-        for one in response.events or ()
-    ]
+    events = [{**vars(one), "depth": travel * one.load_parameter} for one in response.events or ()]
     report("the paper's elements")
     tried = (TIMOSHENKO,) if quick else (TIMOSHENKO, SIMPLE, CANTILEVER)
     stages = _stages(columns["depth"])
@@ -158,8 +153,8 @@ def _stage(scene: Scene, response: Response, stage: Row) -> tuple[str, Iterator[
             ends = np.array([point - ARROW * vector[k], point])
             lines.append(Line(f"force of {name}", ends.T, {"color": COLOURS[pair]}))
             forces.append(f"{name} {contact.force[k]:.3f} N")
-    title = f"({stage['key']}) {stage['title']}, depth {stage['depth']:.3f} m\n{', '.join(forces)}"
-    return title, chain(shapes(scene, {BEAMS: response}, [k]), lines)
+    head = [f"({stage['key']}) {stage['title']},", f"depth {stage['depth']:.3f} m"]
+    return "\n".join([*head, *forces]), chain(shapes(scene, {BEAMS: response}, [k]), lines)
 
 
 def _histories(columns: Columns, events: Sequence[Row], quantity: str) -> Iterator[Line]:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from comparisons.files import writable_folder, write_text
-from comparisons.output import Report, markdown
+from comparisons.output import Report, Row, markdown
 from comparisons.report.pages import Section, picture, table, write_page
 from comparisons.suites.names import FIGURES
 from comparisons.suites.paper.fig7 import cantilever_shapes, critical_areas
@@ -29,7 +29,6 @@ STUDIES: dict[str, Callable[..., Study]] = {
 """How each figure of `FIGURES` is computed."""
 COARSE = ("fig7a", "fig7b", "fig8")
 """Figures whose coarse settings bear on their claims: fewer starting positions, tolerances, samples, load parameters or elements."""
-HEADER = ("", "where", "claim", "verdict", "number", "why")
 
 
 class Verdict(StrEnum):
@@ -93,12 +92,6 @@ class Judgement(NamedTuple):
     number: str
     why: str
 
-    def cells(self, verdict: str, figure: str) -> tuple[str, ...]:
-        """Every place in [P] where the claim stands, what it says at all of them, verdict, number and figure, reason."""
-        places, texts = zip(*self.claim.stated, strict=True)
-        number = f"{self.number} ({figure.format(self.claim.figure)})"
-        return "; ".join(places), " ".join(texts), verdict.format(self.verdict), number, self.why
-
 
 def verdict(readings: Sequence[bool | None], *, in_size: bool = True) -> Verdict:
     """Return whether a claim holds in every reading; None is a reading that this program cannot finish."""
@@ -133,9 +126,24 @@ def counted(judgements: Sequence[Judgement]) -> str:
     return f"{len(judgements)} of {len(CLAIMS)} claims judged ({statements} statements){': ' if summary else ''}{summary}"
 
 
+def rows(judgements: Sequence[Judgement]) -> list[Row]:
+    """Return a row per claim: its places in [P], what it says at all of them, verdict, number and figure, reason."""
+    return [
+        {
+            "": str(number),
+            "where": "; ".join(place for place, _ in one.claim.stated),
+            "claim": " ".join(text for _, text in one.claim.stated),
+            "verdict": str(one.verdict),
+            "number": f"{one.number} ({one.claim.figure})",
+            "why": one.why,
+        }
+        for number, one in enumerate(judgements, 1)
+    ]
+
+
 def claims_text(judgements: Sequence[Judgement], *, quick: bool) -> str:
     """Return the verdicts as Markdown."""
-    rows = [(str(number), *one.cells("**{}**", "`{}`")) for number, one in enumerate(judgements, 1)]
+    table = rows(judgements)
     return f"""# The claims of the paper and what became of them
 
 {PAPER}: {counted(judgements)}.
@@ -144,7 +152,7 @@ Every number below is computed by the run that wrote this file{", with coarse se
 Timoshenko, Euler-Bernoulli: the paper's elements with their misprints corrected. Mixed: the element of this project
 whose contact force is an unknown. EI/L^2 is the unit of the unbalanced force.
 
-{markdown([HEADER, *rows])}"""
+{markdown([list(table[0]), *(list(row.values()) for row in table)])}"""
 
 
 def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[list[Path], list[str]]:
@@ -159,12 +167,8 @@ def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[
     judgements = judged({figure: study.numbers for figure, study in found.items()}, quick=quick)
     files.append(folder / ("claims.md" if name == "all" else f"claims-{name}.md"))
     write_text(files[-1], claims_text(judgements, quick=quick))
-    rows = [
-        dict(zip(HEADER, (number, *one.cells("{}", "{}")), strict=True))
-        for number, one in enumerate(judgements, 1)
-    ]
     caption = f"{counted(judgements)}. Every number is computed by the run that wrote this page."
-    sections = [Section(title="Claims", html=table(caption, rows, prose=True))]
+    sections = [Section(title="Claims", html=table(caption, rows(judgements), prose=True))]
     for figure, study in found.items():
         title = FIGURES[figure]
         drawn = (picture(folder / f"{stem}.svg", f"{stem}: {title}") for stem in study.pictures)
