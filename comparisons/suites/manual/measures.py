@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import product
 from typing import Any
 
@@ -18,6 +19,7 @@ from comparisons.models.solid import to_solid
 from comparisons.models.tsm import to_structure
 from comparisons.scene import LoadSpec, Scene, read_scene
 from comparisons.suites.drawing import Line
+from comparisons.suites.formula import value_of
 from comparisons.suites.manual.problem import Problem, Quantity, Trial, varied
 from comparisons.suites.solid_accuracy import solved
 
@@ -65,20 +67,16 @@ def answered(scene: Scene, model: str, options: Options | None = None) -> Respon
     return response
 
 
-def readings(answers: Answers) -> list[float]:
+def readings(answers: Answers) -> Iterable[float]:
     """Read every quantity from the answer to the problem's scene, with what each changes in it."""
     found: dict[str, Response] = {}
     for one in answers.problem.quantities:
         if repr(one.changes) not in found:
             found[repr(one.changes)] = answers.solved(varied(answers.scene, one.changes))
-    return [one.times * _read(found[repr(one.changes)], one) for one in answers.problem.quantities]
-
-
-def _read(response: Response, quantity: Quantity) -> float:
-    found = value(response, quantity.read, quantity.at)
-    if quantity.since is not None:
-        found -= value(response, quantity.read, quantity.since)
-    return found / _read(response, quantity.over) if quantity.over else found
+        of = partial(value, found[repr(one.changes)])
+        yield (
+            value_of(one.formula, of=of, beam=answers.scene.beams[0]) if one.formula else of(one.read, one.at)
+        )
 
 
 def value(response: Response, words: str, at: float) -> float:
@@ -140,17 +138,6 @@ def critical_load(answers: Answers) -> Iterable[float]:
     yield float(brentq(sideways, 0.8 * estimate, 1.2 * estimate, xtol=1e-12, rtol=1e-12))
 
 
-def identity(answers: Answers) -> Iterable[float]:
-    """First integral of the elastica, ``F (x cos tc + y sin tc)^2/(2 EI sin tc) = 1``, with the contact force's own direction."""
-    response = answers.solved()
-    found, k = histories(response), [2, 5, 9]
-    fx, fy = (found[f"pin->cantilever.force_{axis}"][k] for axis in "xy")
-    x, y = np.array([answers.scene.pins[0].position(t) for t in response.load_parameter[k]]).T
-    tangent = np.arctan2(-fx, fy)
-    lever = x * np.cos(tangent) + y * np.sin(tangent)
-    yield from (np.hypot(fx, fy) * lever**2 / (2.0 * np.sin(tangent))).tolist()
-
-
 def greatest_load(answers: Answers) -> Iterable[float]:
     """Read the greatest load and its place: of a pin that is raised, or of half of three-point bending."""
     # a pin whose path has a corner turns back there: both are read on the way there, then on the way back
@@ -179,18 +166,6 @@ def summit(x: Array, y: Array) -> tuple[float, float]:
     history = make_interp_spline(x, y, 7)
     place = max(PPoly.from_spline(history.derivative()).roots(extrapolate=False), key=history)
     return float(history(place)), float(place)
-
-
-def sleeve(answers: Answers) -> Iterable[float]:
-    """Material force at the clamp over M^2/EI for several distances of two opposed pins."""
-    scene, beam = answers.scene, answers.scene.beams[0]
-    x, y = scene.pins[0].points[0]
-    for distance in answers.problem.settings["distances"]:
-        apart = varied(scene, {"pin.outer.start": (x + distance, y)})
-        clamp = answers.solved(apart).supports[f"{beam.name}.start"]
-        N, Q = -clamp.force[-1]
-        H = clamp.moment[-1] ** 2 / (2.0 * beam.EI) + N + N**2 / (2.0 * beam.EA) + Q**2 / (2.0 * beam.GA)
-        yield float(H * beam.EI / scene.loads[0].moment ** 2)
 
 
 def under_load(scene: Scene, force: float) -> Scene:
@@ -294,8 +269,7 @@ Measure = Callable[[Answers], Iterable[float]]
 MEASURES: dict[str, Measure] = {
     measure.__name__: measure
     for measure in (
-        readings, critical_load, identity, greatest_load, sleeve, limit_points, power_law,
-        in_plane_strain, work_over_energy, invariance,
+        readings, critical_load, greatest_load, limit_points, power_law, in_plane_strain, work_over_energy, invariance,
     )
 }  # fmt: skip
 """The functions that a problem can name as its ``measure``."""

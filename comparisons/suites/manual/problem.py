@@ -35,12 +35,10 @@ class Quantity:
     name: str = ""  #: With the unit, unless the quantity is dimensionless.
     exact: float = math.nan
     scale: float | None = None  #: What its error is divided by, the magnitude of the exact value if None.
-    read: str = ""  #: The words of `comparisons.suites.manual.measures.value`; empty where a measure finds the number.
+    read: str = ""  #: The words of `comparisons.suites.manual.measures.value`.
     at: float = 1.0  #: A load parameter.
-    times: float = 1.0  #: A factor.
+    formula: str = ""  #: In place of both: in ``of(read, at)`` and the attributes of the scene's first beam, ``beam.EI``.
     changes: Changes = field(default_factory=dict)  #: What is changed in the scene.
-    since: float | None = None  #: A load parameter; what the quantity is there is taken away.
-    over: "Quantity | None" = None  #: What it is divided by.
 
     @property
     def size(self) -> float:
@@ -92,13 +90,9 @@ def read_problem(path: Path) -> Problem:
     """
     table = tomllib.loads(path.read_text(encoding="utf-8"))
     scene = table["scene"] = _scene(table, path)
-    table["quantities"] = tuple(map(_quantity, table["quantities"]))
+    table["quantities"] = tuple(Quantity(**row) for row in table["quantities"])
     table["trials"] = tuple(_trial(row, scene, path) for row in table["trials"])
     return Problem(name=path.stem, **table | {"picture": Picture(**table.get("picture", {}))})
-
-
-def _quantity(row: dict[str, Any]) -> Quantity:
-    return Quantity(**row | {"over": _quantity(row["over"])} if "over" in row else row)
 
 
 def _scene(table: dict[str, Any], path: Path, scene: Scene | None = None) -> Scene:

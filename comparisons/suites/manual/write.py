@@ -15,7 +15,7 @@ from comparisons.files import writable_folder, write_text
 from comparisons.output import Report, write_numbers
 from comparisons.report import palette
 from comparisons.suites.drawing import Line, draw
-from comparisons.suites.finding import Finding
+from comparisons.suites.finding import Finding, junit_text
 from comparisons.suites.manual.measures import (
     ANSWER,
     MEASURES,
@@ -28,6 +28,7 @@ from comparisons.suites.manual.measures import (
 from comparisons.suites.manual.problem import Problem, Trial, read_problem
 from comparisons.version import versions
 
+FILES = ("index.md", "manual.json", "junit.xml")
 PAGE = Path(__file__).with_name("page.md.jinja")
 GUIDE = "exact order"
 EXACT = {"color": palette.GREY, "linewidth": 0.8, "linestyle": (0, (4, 3)), "zorder": 3}
@@ -160,11 +161,10 @@ def _numbers(case: Sequence[Judgement]) -> dict[str, Any]:
     }
 
 
-def checks(judgements: Sequence[Judgement]) -> Iterator[tuple[str, str, float, str | None, str]]:
-    """Yield a check of `comparisons.suites.finding.junit_text` for every answer."""
-    for item in judgements:
-        measured = "\n".join(one.measured for one in item.findings)
-        yield f"manual.{item.problem.name}", item.trial.label, item.seconds, item.failure, measured
+def _check(item: Judgement) -> tuple[str, str, float, str | None, str]:
+    """Return the check of `junit_text` for an answer."""
+    measured = "\n".join(one.measured for one in item.findings)
+    return f"manual.{item.problem.name}", item.trial.label, item.seconds, item.failure, measured
 
 
 def write_manual(folder: Path, report: Report, files: Sequence[Path]) -> tuple[list[Judgement], list[Path]]:
@@ -199,5 +199,7 @@ def write_manual(folder: Path, report: Report, files: Sequence[Path]) -> tuple[l
             report(f"  {item.trial.label}: {item.failure}")
     write_text(folder / "index.md", page(cases))
     judgements = list(chain.from_iterable(cases))
+    write_text(folder / "junit.xml", junit_text("crossval run manual", map(_check, judgements)))
     numbers = {"passed": all(item.passed for item in judgements), "cases": list(map(_numbers, cases))}
-    return judgements, [folder / "index.md", write_numbers(folder / "manual.json", numbers), *pictures]
+    write_numbers(folder / "manual.json", numbers)
+    return judgements, [*(folder / name for name in FILES[:2]), *pictures, folder / FILES[2]]

@@ -36,8 +36,6 @@ STARTS = (4.05, 4.1, 4.2, 4.3, 4.35, 4.4)
 PRINTED = {SIMPLE: (0.07749, 0.12952), CANTILEVER: (0.02164, 0.03865), TIMOSHENKO: (0.00067, 0.00501)}
 """The ranges of the critical area in [P] section 4.1."""
 TOLERANCES = (1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12)
-SHOWN_TOLERANCE = 1e-10
-"""Tolerance of the curves against displacement, or the measured one nearest to it."""
 RATIOS = 10.0 ** -np.arange(1.0, 16.5, 0.5)
 FITTED = (1e-13, 1e-2)
 """Ratios of the fitted slopes: below, a ratio has no digits left; above, it is no small one."""
@@ -57,8 +55,7 @@ def lifted(start: float) -> Scene:
 
 def critical_areas(*, quick: bool, report: Report) -> Study:
     """Measure both; `quick` takes fewer starting positions, tolerances and samples."""
-    tolerances = TOLERANCES[::3] if quick else TOLERANCES
-    shown = min(tolerances, key=lambda tolerance: abs(np.log(tolerance / SHOWN_TOLERANCE)))
+    tolerances, shown = (TOLERANCES[::3], 1e-9) if quick else (TOLERANCES, 1e-10)
     areas, curves = list[Row](), list[tuple[Row, Array, Array]]()
     for tolerance in tolerances:
         report(f"approach to the nodes at tolerance {tolerance:.0e}")
@@ -78,10 +75,7 @@ def critical_areas(*, quick: bool, report: Report) -> Study:
     cases = zip(product(FLOORS, RATIOS), floors.ravel(), strict=True)
     panels: dict[str, list[Line]] = {}
     for place, raised, ratio in curves:
-        element, title = (
-            place["element"],
-            f"pin starts at {place['start']:g} m, tolerance {shown:.0e} EI/L$^2$",
-        )
+        element, title = place["element"], f"pin at {place['start']:g} m, tolerance {shown:.0e} EI/L$^2$"
         style = {"markevery": [-1], "linewidth": 3.2 - 0.7 * list(LABELS).index(element), **line(element)}
         curve = Line(LABELS[element], (raised, np.maximum(ratio, NEAREST)), style)
         panels.setdefault(title, []).append(curve)
@@ -112,10 +106,10 @@ def measured(areas: Sequence[Row], floors: Array, shown: float) -> Numbers:
     found = np.array([row["smallest"] for row in areas]).reshape(len(tolerances), len(LABELS), count)
     ways = dict(zip(LABELS, np.moveaxis(found, 1, 0), strict=True))
     later = [before["start"] == after["start"] for before, after in pairwise(areas[:count])]
-    areas_of = {name: np.nan_to_num(one, nan=1.0) for name, one in ways.items()}
+    of_parts: dict[str, Any] = {"smallest": np.min, "median": np.median, "largest": np.max}
     critical = {
-        name: {"smallest": one.min(axis=1), "median": np.median(one, axis=1), "largest": one.max(axis=1)}
-        for name, one in areas_of.items()
+        name: {part: of(np.nan_to_num(one, nan=1.0), axis=1) for part, of in of_parts.items()}
+        for name, one in ways.items()
     }
     takes, meets, smaller, gain, printed_gain = {}, {}, {}, {}, {}
     for name, (least, most) in PRINTED.items():
@@ -127,9 +121,8 @@ def measured(areas: Sequence[Row], floors: Array, shown: float) -> Numbers:
         # where the measured range meets the printed one, and whether the printed one lies between two that do not
         meeting = (critical[name]["smallest"] <= most) & (critical[name]["largest"] >= least)
         meets[name] = [*meeting, *[True] * (takes[name] > 0.0)]
-    usable = (
-        critical[SIMPLE]["median"] < MOVES
-    )  # the tolerances at which the Euler-Bernoulli contact still moves
+    # the tolerances at which the Euler-Bernoulli contact still moves
+    usable = critical[SIMPLE]["median"] < MOVES
     for above, below in pairwise(PRINTED):
         both = usable[:, None] & np.isfinite(ways[above] + ways[below])
         smaller[above] = _part((ways[above] > ways[below])[both])
@@ -170,10 +163,9 @@ def _areas(numbers: Numbers) -> Iterator[Line]:
     beside = tolerances[-1] / 10.0, tolerances[-1] / 100.0
     for element, label in LABELS.items():
         faint = {"color": line(element)["color"], "linewidth": 0.8}
-        styles = {"_smallest": faint, "median": line(element), "_largest": faint}
-        for name, style in styles.items():
-            area = np.maximum(numbers["critical_area"][element][name.strip("_")], NEAREST)
-            yield Line(label if name == "median" else name, (tolerances, area), style)
+        for part, area in numbers["critical_area"][element].items():
+            words, style = (label, line(element)) if part == "median" else ("_", faint)
+            yield Line(words, (tolerances, np.maximum(area, NEAREST)), style)
         for edge in PRINTED.get(element, ()):
             yield Line("printed in the paper", (beside, (edge, edge)), faint | {"linewidth": 3.0})
     ends = {"color": "0.6", "linestyle": ":"}

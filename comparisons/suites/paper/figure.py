@@ -2,7 +2,7 @@
 
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -24,15 +24,15 @@ Numbers = Mapping[str, Any]
 class Study:
     """What is found for a figure: its scenes, rows and numbers, pictures, and moving shapes for the page.
 
-    `tables` and `pictures` go by the names of their files; a picture is its panels, or draws to the paths that it is given. ``numbers["stopped"]`` names
-    the runs that the figure needs and that did not go through.
+    `tables` and `pictures` go by the names of their files; a picture is its panels, or draws to the paths that it is given.
+    ``numbers["stopped"]`` names the runs that the figure needs and that did not go through.
     """
 
     tables: Mapping[str, list[Row]]
     numbers: Numbers
     pictures: Mapping[str, Mapping[str, Iterable[Line]] | Callable[..., None]]
     scenes: Sequence[Scene] = ()
-    moving: Sequence[Section] = field(default_factory=tuple)
+    moving: Sequence[Section] = ()
 
     def write(self, name: str, folder: Path) -> list[Path]:
         """Draw the pictures and write the numbers, those of the JSON file under a name; return the files."""

@@ -4,15 +4,15 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from comparisons.files import writable_folder, write_text
 from comparisons.output import Report, Row, markdown
 from comparisons.report.pages import Section, picture, table, write_page
+from comparisons.suites.formula import sentence, value_of
 from comparisons.suites.names import FIGURES
 from comparisons.suites.paper.fig7 import cantilever_shapes, critical_areas
 from comparisons.suites.paper.fig8 import ks_shapes
@@ -64,24 +64,15 @@ class Claim:
     in_size: Bounds = field(default_factory=dict)
 
 
+MACROS = STATED["macros"]
 CLAIMS = tuple(Claim(**row) for row in STATED["claim"])
 """By the section that makes them first, in the order of the paper; each once, however often the paper makes it."""
 
 
 def _within(bounds: Bounds, numbers: Numbers) -> list[bool | None]:
     """Whether each number lies within its bounds; None where there is none."""
-    found = (
-        (np.ravel(_words().compile_expression(of, undefined_to_none=False)(**numbers)).tolist(), *limits)
-        for of, limits in bounds.items()
-    )
+    found = ((np.ravel(value_of(of, **numbers)).tolist(), *limits) for of, limits in bounds.items())
     return [None if one is None else least <= one <= most for values, least, most in found for one in values]
-
-
-@cache
-def _words() -> Any:
-    from jinja2 import Environment, StrictUndefined
-
-    return Environment(undefined=StrictUndefined)  # noqa: S701 - Markdown; the page escapes its cells
 
 
 class Judgement(NamedTuple):
@@ -108,10 +99,7 @@ def judged(found: Mapping[str, Numbers], *, quick: bool) -> list[Judgement]:
         numbers = found[claim.figure]
         cases = _within(claim.readings, numbers) or [all(_within(claim.holds, numbers))]
         became = verdict(cases, in_size=all(_within(claim.in_size, numbers)))
-        number, why = (
-            _words().from_string(STATED["macros"].strip() + text).render(numbers).strip()
-            for text in (claim.number, claim.why)
-        )
+        number, why = (sentence(MACROS + text, **numbers).strip() for text in (claim.number, claim.why))
         if quick and claim.figure in COARSE:
             became, why = Verdict.PROVISIONAL, f"With coarse settings: {became}. {why}"
         judgements.append(Judgement(claim, became, number, why))
