@@ -8,7 +8,9 @@ from typing import Any
 def _language() -> Any:
     from jinja2 import Environment, StrictUndefined
 
-    return Environment(undefined=StrictUndefined)  # noqa: S701 - Markdown; pages escape their cells
+    language = Environment(undefined=StrictUndefined)  # noqa: S701 - Markdown; pages escape their cells
+    language.trim_blocks = language.keep_trailing_newline = True
+    return language
 
 
 def value_of(formula: str, **names: Any) -> Any:

@@ -57,19 +57,15 @@ def _quantity(quantity: Quantity, uncertainty: float) -> dict[str, Any]:
     return {"name": quantity.name, "value": quantity.exact, "digits": digits, "uncertainty": error}
 
 
-def card_schema() -> dict[str, Any]:
-    """Return the JSON Schema of cards; the scene has the schema of scene files."""
-    schema: dict[str, Any] = json.loads(SCHEMA.read_text(encoding="utf-8"))
-    scene = {key: value for key, value in json_schema().items() if key != "$schema"}
-    schema["properties"]["scene"] = {**scene, **schema["properties"]["scene"]}
-    return schema
-
-
 def write_cards(folder: Path, report: Report, stated: Sequence[Path]) -> int:
     """Write the cards of problems, ``NAME.json``, and their schema; return the number of cards."""
     writable_folder(folder)
     for problem in map(read_problem, stated):
         write_text(folder / f"{problem.name}.json", json_text(card(problem)))
         report(f"{problem.name}: {len(problem.quantities)} quantities")
-    write_text(folder / "card.schema.json", json_text(card_schema()))
+    schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
+    # the scene has the schema of scene files
+    schema["properties"]["scene"] = json_schema() | schema["properties"]["scene"]
+    del schema["properties"]["scene"]["$schema"]
+    write_text(folder / "card.schema.json", json_text(schema))
     return len(stated)

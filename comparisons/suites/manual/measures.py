@@ -73,10 +73,8 @@ def readings(answers: Answers) -> Iterable[float]:
     for one in answers.problem.quantities:
         if repr(one.changes) not in found:
             found[repr(one.changes)] = answers.solved(varied(answers.scene, one.changes))
-        of = partial(value, found[repr(one.changes)])
-        yield (
-            value_of(one.formula, of=of, beam=answers.scene.beams[0]) if one.formula else of(one.read, one.at)
-        )
+        of, beam = partial(value, found[repr(one.changes)]), answers.scene.beams[0]
+        yield value_of(one.formula, of=of, read=one.read, at=one.at, beam=beam)
 
 
 def value(response: Response, words: str, at: float) -> float:
@@ -242,15 +240,13 @@ def work_over_energy(answers: Answers) -> Iterable[float]:
     """Work of a pin, by Gauss quadrature at whose points the solver is called, over the energy stored, a penalty's included."""
     import fem_reference
 
-    panels = 20
-    gauss, weights = np.polynomial.legendre.leggauss(4)
-    t = np.append(((np.arange(panels)[:, None] + (1.0 + gauss) / 2.0) / panels).ravel(), 1.0)
-    result = _solved_directly(answers, t)
+    t, weights = np.polynomial.legendre.leggauss(80)
+    result = _solved_directly(answers, np.append((1.0 + t) / 2.0, 1.0))
     solid = answers.trial.model == SOLID.name
     energy = sum(fem_reference.energy(result, -1)) if solid else result.strain_energy[-1]
     force = -result.supports[answers.scene.all_supports[0].node].force[:-1]
     start, end = np.array(answers.scene.pins[0].points)
-    yield float(np.tile(weights / 2.0 / panels, panels) @ (force @ (end - start)) / energy)
+    yield float(weights / 2.0 @ force @ (end - start) / energy)
 
 
 def invariance(answers: Answers) -> Iterable[float]:

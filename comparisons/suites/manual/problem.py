@@ -37,7 +37,9 @@ class Quantity:
     scale: float | None = None  #: What its error is divided by, the magnitude of the exact value if None.
     read: str = ""  #: The words of `comparisons.suites.manual.measures.value`.
     at: float = 1.0  #: A load parameter.
-    formula: str = ""  #: In place of both: in ``of(read, at)`` and the attributes of the scene's first beam, ``beam.EI``.
+    formula: str = (
+        "of(read, at)"  #: In such readings and the attributes of the scene's first beam, ``beam.EI``.
+    )
     changes: Changes = field(default_factory=dict)  #: What is changed in the scene.
 
     @property

@@ -16,6 +16,7 @@ from comparisons.output import Report, write_numbers
 from comparisons.report import palette
 from comparisons.suites.drawing import Line, draw
 from comparisons.suites.finding import Finding, junit_text
+from comparisons.suites.formula import sentence
 from comparisons.suites.manual.measures import (
     ANSWER,
     MEASURES,
@@ -127,11 +128,8 @@ def _exact(problem: Problem, found: Sequence[Line]) -> Iterator[Line]:
 
 def page(cases: Sequence[Sequence[Judgement]]) -> str:
     """Return the manual as Markdown: a table of all answers, then a section for each problem."""
-    from jinja2 import Template
-
-    template = Template(PAGE.read_text(encoding="utf-8"), trim_blocks=True, keep_trailing_newline=True)
-    judgements = list(chain.from_iterable(cases))
-    return str(template.render(cases=cases, judgements=judgements, versions=versions()))
+    template, judgements = PAGE.read_text(encoding="utf-8"), list(chain.from_iterable(cases))
+    return sentence(template, cases=cases, judgements=judgements, versions=versions())
 
 
 def _numbers(case: Sequence[Judgement]) -> dict[str, Any]:

@@ -5,7 +5,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -75,15 +74,6 @@ def _within(bounds: Bounds, numbers: Numbers) -> list[bool | None]:
     return [None if one is None else least <= one <= most for values, least, most in found for one in values]
 
 
-class Judgement(NamedTuple):
-    """A claim with its verdict, the number behind it and the reason."""
-
-    claim: Claim
-    verdict: Verdict
-    number: str
-    why: str
-
-
 def verdict(readings: Sequence[bool | None], *, in_size: bool = True) -> Verdict:
     """Return whether a claim holds in every reading; None is a reading that this program cannot finish."""
     seen = set(readings)
@@ -92,46 +82,42 @@ def verdict(readings: Sequence[bool | None], *, in_size: bool = True) -> Verdict
     return Verdict.NOT_REPRODUCED if seen == {False} else Verdict.CANNOT_BE_TOLD
 
 
-def judged(found: Mapping[str, Numbers], *, quick: bool) -> list[Judgement]:
+Judgements = Mapping[str, Row]
+"""By the claims' names, what a table says: places in [P], what it says at all of them, verdict, number and figure, reason."""
+
+
+def judged(found: Mapping[str, Numbers], *, quick: bool) -> Judgements:
     """Return the judgements on the claims whose figure was studied, by the numbers of the figures."""
-    judgements = []
+    judgements: dict[str, Row] = {}
     for claim in (claim for claim in CLAIMS if claim.figure in found):
         numbers = found[claim.figure]
         cases = _within(claim.readings, numbers) or [all(_within(claim.holds, numbers))]
         became = verdict(cases, in_size=all(_within(claim.in_size, numbers)))
-        number, why = (sentence(MACROS + text, **numbers).strip() for text in (claim.number, claim.why))
+        number, why = (sentence(MACROS + text, **numbers) for text in (claim.number, claim.why))
         if quick and claim.figure in COARSE:
             became, why = Verdict.PROVISIONAL, f"With coarse settings: {became}. {why}"
-        judgements.append(Judgement(claim, became, number, why))
+        judgements[claim.name] = {
+            "": str(len(judgements) + 1),
+            "where": "; ".join(place for place, _ in claim.stated),
+            "claim": " ".join(text for _, text in claim.stated),
+            "verdict": became,
+            "number": f"{number} ({claim.figure})",
+            "why": why,
+        }
     return judgements
 
 
-def counted(judgements: Sequence[Judgement]) -> str:
+def counted(judgements: Judgements) -> str:
     """Return how many claims are judged, and how many have each verdict."""
-    counts = Counter(one.verdict for one in judgements)
+    counts = Counter(row["verdict"] for row in judgements.values())
     summary = "; ".join(f"{counts[name]} {name}" for name in Verdict if counts[name])
     statements = sum(len(claim.stated) for claim in CLAIMS)
-    return f"{len(judgements)} of {len(CLAIMS)} claims judged ({statements} statements){': ' if summary else ''}{summary}"
+    return f"{len(judgements)} of {len(CLAIMS)} claims judged ({statements} statements): {summary}"
 
 
-def rows(judgements: Sequence[Judgement]) -> list[Row]:
-    """Return a row per claim: its places in [P], what it says at all of them, verdict, number and figure, reason."""
-    return [
-        {
-            "": str(number),
-            "where": "; ".join(place for place, _ in one.claim.stated),
-            "claim": " ".join(text for _, text in one.claim.stated),
-            "verdict": str(one.verdict),
-            "number": f"{one.number} ({one.claim.figure})",
-            "why": one.why,
-        }
-        for number, one in enumerate(judgements, 1)
-    ]
-
-
-def claims_text(judgements: Sequence[Judgement], *, quick: bool) -> str:
+def claims_text(judgements: Judgements, *, quick: bool) -> str:
     """Return the verdicts as Markdown."""
-    table = rows(judgements)
+    rows = list(judgements.values())
     return f"""# The claims of the paper and what became of them
 
 {PAPER}: {counted(judgements)}.
@@ -140,7 +126,7 @@ Every number below is computed by the run that wrote this file{", with coarse se
 Timoshenko, Euler-Bernoulli: the paper's elements with their misprints corrected. Mixed: the element of this project
 whose contact force is an unknown. EI/L^2 is the unit of the unbalanced force.
 
-{markdown([list(table[0]), *(list(row.values()) for row in table)])}"""
+{markdown([list(rows[0]), *(list(row.values()) for row in rows)])}"""
 
 
 def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[list[Path], list[str]]:
@@ -156,7 +142,7 @@ def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[
     files.append(folder / ("claims.md" if name == "all" else f"claims-{name}.md"))
     write_text(files[-1], claims_text(judgements, quick=quick))
     caption = f"{counted(judgements)}. Every number is computed by the run that wrote this page."
-    sections = [Section(title="Claims", html=table(caption, rows(judgements), prose=True))]
+    sections = [Section(title="Claims", html=table(caption, list(judgements.values()), prose=True))]
     for figure, study in found.items():
         title = FIGURES[figure]
         drawn = (picture(folder / f"{stem}.svg", f"{stem}: {title}") for stem in study.pictures)

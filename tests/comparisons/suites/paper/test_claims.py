@@ -138,9 +138,9 @@ def test_every_claim_is_judged_by_its_numbers():
     for name, verdict, others in OTHERS:
         figure = claims[name].figure
         for found, expected in ((BASE[figure], verdict), *others):
-            told = {one.claim.name: one for one in judged({figure: found}, quick=False)}
-            assert told[name].verdict is expected, told[name]
-            assert "{" not in told[name].number + told[name].why
+            told = judged({figure: found}, quick=False)[name]
+            assert told["verdict"] is expected, told
+            assert "{" not in told["number"] + told["why"]
     assert (len(claims), sum(len(claim.stated) for claim in CLAIMS)) == (25, 27)
     quick = claims_text(judged({"fig7b": BASE["fig7b"]}, quick=True), quick=True)
     assert "13 of 25 claims judged (27 statements): 13 provisional" in quick
