@@ -15,7 +15,7 @@ from comparisons.report.motion import motion_section, tracks
 from comparisons.scene import Scene, load_scene
 from comparisons.suite.settings import changed
 from comparisons.suites.drawing import Line
-from comparisons.suites.paper.figure import CANTILEVER, SIMPLE, TIMOSHENKO, Study, shapes, stops
+from comparisons.suites.paper.figure import CANTILEVER, SIMPLE, STATED, TIMOSHENKO, Study, shapes, stops
 
 UPPER, TIP, LOWER = "pin->upper", "upper.end->lower", "pin->lower"
 """The contact pairs."""
@@ -112,14 +112,11 @@ def _stages(depth: Array) -> list[Row]:
     touch, over, off = EVENTS.values()
     if depth[-1] < off:
         return []
-    places = np.searchsorted(depth, [depth[0], touch, (touch + over) / 2.0, over, over + 0.02, off])
-    titles = {
-        "contact about to occur": 0, "both contacts begin": 0, "both contacts slide": 0, "just before the hand-over": 1,
-        "pin on the lower beam": 0, "about to leave the lower beam": 1,
-    }  # fmt: skip
+    places = [depth[0], touch, (touch + over) / 2.0, over, over + 0.02, off]
+    steps = np.searchsorted(depth, places) - [0, 0, 0, 1, 0, 1]
     return [
-        {"key": key, "title": title, "depth": float(depth[k - before]), "index": int(k - before)}
-        for key, (title, before), k in zip("abcdef", titles.items(), places, strict=True)
+        {"key": key, "title": title, "depth": float(depth[k]), "index": int(k)}
+        for (key, title), k in zip(STATED["stages"].items(), steps, strict=True)
     ]
 
 
@@ -160,7 +157,7 @@ def _stage(scene: Scene, response: Response, stage: Row) -> tuple[str, Iterator[
 def _histories(columns: Columns, events: Sequence[Row], quantity: str) -> Iterator[Line]:
     """A quantity of all contacts against the depth, with the exact rods and the events, those at one depth together."""
     at: dict[str, list[str]] = {}
-    for one in events[1:]:  # the first is the touch at rest
+    for one in (one for one in events if one["depth"] > 0.0):
         at.setdefault(f"{one['depth']:.4f}", []).append(f"{one['kind']}, {NAMES[one['pair']]}")
     depth, values = columns["depth"], [columns[f"{pair} {quantity}"] for pair in NAMES]
     for (pair, name), own in zip(NAMES.items(), values, strict=True):

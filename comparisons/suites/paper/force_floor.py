@@ -46,36 +46,27 @@ def _turned(p: Properties, x: Array, lever: Any) -> tuple[Array, Array]:
 
 
 _Extended = np.longdouble
+_ELEMENTS = 10  # of the beam, over whose length the element lies anywhere
 
 
 def force_floor(
-    element: str,
-    ratio: float,
-    end: Literal["start", "end"] = "start",
-    Psi: float = 9.0,
-    *,
-    elements: int = 10,
-    samples: int = 50,
+    element: str, ratio: float, end: Literal["start", "end"] = "start", Psi: float = 9.0, *, samples: int = 50
 ) -> float:
     """Return the unbalanced force [EI/L^2] that round-off leaves, the median over random states."""
-    kind = CLOSED_FORM.get(element)
-    if (kind is None and element != TURNED) or not 0 <= ratio <= 1:
-        raise ValueError(
-            f"element = {element!r}, ratio = {ratio!r}: no element with a closed form and part of its length"
-        )
+    kind = None if element == TURNED else CLOSED_FORM[element]
     if np.finfo(_Extended).eps > 1e-3 * np.finfo(float).eps:
         raise ValueError("numpy.longdouble: this platform's is no wider than double precision")
     rng = np.random.default_rng(0)
     xi = _Extended(ratio) if end == "start" else 1 - _Extended(ratio)
-    return float(np.median([_sample(kind, xi, Psi, elements, rng) for _ in range(samples)]))
+    return float(np.median([_sample(kind, xi, Psi, rng) for _ in range(samples)]))
 
 
-def _sample(kind: ClosedForm | None, xi: Any, Psi: float, elements: int, rng: np.random.Generator) -> float:
+def _sample(kind: ClosedForm | None, xi: Any, Psi: float, rng: np.random.Generator) -> float:
     """Floor at one random state of an element with ``l0 = EI = 1``, ``EA = 3 GA`` as of a solid section."""
     angle = rng.uniform(0, 2 * np.pi)
     p = Properties(np.cos(angle), np.sin(angle), 1.0, 3 / Psi, 1.0, 12 * Psi)
     p = p if kind is None else kind.constants(p)
-    start, contact_force = elements * rng.uniform(-1, 1, 2), 1 / elements**2
+    start, contact_force = _ELEMENTS * rng.uniform(-1, 1, 2), 1 / _ELEMENTS**2
     # rigid motion, end rotations about 0.05 from the chord and a strain about 1e-3
     turn, stretch = rng.uniform(-2, 2), 1 + 1e-3 * rng.normal()
     c, s = stretch * np.cos(turn), stretch * np.sin(turn)
@@ -113,5 +104,5 @@ def _sample(kind: ClosedForm | None, xi: Any, Psi: float, elements: int, rng: np
     error = (
         np.abs(forces(*(np.asarray(part).astype(float) for part in state)) - forces(*state)) / contact_force
     )
-    error[[2, 5]] /= elements
+    error[[2, 5]] /= _ELEMENTS
     return float(error.max())
