@@ -8,11 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from comparisons.answer import Response
+from comparisons.models import find
 from comparisons.output import Row, write_numbers, write_rows
 from comparisons.report import palette
 from comparisons.report.pages import Section
 from comparisons.scene import Scene
 from comparisons.suites.drawing import Line, draw
+from tsm import elements
 
 STATED: dict[str, Any] = tomllib.loads(Path(__file__).with_name("claims.toml").read_text(encoding="utf-8"))
 """The claims of the paper, the readings of its scenes, and the settings of pictures."""
@@ -54,7 +56,10 @@ def stops(runs: Mapping[str, Response]) -> list[str]:
 
 
 SIMPLE, CANTILEVER, TIMOSHENKO, MIXED = (
-    "euler-bernoulli-simple", "euler-bernoulli-cantilever", "timoshenko", "mixed",
+    kind.name
+    for kind in (
+        elements.EULER_BERNOULLI_SIMPLE, elements.EULER_BERNOULLI_CANTILEVER, elements.TIMOSHENKO, elements.MIXED,
+    )
 )  # fmt: skip
 LABELS = {
     SIMPLE: "Euler-Bernoulli, simple",
@@ -78,7 +83,7 @@ def shapes(scene: Scene, runs: Mapping[str, Response], steps: Sequence[int]) -> 
         axis = run.axis_line(beam.name, k)[1]
         nodes = {"marker": ".", "markevery": max(1, (len(axis) - 1) // beam.divisions)}
         exact = {"linewidth": 4.0, "alpha": 0.25}
-        style = exact if label.startswith("exact") else nodes
+        style = nodes if find(run.model).meshed else exact
         yield Line(label, axis.T, {"color": palette.colour(label), **style})
     times = next(iter(runs.values())).load_parameter[steps]
     x, y = zip(*(scene.pins[0].position(t) for t in times), strict=True)

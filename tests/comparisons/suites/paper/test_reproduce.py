@@ -120,7 +120,9 @@ def test_all_with_full_settings(tmp_path, stated):
         # round-off decides them, so another processor may differ
         stated(f"paper.tolerance-{element}", critical["tolerance_for_the_printed"][element], relative=0.5)
     areas = critical["critical_area"]
-    simple, clamped = (np.array(areas[element]["median"]) for element in ("euler-bernoulli-simple", cantilever))
+    simple, clamped = (
+        np.array(areas[element]["median"]) for element in ("euler-bernoulli-simple", cantilever)
+    )
     assert 2.0 < (simple / clamped).max() < 2.6
     stated("paper.gain", (simple / clamped).max(), relative=0.2)
     assert (simple / clamped)[-2:] == pytest.approx(1.0, abs=0.1)
