@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from comparisons.cli.options import refuse, workers
 from comparisons.cli.screen import DONE, STOPPED, WRONG, files_named, report
-from comparisons.files import writable_folder, write_text
+from comparisons.files import writable_folder
 from comparisons.scene import InputError, load_scene
 from comparisons.suites.names import FIGURES, QUESTIONS
 
@@ -57,8 +57,8 @@ def _cards(given: Namespace) -> int:
     from comparisons.suites.manual.cards import write_cards
 
     folder = given.out or Path("out") / given.suite
-    cards = write_cards(folder, _told(given), problems(given.of or None))
-    print(f"{len(cards) - 1} cards and their schema in {folder}")
+    count = write_cards(folder, _told(given), problems(given.of or None))
+    print(f"{count} cards and their schema in {folder}")
     return DONE
 
 
@@ -67,16 +67,12 @@ def _manual(given: Namespace) -> int:
 
     stated = problems(given.of or None)
     folder = _out(given, "index.md", "manual.json", "junit.xml")
-    from comparisons.suites.finding import junit_text
     from comparisons.suites.manual import write_manual
-    from comparisons.suites.manual.write import checks
 
-    cases, files = write_manual(folder, _told(given), stated)
-    write_text(folder / "junit.xml", junit_text("crossval run manual", checks(cases)))
-    answers = [(case.problem.name, one) for case in cases for one in case.judgements]
-    failed = [f"{name}, {one.trial.label}: {one.failure}" for name, one in answers if not one.passed]
-    print(f"{len(cases)} cases, {len(answers)} answers, {len(failed)} beyond their tolerance")
-    return _ended([*files, folder / "junit.xml"], failed, WRONG)
+    answers, files = write_manual(folder, _told(given), stated)
+    failed = [f"{one.problem.name}, {one.trial.label}: {one.failure}" for one in answers if not one.passed]
+    print(f"{len(stated)} cases, {len(answers)} answers, {len(failed)} beyond their tolerance")
+    return _ended(files, failed, WRONG)
 
 
 def _extremes(given: Namespace) -> int:

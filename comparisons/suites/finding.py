@@ -3,7 +3,22 @@
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+JUNIT = """\
+<?xml version="1.0" encoding="utf-8"?>
+<testsuite name="{{ suite }}" tests="{{ checks | length }}" failures="{{ checks | map(attribute=3) | reject("none") | list | length }}" \
+errors="0" skipped="0" time="{{ "%f" % (checks | sum(2)) }}">
+{% for group, name, seconds, failure, output in checks %}
+  <testcase classname="{{ group }}" name="{{ name }}" time="{{ "%f" % seconds }}">
+{% if failure is not none %}
+    <failure message="{{ failure }}" />
+{% endif %}
+{% if output %}
+    <system-out>{{ output }}</system-out>
+{% endif %}
+  </testcase>
+{% endfor %}
+</testsuite>"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,16 +76,7 @@ def junit_text(suite: str, checks: Iterable[tuple[str, str, float, str | None, s
     </testsuite>
     <BLANKLINE>
     """
-    listed = list(checks)
-    failures = sum(failure is not None for _, _, _, failure, _ in listed)
-    seconds = sum(one[2] for one in listed)
-    counts = {"tests": len(listed), "failures": failures, "errors": 0, "skipped": 0, "time": f"{seconds:.6f}"}
-    root = Element("testsuite", {"name": suite} | {name: str(count) for name, count in counts.items()})
-    for group, name, spent, failure, output in listed:
-        element = SubElement(root, "testcase", classname=group, name=name, time=f"{spent:.6f}")
-        if failure is not None:
-            SubElement(element, "failure", message=failure)
-        if output:
-            SubElement(element, "system-out").text = output
-    indent(root)
-    return '<?xml version="1.0" encoding="utf-8"?>\n' + tostring(root, encoding="unicode") + "\n"
+    from jinja2 import Template
+
+    template = Template(JUNIT, autoescape=True, trim_blocks=True)
+    return f"{template.render(suite=suite, checks=list(checks))}\n"

@@ -96,8 +96,8 @@ def _write_manual(app: Sphinx) -> None:
         return
     log = getLogger(__name__)
     page.unlink(missing_ok=True)  # it was changed after it was written, and a changed file is not replaced
-    cases, _ = write_manual(page.parent, lambda line: log.info("manual: %s", line), problems())
-    if not all(case.passed for case in cases):
+    answers, _ = write_manual(page.parent, lambda line: log.info("manual: %s", line), problems())
+    if not all(answer.passed for answer in answers):
         log.warning("manual: an answer lies beyond its tolerance")
     text = re.sub(r'<a id="([\w-]+)"></a>', r"(manual-\1)=", page.read_text(encoding="utf-8"))
     page.write_text(text.replace("](#", "](#manual-"), encoding="utf-8")

@@ -19,7 +19,6 @@ OTHER_WORDS = {
     "comparisons/version.py": "the package tsm",
     "comparisons/cli/command.py": "the package tsm",
     "comparisons/referee/certificate.py": "a key of a certificate in JSON",
-    "comparisons/suites/manual/write.py": "a key of the manual in JSON",
 }
 
 

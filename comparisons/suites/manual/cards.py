@@ -24,8 +24,6 @@ SYMBOLS = {
 """Symbols that the names of quantities use."""
 SCHEMA = Path(__file__).with_name("card.schema.json")
 """The JSON Schema of a card, but for its scene."""
-MOST_DIGITS = 15
-"""Digits of a value that is exact up to double precision."""
 
 
 def card(problem: Problem) -> dict[str, Any]:
@@ -52,29 +50,22 @@ def card(problem: Problem) -> dict[str, Any]:
 
 
 def _quantity(quantity: Quantity, uncertainty: float) -> dict[str, Any]:
-    """Return a quantity with its uncertainty, and the significant digits (decimals of zero) it leaves."""
-    size = abs(quantity.exact) or quantity.size
+    """Return a quantity with its uncertainty, and the significant digits (decimals of zero) it leaves, at most 15."""
     error = uncertainty * quantity.size
-    digits = MOST_DIGITS if error == 0.0 else min(MOST_DIGITS, max(0, math.floor(-math.log10(error / size))))
+    share = error / (abs(quantity.exact) or quantity.size) or 1e-15
+    digits = max(0, min(15, math.floor(-math.log10(share))))
     return {"name": quantity.name, "value": quantity.exact, "digits": digits, "uncertainty": error}
 
 
-def card_schema() -> dict[str, Any]:
-    """Return the JSON Schema of cards; the scene has the schema of scene files."""
-    schema: dict[str, Any] = json.loads(SCHEMA.read_text(encoding="utf-8"))
-    scene = {key: value for key, value in json_schema().items() if key != "$schema"}
-    schema["properties"]["scene"] = {**scene, **schema["properties"]["scene"]}
-    return schema
-
-
-def write_cards(folder: Path, report: Report, stated: Sequence[Path]) -> tuple[Path, ...]:
-    """Write the cards of problems, ``NAME.json``, and their schema; return the files, the schema last."""
+def write_cards(folder: Path, report: Report, stated: Sequence[Path]) -> int:
+    """Write the cards of problems, ``NAME.json``, and their schema; return the number of cards."""
     writable_folder(folder)
-    written = {}
     for problem in map(read_problem, stated):
-        written[folder / f"{problem.name}.json"] = card(problem)
+        write_text(folder / f"{problem.name}.json", json_text(card(problem)))
         report(f"{problem.name}: {len(problem.quantities)} quantities")
-    written[folder / "card.schema.json"] = card_schema()
-    for path, data in written.items():
-        write_text(path, json_text(data))
-    return tuple(written)
+    schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
+    # the scene has the schema of scene files
+    schema["properties"]["scene"] = json_schema() | schema["properties"]["scene"]
+    del schema["properties"]["scene"]["$schema"]
+    write_text(folder / "card.schema.json", json_text(schema))
+    return len(stated)

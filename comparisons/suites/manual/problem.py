@@ -7,23 +7,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from comparisons.answer import Array
 from comparisons.models.options import Options
 from comparisons.scene import InputError, Scene, built_in_scenes, load_scene, read_scene
 from comparisons.suite.settings import changed
-from comparisons.suites.finding import Finding
 
 FOLDER = Path(__file__).parent / "problems"
-ORDER = (
-    "dead-load", "roll-up", "euler-column", "haringx-column", "post-buckling", "clamped-column", "pinned-column", "lees-frame",
-    "williams-toggle", "portal-frame", "short-cantilever", "ks-elastica", "elastica-identity", "force-limit", "three-point-bending",
-    "slip-off", "ks-axis", "ks-face", "ks-biot", "ks-tied-tip", "slip-off-in-shear", "double-beam", "two-pins", "crossed-beams",
-    "touch-again", "ks-friction-elastica", "ks-friction", "three-point-friction", "hysteresis", "sleeve", "mixed-order",
-    "timoshenko-order", "thin-strips", "penalty-slope", "locking", "energy-balance", "objectivity", "mirror", "reversal",
-)  # fmt: skip
-"""The problems in the order of the manual; those that are not named follow by name."""
-Line = tuple[str, Array]
-"""A line of a picture: its style, which also is its label, and its points, shape (n, 2)."""
+ORDER = FOLDER / "order.txt"
+"""The names of the problems in the order of the manual; those that are not named follow by name."""
 Changes = Mapping[str, Any]
 """New values of a scene's settings by the names of a study file, ``contact.friction``."""
 
@@ -45,12 +35,12 @@ class Quantity:
     name: str = ""  #: With the unit, unless the quantity is dimensionless.
     exact: float = math.nan
     scale: float | None = None  #: What its error is divided by, the magnitude of the exact value if None.
-    read: str = ""  #: The words of `comparisons.suites.manual.measures.value`; empty where a measure finds the number.
+    read: str = ""  #: The words of `comparisons.suites.manual.measures.value`.
     at: float = 1.0  #: A load parameter.
-    times: float = 1.0  #: A factor.
+    formula: str = (
+        "of(read, at)"  #: In such readings and the attributes of the scene's first beam, ``beam.EI``.
+    )
     changes: Changes = field(default_factory=dict)  #: What is changed in the scene.
-    since: float | None = None  #: A load parameter; what the quantity is there is taken away.
-    over: "Quantity | None" = None  #: What it is divided by.
 
     @property
     def size(self) -> float:
@@ -64,7 +54,6 @@ class Trial:
 
     model: str  #: Model with its element.
     setting: str  #: Resolution.
-    key: str  #: Name of the model for `comparisons.models.solve`.
     options: Options
     scene: Scene  #: What the model solves.
     allowed: float  #: Allowed error of every quantity.
@@ -95,55 +84,6 @@ class Problem:
     settings: Mapping[str, Any] = field(default_factory=dict)  #: What this function takes.
 
 
-@dataclass(frozen=True, kw_only=True)
-class Judgement:
-    """The answer of a model: its findings, one for each quantity, and wall time [s]; `stopped` says why there is no answer."""
-
-    trial: Trial
-    findings: tuple[Finding, ...]
-    seconds: float
-    stopped: str = ""
-
-    @property
-    def passed(self) -> bool:
-        """Whether every error is within what is allowed."""
-        return all(one.holds for one in self.findings)
-
-    @property
-    def worst(self) -> Finding:
-        """The finding with the largest error, the first that is not a number if one is not."""
-        return max(self.findings, key=lambda one: one.share)
-
-    @property
-    def failure(self) -> str | None:
-        """Why the answer fails, with its numbers; None if it is right."""
-        return self.stopped or (None if self.passed else self.worst.failure)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Case:
-    """A problem, the judgement on every model, and the lines that the answers add to its picture."""
-
-    problem: Problem
-    judgements: tuple[Judgement, ...]
-    lines: tuple[Line, ...]
-
-    @property
-    def passed(self) -> bool:
-        """Whether every model passed."""
-        return all(item.passed for item in self.judgements)
-
-    @property
-    def seconds(self) -> float:
-        """Wall time of all models."""
-        return sum(item.seconds for item in self.judgements)
-
-    @property
-    def picture(self) -> str:
-        """Name of the picture's file."""
-        return f"{self.problem.name}.svg"
-
-
 def read_problem(path: Path) -> Problem:
     """Return the problem that a TOML file states; its keys are the attributes of `Problem`, and its name is the file's.
 
@@ -151,23 +91,18 @@ def read_problem(path: Path) -> Problem:
     element, ``elements`` or ``mesh``, ``allowed`` and ``why``, and ``scene`` and ``changes`` if it solves another scene than the problem's.
     """
     table = tomllib.loads(path.read_text(encoding="utf-8"))
-    scene = _scene(table.pop("scene"), table.pop("changes", {}), path)
-    return Problem(
-        name=path.stem,
-        scene=scene,
-        quantities=tuple(map(_quantity, table.pop("quantities"))),
-        trials=tuple(_trial(row, scene, path) for row in table.pop("trials")),
-        picture=Picture(**table.pop("picture", {})),
-        **table,
-    )
+    scene = table["scene"] = _scene(table, path)
+    table["quantities"] = tuple(Quantity(**row) for row in table["quantities"])
+    table["trials"] = tuple(_trial(row, scene, path) for row in table["trials"])
+    return Problem(name=path.stem, **table | {"picture": Picture(**table.get("picture", {}))})
 
 
-def _quantity(row: dict[str, Any]) -> Quantity:
-    return Quantity(**row | {"over": _quantity(row["over"])} if "over" in row else row)
-
-
-def _scene(stated: str, changes: Changes, path: Path) -> Scene:
-    scene = load_scene(stated) if stated in built_in_scenes() else read_scene(stated, path.name)
+def _scene(table: dict[str, Any], path: Path, scene: Scene | None = None) -> Scene:
+    """Take the scene that a table states with its changes, by default `scene`."""
+    changes, stated = table.pop("changes", {}), table.pop("scene", None)
+    if stated is not None:
+        scene = load_scene(stated) if stated in built_in_scenes() else read_scene(stated, path.name)
+    assert scene is not None, "a problem has a scene"
     return varied(scene, changes)
 
 
@@ -177,14 +112,12 @@ def varied(scene: Scene, changes: Changes) -> Scene:
 
 
 def _trial(row: dict[str, Any], scene: Scene, path: Path) -> Trial:
-    key, _, element = row["model"].partition(" ")
-    elements, mesh, changes = row.pop("elements", None), row.pop("mesh", None), row.pop("changes", {})
-    beams = f"{elements} elements a beam" if elements else "1 element a beam" if element else ""
+    element, count, mesh = row["model"].partition(" ")[2], row.pop("elements", None), row.pop("mesh", None)
+    beams = f"{count or 1} element{'s' if count else ''} a beam" if element else ""
     strip: Any = tuple(map(int, mesh.split("x"))) if mesh else None
+    options = Options(element=element or None, elements=count, mesh=strip)
     row.setdefault("setting", f"{mesh} elements" if mesh else beams)
-    own = _scene(row.pop("scene"), changes, path) if "scene" in row else varied(scene, changes)
-    options = Options(element=element or None, elements=elements, mesh=strip)
-    return Trial(key=key, options=options, scene=own, **row)
+    return Trial(options=options, scene=_scene(row, path, scene), **row)
 
 
 def problems(names: Sequence[str] | None = None, folder: Path = FOLDER) -> list[Path]:
@@ -196,7 +129,8 @@ def problems(names: Sequence[str] | None = None, folder: Path = FOLDER) -> list[
         For a name that no problem has.
     """
     files = {path.stem: path for path in sorted(folder.glob("*.toml"))}
-    known = [name for name in ORDER if name in files] + [name for name in files if name not in ORDER]
+    order = [name for name in ORDER.read_text(encoding="utf-8").split() if name in files]
+    known = list(dict.fromkeys([*order, *files]))
     for name in names or ():
         if name not in files:
             raise InputError(name, f"no such problem ({', '.join(known)})")

@@ -1,54 +1,53 @@
 """What a figure of [P] leaves, rows, numbers and pictures, and the element formulations in it."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+import tomllib
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from comparisons.answer import Array, Response
+from comparisons.answer import Response
+from comparisons.models import find
 from comparisons.output import Row, write_numbers, write_rows
 from comparisons.report import palette
 from comparisons.report.pages import Section
 from comparisons.scene import Scene
-from tsm.elements import EULER_BERNOULLI_CANTILEVER, EULER_BERNOULLI_SIMPLE
-from tsm.elements import MIXED as MIXED_ELEMENT
-from tsm.elements import TIMOSHENKO as TIMOSHENKO_ELEMENT
+from comparisons.suites.drawing import Line, draw
+from tsm import elements
+
+STATED: dict[str, Any] = tomllib.loads(Path(__file__).with_name("claims.toml").read_text(encoding="utf-8"))
+"""The claims of the paper, the readings of its scenes, and the settings of pictures."""
+Numbers = Mapping[str, Any]
+"""What bounds and sentences of ``claims.toml`` name, much of it by formulation, division or event."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Study:
     """What is found for a figure: its scenes, rows and numbers, pictures, and moving shapes for the page.
 
-    `tables` and `pictures` go by the names of their files; a picture draws to the paths that it is given. ``numbers["stopped"]`` names
-    the runs that the figure needs and that did not go through.
+    `tables` and `pictures` go by the names of their files; a picture is its panels, or draws to the paths that it is given.
+    ``numbers["stopped"]`` names the runs that the figure needs and that did not go through.
     """
 
-    tables: dict[str, list[Row]]
-    numbers: dict[str, Any]
-    pictures: dict[str, Callable[..., None]] = field(default_factory=dict)
-    scenes: tuple[Scene, ...] = ()
-    moving: tuple[Section, ...] = ()
+    tables: Mapping[str, list[Row]]
+    numbers: Numbers
+    pictures: Mapping[str, Mapping[str, Iterable[Line]] | Callable[..., None]]
+    scenes: Sequence[Scene] = ()
+    moving: Sequence[Section] = ()
 
     def write(self, name: str, folder: Path) -> list[Path]:
         """Draw the pictures and write the numbers, those of the JSON file under a name; return the files."""
         files = []
-        for stem, draw_to in self.pictures.items():
+        for stem, drawn in self.pictures.items():
             paths = [folder / f"{stem}.png", folder / f"{stem}.svg"]
-            draw_to(*paths)
+            if callable(drawn):
+                drawn(*paths)
+            else:
+                draw(drawn, *paths, **STATED["picture"][stem])
             files += paths
         files += [write_rows(folder / f"{stem}.csv", rows) for stem, rows in self.tables.items()]
         return [*files, write_numbers(folder / f"{name}.json", self.numbers)]
-
-
-Facts = Mapping[str, Any]
-"""Numbers that bounds and sentences of ``claims.toml`` name, many of them by formulation, division or event."""
-
-
-def column(rows: Sequence[Row], name: str, **of: object) -> Array:
-    """Return a column of a table, in the rows with some values."""
-    return np.array([row[name] for row in rows if all(row[key] == value for key, value in of.items())])
 
 
 def stops(runs: Mapping[str, Response]) -> list[str]:
@@ -56,25 +55,19 @@ def stops(runs: Mapping[str, Response]) -> list[str]:
     return [f"{name}: {one.status}: {one.message}" for name, one in runs.items() if not one.completed]
 
 
-def reached(response: Response) -> float:
-    """Return the last load parameter reached."""
-    return float(max(response.load_parameter, default=0.0))
-
-
-def percent(value: float) -> str:
-    """Return a ratio in percent, with three digits."""
-    return f"{100.0 * value:.3g} %" if value >= 1e-6 else f"{100.0 * value:.0e} %"
-
-
-SIMPLE, CANTILEVER = EULER_BERNOULLI_SIMPLE.name, EULER_BERNOULLI_CANTILEVER.name
-TIMOSHENKO, MIXED = TIMOSHENKO_ELEMENT.name, MIXED_ELEMENT.name
+SIMPLE, CANTILEVER, TIMOSHENKO, MIXED = (
+    kind.name
+    for kind in (
+        elements.EULER_BERNOULLI_SIMPLE, elements.EULER_BERNOULLI_CANTILEVER, elements.TIMOSHENKO, elements.MIXED,
+    )
+)  # fmt: skip
 LABELS = {
     SIMPLE: "Euler-Bernoulli, simple",
     CANTILEVER: "Euler-Bernoulli, cantilever",
     TIMOSHENKO: "Timoshenko",
     MIXED: MIXED,
 }
-"""What they are called, in the order of drawing."""
+"""What the elements are called, in the order of drawing."""
 _DASHES = {CANTILEVER: (0, (5, 2)), MIXED: (0, (1, 1))}
 
 
@@ -82,3 +75,16 @@ def line(element: str) -> dict[str, Any]:
     """Return the keywords of a formulation's line in matplotlib."""
     style = palette.style(f"TSM {element}")
     return {"color": style.colour, "marker": style.marker, "linestyle": _DASHES.get(element, "-")}
+
+
+def shapes(scene: Scene, runs: Mapping[str, Response], steps: Sequence[int]) -> Iterator[Line]:
+    """Yield the axes of all beams by runs over each other at some load parameters, below them the exact rods, and the pin."""
+    for (label, run), beam, k in product(runs.items(), scene.beams, steps):
+        axis = run.axis_line(beam.name, k)[1]
+        nodes = {"marker": ".", "markevery": max(1, (len(axis) - 1) // beam.divisions)}
+        exact = {"linewidth": 4.0, "alpha": 0.25}
+        style = nodes if find(run.model).meshed else exact
+        yield Line(label, axis.T, {"color": palette.colour(label), **style})
+    times = next(iter(runs.values())).load_parameter[steps]
+    x, y = zip(*(scene.pins[0].position(t) for t in times), strict=True)
+    yield Line("pin", (x, y), {"color": palette.PIN, "marker": "^", "linestyle": "none"})

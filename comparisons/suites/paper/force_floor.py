@@ -7,7 +7,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import numpy as np
 
@@ -41,81 +41,32 @@ def _turned(p: Properties, x: Array, lever: Any) -> tuple[Array, Array]:
     du = d - np.array([p.dx0, p.dy0])
     elongation = (2 * (p.dx0 * du[0] + p.dy0 * du[1]) + du @ du) / (length + p.l0)
     N = p.EA / p.l0 * elongation * d / length
-    force = np.zeros(8, dtype=K.dtype)
-    force[:2] = -N - (Yj + Yc) * n
-    force[2] = -Yj * (t @ d) - Yc * (t @ r) - Mj
-    force[3:5] = N + Yj * n
-    force[5] = Mj
-    force[6:] = Yc * n
-    return force, K
+    turning = -Yj * (t @ d) - Yc * (t @ r) - Mj
+    return np.concatenate([-N - (Yj + Yc) * n, [turning], N + Yj * n, [Mj], Yc * n]), K
 
 
 _Extended = np.longdouble
-_SIDE, _OFFSET = 1.0, 0.0
-
-
-class _State(NamedTuple):
-    """Element displacements (6), node position (2), arc fraction and force (2), all rounded together."""
-
-    x: Array
-    node: Array
-    xi: Any
-    force: Array
-
-
-class _Element(NamedTuple):
-    """An element beside its node; `kind` is None for the turned frame."""
-
-    kind: ClosedForm | None
-    p: Properties
-    start: Array
-    contact_force: float
-
-    def contact(self, state: _State) -> tuple[Array, Array]:
-        """Gradient of the contact's energy, and its tangent; of the turned frame the stiffnesses of its deformations."""
-        lever = self.start + state.x[:2] - state.node
-        if self.kind is None:
-            return _turned(self.p, state.x, lever)
-        return self.kind.contact.response(self.p, state.x, lever, state.xi, state.force, _SIDE, _OFFSET)
-
-    def forces(self, state: _State) -> Array:
-        """Forces on element and node, and the contact's equation of direction where it has one."""
-        gradient, _ = self.contact(state)
-        if self.kind is None or not self.kind.contact_unknowns:
-            return gradient
-        column = Properties(*(np.array([value]) for value in self.p))
-        own, _ = beam.response(self.kind.coefficients(column), state.x[:, None])
-        return np.concatenate([gradient[:6] + own[:, 0], gradient[6:8], gradient[10:]])
+_ELEMENTS = 10  # of the beam, over whose length the element lies anywhere
 
 
 def force_floor(
-    element: str,
-    ratio: float,
-    end: Literal["start", "end"] = "start",
-    Psi: float = 9.0,
-    *,
-    elements: int = 10,
-    samples: int = 50,
+    element: str, ratio: float, end: Literal["start", "end"] = "start", Psi: float = 9.0, *, samples: int = 50
 ) -> float:
     """Return the unbalanced force [EI/L^2] that round-off leaves, the median over random states."""
-    kind = CLOSED_FORM.get(element)
-    if (kind is None and element != TURNED) or not 0 <= ratio <= 1:
-        raise ValueError(
-            f"element = {element!r}, ratio = {ratio!r}: no element with a closed form and part of its length"
-        )
+    kind = None if element == TURNED else CLOSED_FORM[element]
     if np.finfo(_Extended).eps > 1e-3 * np.finfo(float).eps:
         raise ValueError("numpy.longdouble: this platform's is no wider than double precision")
     rng = np.random.default_rng(0)
     xi = _Extended(ratio) if end == "start" else 1 - _Extended(ratio)
-    return float(np.median([_sample(kind, xi, Psi, elements, rng) for _ in range(samples)]))
+    return float(np.median([_sample(kind, xi, Psi, rng) for _ in range(samples)]))
 
 
-def _sample(kind: ClosedForm | None, xi: Any, Psi: float, elements: int, rng: np.random.Generator) -> float:
+def _sample(kind: ClosedForm | None, xi: Any, Psi: float, rng: np.random.Generator) -> float:
     """Floor at one random state of an element with ``l0 = EI = 1``, ``EA = 3 GA`` as of a solid section."""
     angle = rng.uniform(0, 2 * np.pi)
     p = Properties(np.cos(angle), np.sin(angle), 1.0, 3 / Psi, 1.0, 12 * Psi)
     p = p if kind is None else kind.constants(p)
-    element = _Element(kind, p, elements * rng.uniform(-1, 1, 2), 1 / elements**2)
+    start, contact_force = _ELEMENTS * rng.uniform(-1, 1, 2), 1 / _ELEMENTS**2
     # rigid motion, end rotations about 0.05 from the chord and a strain about 1e-3
     turn, stretch = rng.uniform(-2, 2), 1 + 1e-3 * rng.normal()
     c, s = stretch * np.cos(turn), stretch * np.sin(turn)
@@ -123,37 +74,35 @@ def _sample(kind: ClosedForm | None, xi: Any, Psi: float, elements: int, rng: np
     moved = shift + np.array([c * p.dx0 - s * p.dy0 - p.dx0, s * p.dx0 + c * p.dy0 - p.dy0])
     theta_i, theta_j = turn + 0.05 * rng.normal(size=2)
     x = np.array([*shift, theta_i, *moved, theta_j]).astype(_Extended)
-    state = (_carried if kind is not None and kind.contact_unknowns else _deflected)(element, x, xi)
-    rounded = _State(*(np.asarray(part).astype(float) for part in state))
-    error = np.abs(element.forces(rounded) - element.forces(state)) / element.contact_force
-    error[[2, 5]] /= elements
+    carried = kind is not None and kind.contact_unknowns > 0
+
+    def contact(x: Array, node: Array, xi: Any, force: Array) -> tuple[Array, Array]:
+        """Gradient of the contact's energy, and its tangent; of the turned frame the stiffnesses of its deformations."""
+        lever = start + x[:2] - node
+        if kind is None:
+            return _turned(p, x, lever)
+        return kind.contact.response(p, x, lever, xi, force, 1.0, 0.0)
+
+    def forces(*state: Any) -> Array:
+        """Forces on element and node, and the contact's equation of direction where it has one."""
+        gradient, _ = contact(*state)
+        if kind is None or not carried:
+            return gradient
+        column = Properties(*(np.array([value]) for value in p))
+        own, _ = beam.response(kind.coefficients(column), state[0][:, None])
+        return np.concatenate([gradient[:6] + own[:, 0], gradient[6:8], gradient[10:]])
+
+    # the contact force is an unknown, or it follows from the deflection: the node moves across the chord, or the section at end i
+    d = _frame(p, x)[0] if kind is None else np.array([p.dx0, p.dy0]) + (x[3:5] - x[:2])
+    n = np.array([-d[1], d[0]]) / np.sqrt(d @ d)
+    node, force = start + x[:2] + xi * d, contact_force * n
+    for _ in range(0 if carried else 3):
+        found, tangent = contact(x, node, xi, force)
+        stiffness = tangent[1, 1] if kind is None else n @ tangent[6:8, 6:8] @ n
+        node = node + n * (contact_force - found[6:8] @ n) / stiffness
+    state = x, node, xi, force
+    error = (
+        np.abs(forces(*(np.asarray(part).astype(float) for part in state)) - forces(*state)) / contact_force
+    )
+    error[[2, 5]] /= _ELEMENTS
     return float(error.max())
-
-
-def _deflected(element: _Element, x: Array, xi: Any) -> _State:
-    """State whose contact force follows from the deflection: the node moves across the chord, or the section at end i, until it is as stated."""
-    p, turned = element.p, element.kind is None
-    d = _frame(p, x)[0] if turned else np.array([p.dx0, p.dy0]) + (x[3:5] - x[:2])
-    n = np.array([-d[1], d[0]]) / (1.0 if turned else np.sqrt(d @ d))
-    node = element.start + x[:2] + xi * d
-    for _ in range(1 if turned else 3):
-        force, tangent = element.contact(_State(x, node, xi, np.zeros(2)))
-        stiffness = tangent[1, 1] if turned else n @ tangent[6:8, 6:8] @ n
-        node = node + n * (element.contact_force - force[6:8] @ n) / stiffness
-    return _State(x, node, xi, np.zeros(2))
-
-
-def _carried(element: _Element, x: Array, xi: Any) -> _State:
-    """State whose contact force is an unknown: the force in the direction it must have, the node where it must be."""
-    unloaded = _State(x, element.start + x[:2], xi, np.zeros(2, dtype=_Extended))
-    _, tangent = element.contact(unloaded)
-    along = -tangent[10, 8:10] * element.p.l0
-    speed = np.sqrt(along @ along)
-    t = along / speed
-    n = np.array([-t[1], t[0]])
-    # F . p' + C' F.F/2 = 0, C' from what is left of it at F = n
-    gradient, _ = element.contact(unloaded._replace(force=n))
-    sine = gradient[10] * element.p.l0 * element.contact_force / speed
-    force = element.contact_force * (n * np.sqrt(1 - sine * sine) + sine * t)
-    gradient, _ = element.contact(unloaded._replace(force=force))
-    return _State(x, unloaded.node - gradient[8:10], xi, force)

@@ -1,32 +1,33 @@
 """The claims of [P], which ``claims.toml`` states, and its figures: verdicts, files and a page."""
 
-import tomllib
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
-from string import Formatter
-from typing import Any, NamedTuple
+
+import numpy as np
 
 from comparisons.files import writable_folder, write_text
-from comparisons.output import Report, markdown
+from comparisons.output import Report, Row, markdown
 from comparisons.report.pages import Section, picture, table, write_page
+from comparisons.suites.formula import sentence, value_of
 from comparisons.suites.names import FIGURES
-from comparisons.suites.paper.fig7 import cantilever_shapes, critical_areas, of_critical_areas, of_lifts
-from comparisons.suites.paper.fig8 import ks_shapes, of_shapes
-from comparisons.suites.paper.fig9 import double_beam, of_double_beam
-from comparisons.suites.paper.figure import Facts, Study, percent
+from comparisons.suites.paper.fig7 import cantilever_shapes, critical_areas
+from comparisons.suites.paper.fig8 import ks_shapes
+from comparisons.suites.paper.fig9 import double_beam
+from comparisons.suites.paper.figure import STATED, Numbers, Study
 
 PAPER = (
     "Nizam, Obiya, Ijima, Tokubuchi, Ishibashi, *Effect of Shear Deformation on Convergability of Simple Contact Analysis "
     "with Large Displacement*"
 )
+STUDIES: dict[str, Callable[..., Study]] = {
+    "fig7a": cantilever_shapes, "fig7b": critical_areas, "fig8": ks_shapes, "fig9": double_beam,
+}  # fmt: skip
+"""How each figure of `FIGURES` is computed."""
 COARSE = ("fig7a", "fig7b", "fig8")
 """Figures whose coarse settings bear on their claims: fewer starting positions, tolerances, samples, load parameters or elements."""
-
-
-HEADER = ("", "where", "claim", "verdict", "number", "why")
 
 
 class Verdict(StrEnum):
@@ -41,7 +42,7 @@ class Verdict(StrEnum):
 
 
 Bounds = Mapping[str, tuple[float, float]]
-"""The least and the greatest value of facts; of a list, of all its values."""
+"""The least and the greatest value of expressions; of a list, of all its values."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,100 +50,74 @@ class Claim:
     """One claim, however often the paper makes it: every place in [P] where it stands, with what is said there.
 
     It holds within the bounds `holds` together, or in each of the `readings` of what the paper does not say; in size within `in_size`, too.
-    The number behind the verdict and the reason have names of facts in braces.
+    The number behind the verdict and the reason are templates with the figure's numbers.
     """
 
     name: str
     figure: str
-    stated: tuple[tuple[str, str], ...]
+    stated: Sequence[tuple[str, str]]
     number: str
     why: str
     holds: Bounds = field(default_factory=dict)
     readings: Bounds = field(default_factory=dict)
     in_size: Bounds = field(default_factory=dict)
 
-    def judged(self, facts: Facts, *, decides: bool) -> "Judgement":
-        """Return what becomes of the claim by the numbers of its figure; coarse settings that bear on it decide nothing."""
-        cases = _within(self.readings, facts) if self.readings else [all(_within(self.holds, facts))]
-        found = verdict(cases, in_size=all(_within(self.in_size, facts)))
-        number, why = (WORDS.vformat(text, (), facts) for text in (self.number, self.why))
-        if not decides:
-            found, why = Verdict.PROVISIONAL, f"With coarse settings: {found}. {why}"
-        return Judgement(self, found, number, why)
 
-
-class _Words(Formatter):
-    """Sentences with numbers: the format ``percent`` is that of `percent`."""
-
-    def format_field(self, value: Any, format_spec: str) -> str:
-        return percent(value) if format_spec == "percent" else str(super().format_field(value, format_spec))
-
-
-WORDS = _Words()
-
-
-def _within(bounds: Bounds, facts: Facts) -> list[bool | None]:
-    """Whether each number lies within its bounds; None where there is none."""
-    found = []
-    for name, (least, most) in bounds.items():
-        value = WORDS.get_field(name, (), facts)[0]
-        values = value if isinstance(value, list) else [value]
-        found += [None if one is None else bool(least <= one <= most) for one in values]
-    return found
-
-
-class Judgement(NamedTuple):
-    """A claim with its verdict, the number behind it and the reason."""
-
-    claim: Claim
-    verdict: Verdict
-    number: str
-    why: str
-
-    def cells(self, verdict: str, figure: str) -> tuple[str, ...]:
-        """Every place in [P] where the claim stands, what it says at all of them, verdict, number and figure, reason."""
-        places, texts = zip(*self.claim.stated, strict=True)
-        number = f"{self.number} ({figure.format(self.claim.figure)})"
-        return "; ".join(places), " ".join(texts), verdict.format(self.verdict), number, self.why
-
-
-CLAIMS = tuple(
-    Claim(**{**row, "stated": tuple(map(tuple, row["stated"]))})
-    for row in tomllib.loads((Path(__file__).parent / "claims.toml").read_text(encoding="utf-8"))["claim"]
-)
+MACROS = STATED["macros"]
+CLAIMS = tuple(Claim(**row) for row in STATED["claim"])
 """By the section that makes them first, in the order of the paper; each once, however often the paper makes it."""
+
+
+def _within(bounds: Bounds, numbers: Numbers) -> list[bool | None]:
+    """Whether each number lies within its bounds; None where there is none."""
+    found = ((np.ravel(value_of(of, **numbers)).tolist(), *limits) for of, limits in bounds.items())
+    return [None if one is None else least <= one <= most for values, least, most in found for one in values]
 
 
 def verdict(readings: Sequence[bool | None], *, in_size: bool = True) -> Verdict:
     """Return whether a claim holds in every reading; None is a reading that this program cannot finish."""
-    if not readings:
-        raise ValueError("readings = (): a claim without a reading cannot be judged")
-    if all(readings):
+    seen = set(readings)
+    if seen == {True}:
         return Verdict.REPRODUCED if in_size else Verdict.IN_DIRECTION
-    return Verdict.NOT_REPRODUCED if all(one is False for one in readings) else Verdict.CANNOT_BE_TOLD
+    return Verdict.NOT_REPRODUCED if seen == {False} else Verdict.CANNOT_BE_TOLD
 
 
-def judged(found: Mapping[str, Study], *, quick: bool) -> list[Judgement]:
-    """Return the judgements on the claims whose figure was studied."""
-    facts = {figure: STUDIES[figure][1](study) for figure, study in found.items()}
-    return [
-        claim.judged(facts[claim.figure], decides=not (quick and claim.figure in COARSE))
-        for claim in CLAIMS
-        if claim.figure in found
-    ]
+Judgements = Mapping[str, Row]
+"""By the claims' names, what a table says: places in [P], what it says at all of them, verdict, number and figure, reason."""
 
 
-def counted(judgements: Sequence[Judgement]) -> str:
+def judged(found: Mapping[str, Numbers], *, quick: bool) -> Judgements:
+    """Return the judgements on the claims whose figure was studied, by the numbers of the figures."""
+    judgements: dict[str, Row] = {}
+    for claim in (claim for claim in CLAIMS if claim.figure in found):
+        numbers = found[claim.figure]
+        cases = _within(claim.readings, numbers) or [all(_within(claim.holds, numbers))]
+        became = verdict(cases, in_size=all(_within(claim.in_size, numbers)))
+        number, why = (sentence(MACROS + text, **numbers) for text in (claim.number, claim.why))
+        if quick and claim.figure in COARSE:
+            became, why = Verdict.PROVISIONAL, f"With coarse settings: {became}. {why}"
+        judgements[claim.name] = {
+            "": str(len(judgements) + 1),
+            "where": "; ".join(place for place, _ in claim.stated),
+            "claim": " ".join(text for _, text in claim.stated),
+            "verdict": became,
+            "number": f"{number} ({claim.figure})",
+            "why": why,
+        }
+    return judgements
+
+
+def counted(judgements: Judgements) -> str:
     """Return how many claims are judged, and how many have each verdict."""
-    counts = Counter(one.verdict for one in judgements)
+    counts = Counter(row["verdict"] for row in judgements.values())
     summary = "; ".join(f"{counts[name]} {name}" for name in Verdict if counts[name])
     statements = sum(len(claim.stated) for claim in CLAIMS)
-    return f"{len(judgements)} of {len(CLAIMS)} claims judged ({statements} statements){': ' if summary else ''}{summary}"
+    return f"{len(judgements)} of {len(CLAIMS)} claims judged ({statements} statements): {summary}"
 
 
-def claims_text(judgements: Sequence[Judgement], *, quick: bool) -> str:
+def claims_text(judgements: Judgements, *, quick: bool) -> str:
     """Return the verdicts as Markdown."""
-    rows = [(str(number), *one.cells("**{}**", "`{}`")) for number, one in enumerate(judgements, 1)]
+    rows = list(judgements.values())
     return f"""# The claims of the paper and what became of them
 
 {PAPER}: {counted(judgements)}.
@@ -151,16 +126,7 @@ Every number below is computed by the run that wrote this file{", with coarse se
 Timoshenko, Euler-Bernoulli: the paper's elements with their misprints corrected. Mixed: the element of this project
 whose contact force is an unknown. EI/L^2 is the unit of the unbalanced force.
 
-{markdown([HEADER, *rows])}"""
-
-
-STUDIES: dict[str, tuple[Callable[..., Study], Callable[[Study], Facts]]] = {
-    "fig7a": (cantilever_shapes, of_lifts),
-    "fig7b": (critical_areas, of_critical_areas),
-    "fig8": (ks_shapes, of_shapes),
-    "fig9": (double_beam, of_double_beam),
-}
-"""How each figure of `FIGURES` is computed, and what it tells of its claims."""
+{markdown([list(rows[0]), *(list(row.values()) for row in rows)])}"""
 
 
 def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[list[Path], list[str]]:
@@ -170,17 +136,13 @@ def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[
     files: list[Path] = []
     for number, figure in enumerate(names := list(FIGURES) if name == "all" else [name], 1):
         report(f"[{number}/{len(names)}] {figure}: {FIGURES[figure]}")
-        found[figure] = STUDIES[figure][0](quick=quick, report=lambda line: report(f"  {line}"))
+        found[figure] = STUDIES[figure](quick=quick, report=lambda line: report(f"  {line}"))
         files += found[figure].write(figure, folder)
-    judgements = judged(found, quick=quick)
+    judgements = judged({figure: study.numbers for figure, study in found.items()}, quick=quick)
     files.append(folder / ("claims.md" if name == "all" else f"claims-{name}.md"))
     write_text(files[-1], claims_text(judgements, quick=quick))
-    rows = [
-        dict(zip(HEADER, (number, *one.cells("{}", "{}")), strict=True))
-        for number, one in enumerate(judgements, 1)
-    ]
     caption = f"{counted(judgements)}. Every number is computed by the run that wrote this page."
-    sections = [Section(title="Claims", html=table(caption, rows, prose=True))]
+    sections = [Section(title="Claims", html=table(caption, list(judgements.values()), prose=True))]
     for figure, study in found.items():
         title = FIGURES[figure]
         drawn = (picture(folder / f"{stem}.svg", f"{stem}: {title}") for stem in study.pictures)

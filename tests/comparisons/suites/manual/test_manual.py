@@ -14,9 +14,8 @@ from comparisons.cli import main
 from comparisons.scene import read_scene
 from comparisons.suites.manual import judged, problems, read_problem
 
-# not public: measures that no model has, and the styles of pictures
+# not public: measures that no model has
 from comparisons.suites.manual.measures import MEASURES, StoppedError
-from comparisons.suites.manual.write import STYLES
 
 PROBLEMS = {path.stem: path for path in problems()}
 FAST = (
@@ -51,13 +50,12 @@ def test_a_problem_of_the_table_passes(name, tmp_path):
     (card,), schema = cards(tmp_path, name)
     schema.validate(card)
     assert read_scene(toml(card["scene"]), name) == problem.scene
-    assert [item.failure for item in judged(problem).judgements if not item.passed] == []
+    assert [item.failure for item in judged(problem) if not item.passed] == []
     for quantity, stated in zip(problem.quantities, card["quantities"], strict=True):
         assert math.isfinite(quantity.exact)
         assert stated["value"] == quantity.exact
         assert stated["uncertainty"] < min(trial.allowed for trial in problem.trials) * quantity.size
     for trial in problem.trials:
-        assert trial.model in STYLES
         assert 0.0 < trial.allowed <= 0.3
         assert trial.why
 
@@ -114,7 +112,7 @@ def made_up(folder, count):
 def telling(*answers):
     """A measure by which the models answer so."""
 
-    def measure(_, given):
+    def measure(given):
         answer = answers[int(given.trial.setting)]
         if isinstance(answer, StoppedError):
             raise answer
@@ -193,4 +191,4 @@ def test_a_scene_that_is_moved_is_the_scene():
 
 def test_a_new_problem_is_one_file():
     (path,) = problems(folder=Path(__file__).with_name("new"))
-    assert [item.passed for item in judged(read_problem(path)).judgements] == [True, False]
+    assert [item.passed for item in judged(read_problem(path))] == [True, False]

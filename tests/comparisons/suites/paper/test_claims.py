@@ -9,11 +9,11 @@ from comparisons.suites.compare import PAPER, SOLID
 
 # not public: verdicts on numbers that no run gives, and the floor of an element's forces, which no solution shows
 from comparisons.suites.paper import fig7 as study
+from comparisons.suites.paper import fig8, fig9
 from comparisons.suites.paper.approach import NEAREST, approaches
-from comparisons.suites.paper.fig8 import KS
 from comparisons.suites.paper.fig9 import EVENTS as EXACT
 from comparisons.suites.paper.fig9 import LOWER, TIP, UPPER
-from comparisons.suites.paper.figure import CANTILEVER, MIXED, SIMPLE, TIMOSHENKO, Study
+from comparisons.suites.paper.figure import CANTILEVER, MIXED, SIMPLE, TIMOSHENKO
 from comparisons.suites.paper.force_floor import TURNED
 from comparisons.suites.paper.reproduce import CLAIMS, Verdict, claims_text, judged
 from comparisons.suites.paper.reproduce import verdict as verdict_of
@@ -24,66 +24,54 @@ TOLERANCES = (1e-6, 1e-8)
 
 
 def areas(sizes=None, slopes=None, blocked=()):
-    """A study of one start, three nodes and two tolerances: critical areas per tolerance, slopes per end, who does not pass a node."""
+    """The numbers of one start, three nodes and two tolerances: critical areas per tolerance, slopes per end, who does not pass a node."""
     chosen = {SIMPLE: (0.004, 0.04), CANTILEVER: (0.003, 0.02), TIMOSHENKO: (1e-7, 1e-4), MIXED: (1e-8, 1e-8)}
     found = [
         {
             "element": element, "tolerance": tolerance, "start": 4.05, "node": node,
-            "smallest": np.nan if element in blocked and node == 3.0 else size,
+            "smallest": np.nan if element in blocked and node == 3.0 else pair[number],
         }
+        for number, tolerance in enumerate(TOLERANCES)
         for element, pair in (chosen | (sizes or {})).items()
-        for tolerance, size in zip(TOLERANCES, pair, strict=True)
         for node in (1.0, 2.0, 3.0)
     ]  # fmt: skip
     steep = {element: (slope, slope) for element, slope in SLOPES.items()} | (slopes or {})
-    cases = [
-        (element, end, pair[end == "end"], study.PSI)
-        for element, pair in steep.items()
-        for end in ("start", "end")
-    ]
-    cases.append((TIMOSHENKO, "end", -3.0, study.PRINTED_SHEAR_PSI))
-    floors = [
-        {"element": element, "end": end, "psi": psi, "ratio": ratio, "floor": ratio**slope}
-        for element, end, slope, psi in cases
-        for ratio in study.RATIOS
-    ]
-    return Study(
-        tables={"fig7b-tolerance": found, "fig7b-floor": floors}, numbers=study.measured(found, floors)
-    )
+    before = [steep[of["element"]][of["end"] == "end"] for of in study.FLOORS[:-1]]
+    floors = np.array([study.RATIOS**slope for slope in (*before, -3.0)])
+    return study.measured(found, floors, TOLERANCES[1])
 
 
 def shapes(status="COMPLETED", error=(4e-3, 1e-3, 5e-4), force=3.0, seconds=0.1):
-    """A study of the paper's element with 10, 20 and 50 elements, and the solid; `force` is the error of the force over the shape's."""
+    """The numbers of the paper's element with 10, 20 and 50 elements, and the solid; `force` is the error of the force over the shape's."""
 
     def run(label, value, unknowns=30, seconds=seconds, status="COMPLETED"):
         errors = {f"error_path_{name}": force * value for name in KEPT} | {"error_path_shape": value}
         return errors | {
-            "reading": KS, "label": label, "status": status, "unknowns": unknowns, "iterations": 1, "seconds": seconds,
+            "reading": fig8.KS, "label": label, "status": status, "unknowns": unknowns, "iterations": 1, "seconds": seconds,
             "shape_difference": value, "follows_the_rod": status == "COMPLETED" and value < 0.05,
         }  # fmt: skip
 
     runs = [run(one.label, value) for one, value in zip(PAPER[:2], error, strict=False)]
     runs += [run(PAPER[2].label, error[2], status=status), run(SOLID.label, 5e-4, 1004, 1.0)]
-    return Study(tables={}, numbers={"runs": runs})
+    return {"readings": fig8.READINGS, **fig8.of_shapes(runs)}
 
 
 def lifts(error=1e-5):
     lift = {
-        "slip_off_error": {18: error, 72: error}, "reached_in_contact": {TIMOSHENKO: 1.0}, "slip_off_rod": 1.0,
-        "force_error": error,
+        "slip_off_error": {18: error, 72: error}, "paper_followed": True, "force_error": error,
     }  # fmt: skip
-    return Study(tables={}, numbers={"starting_positions": [lift, lift]})
+    return {"starting_positions": [lift, lift]}
 
 
 THROUGH = {
-    "element": TIMOSHENKO, "place": 0.81, "status": "COMPLETED", "depth": 0.76, "passes": 5, "at_hand_over": False,
+    "element": TIMOSHENKO, "place": 0.81, "status": "COMPLETED", "depth": 0.76, "passes": 5, "through": True,
 }  # fmt: skip
-AT_EVENT = THROUGH | {"status": "TWO_CONTACTS", "depth": 0.53, "passes": 2, "at_hand_over": True}
-AT_NODE = THROUGH | {"place": 0.8, "status": "CUTBACK_FLOOR", "depth": 0.0, "passes": 0}
+AT_EVENT = THROUGH | {"status": "TWO_CONTACTS", "depth": 0.53, "passes": 2, "through": None}
+AT_NODE = THROUGH | {"place": 0.8, "status": "CUTBACK_FLOOR", "depth": 0.0, "passes": 0, "through": False}
 
 
 def beams(*attempts, late="", open_pair="", without=""):
-    """A study whose events are where the exact rods have them, but for those that come `late`, and one kind that does not."""
+    """The numbers of a run whose events are where the exact rods have them, but for those that come `late`, and one kind that does not."""
     at = {
         f"touch {TIP}": "touch",
         f"slip-off {UPPER}": "hand-over",
@@ -95,15 +83,14 @@ def beams(*attempts, late="", open_pair="", without=""):
         for one, name in at.items()
         if one != without
     ]  # fmt: skip
-    history = [
-        {"depth": depth, f"{TIP} exact_force": 1.0} | {f"{pair} arc": np.nan if pair == open_pair else 1.0 for pair in (UPPER, TIP, LOWER)}
-        for depth in np.linspace(0.0, 0.76, 77)
-    ]  # fmt: skip
-    numbers = {
-        "events": events, "attempts": attempts or (AT_NODE, AT_EVENT),
-        "checks": [{"stage": "coupled", "pair": UPPER, "force": 1e-7, "arc": 1e-7}],
+    columns = {"depth": np.linspace(0.0, 0.76, 77), f"{TIP} exact_force": np.ones(77)}
+    columns |= {
+        f"{pair} arc": np.full(77, np.nan if pair == open_pair else 1.0) for pair in (UPPER, TIP, LOWER)
+    }
+    return {
+        "exact_events": EXACT, "events": events, "attempts": attempts or (AT_NODE, AT_EVENT),
+        "checks": [{"stage": "coupled", "pair": UPPER, "force": 1e-7, "arc": 1e-7}], **fig9.of_events(columns, events),
     }  # fmt: skip
-    return Study(tables={"fig9": history}, numbers=numbers)
 
 
 LOW, _ = study.PRINTED[TIMOSHENKO]
@@ -151,15 +138,14 @@ def test_every_claim_is_judged_by_its_numbers():
     for name, verdict, others in OTHERS:
         figure = claims[name].figure
         for found, expected in ((BASE[figure], verdict), *others):
-            told = {one.claim.name: one for one in judged({figure: found}, quick=False)}
-            assert told[name].verdict is expected, told[name]
-            assert "{" not in told[name].number + told[name].why
+            told = judged({figure: found}, quick=False)[name]
+            assert told["verdict"] is expected, told
+            assert "{" not in told["number"] + told["why"]
     assert (len(claims), sum(len(claim.stated) for claim in CLAIMS)) == (25, 27)
     quick = claims_text(judged({"fig7b": BASE["fig7b"]}, quick=True), quick=True)
     assert "13 of 25 claims judged (27 statements): 13 provisional" in quick
     assert "With coarse settings: not reproduced." in quick
-    with pytest.raises(ValueError, match="readings"):
-        verdict_of(())
+    assert verdict_of(()) is OPEN
 
 
 def ways(element, tolerance):

@@ -35,7 +35,7 @@ VERDICTS = dict.fromkeys((claim.name for claim in CLAIMS), REPRODUCED) | {
 def check_claims(page, *figures):
     """The page has every claim of some figures once, in the order of the paper, with its verdict."""
     found = re.findall(
-        r"^\| (\d+) \| .* \| \*\*(.*?)\*\* \| .* \(`(\w+)`\) \|", page.read_text(), re.MULTILINE
+        r"^\| (\d+) \| .* \| (.*?) \| [^|]* \((\w+)\) \| [^|]* \|$", page.read_text(), re.MULTILINE
     )
     wanted = [claim for claim in CLAIMS if claim.figure in figures]
     expected = [(VERDICTS[claim.name], claim.figure) for claim in wanted]
@@ -121,11 +121,9 @@ def test_all_with_full_settings(tmp_path, stated):
         stated(f"paper.tolerance-{element}", critical["tolerance_for_the_printed"][element], relative=0.5)
     areas = critical["critical_area"]
     simple, clamped = (
-        np.array([one["median"] for one in areas[element].values()])
-        for element in ("euler-bernoulli-simple", cantilever)
+        np.array(areas[element]["median"]) for element in ("euler-bernoulli-simple", cantilever)
     )
     assert 2.0 < (simple / clamped).max() < 2.6
     stated("paper.gain", (simple / clamped).max(), relative=0.2)
     assert (simple / clamped)[-2:] == pytest.approx(1.0, abs=0.1)
-    for tolerance, area in areas["mixed"].items():
-        assert area["largest"] <= 2e-8, tolerance
+    assert max(areas["mixed"]["largest"]) <= 2e-8
