@@ -13,13 +13,18 @@ NOTE = {"fontsize": "small", "color": "0.25"}
 
 
 def draw(
-    panels: Sequence[Callable[[Any], None]], *paths: Path, tall: float, title: str = "", columns: int = 2
+    panels: Sequence[Callable[[Any], None]],
+    *paths: Path,
+    tall: float,
+    title: str = "",
+    columns: int = 2,
+    **shared: bool,
 ) -> None:
-    """Draw panels beside each other, each `tall` inches high; a label stands once in the legend below them."""
+    """Draw panels beside each other, each `tall` inches high, with axes `shared` as `Figure.subplots` says; a label stands once in the legend below them."""
     columns = min(columns, len(panels))
     rows = -(-len(panels) // columns)
     fig = figure(figsize=(WIDTH, 1.3 + tall * rows))
-    grid = fig.subplots(rows, columns, squeeze=False)
+    grid = fig.subplots(rows, columns, squeeze=False, **shared)
     named: dict[str, Any] = {}
     for axes in grid.flat[len(panels) :]:
         axes.set_axis_off()
