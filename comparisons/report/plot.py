@@ -49,7 +49,7 @@ def figure(**options: Any) -> Any:
 def save(fig: Any, *paths: Path) -> None:
     """Write the figure to `paths`, in the formats of their suffixes; it is laid out once."""
     fig.draw_without_rendering()
-    fig.set_layout_engine("none")
+    fig.set_layout_engine(None)  # with "none", each file would be drawn twice
     for path in paths:
         with replacing(path) as temporary:
             fig.savefig(temporary, dpi=max(150.0, PIXELS / fig.get_figwidth()))

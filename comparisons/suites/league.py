@@ -32,7 +32,7 @@ SHOWN = {
 """The columns that the page shows, and how it calls them."""
 FORCE, SECONDS = (
     "largest error of the force (reactions without contact)",
-    "processor seconds of the whole process",
+    "seconds of the whole process",
 )
 """What the diagram shows."""
 FLOOR = 1e-14
