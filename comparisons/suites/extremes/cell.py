@@ -11,6 +11,7 @@ from comparisons.answer.errors import difference
 from comparisons.models import TSM
 from comparisons.models.theory import FLOOR, Bending, bending, chord_term, element_lengths, ordinal
 from comparisons.models.verify import CHECK_FAILED
+from comparisons.output import Row as TableRow
 from comparisons.scene import BeamSpec
 from comparisons.suite import Case, Row
 from comparisons.suite.run import COMPLETED, UNSETTLED
@@ -145,47 +146,20 @@ class Cell:
         return replace(self, checks=(*self.checks, check))
 
 
-@dataclass(frozen=True, kw_only=True)
-class Judgement:
-    """A cell, its measurement and what was found over the load parameters that were reached."""
+class Judgement(NamedTuple):
+    """What was found of a cell over the load parameters that were reached, and the line of the table about it."""
 
-    cell: Cell
-    own: Row
     findings: tuple[Finding, ...]
-
-    @property
-    def verdict(self) -> str:
-        """One of `VERDICTS`. Wrong: an error is above its allowance, also if the solution stopped later, or the case raised."""
-        status = self.own.response.status
-        if status == CHECK_FAILED:
-            return "withdrawn"
-        if status in UNSETTLED or not all(one.holds for one in self.findings):
-            return "wrong"
-        return "right" if status == COMPLETED else "stopped"
-
-    @property
-    def reached(self) -> float:
-        """The last load parameter reached, zero if none was."""
-        return float(max(self.own.response.load_parameter, default=0.0))
-
-    @property
-    def needless(self) -> bool:
-        """Whether the answer is withdrawn although all its errors are within their allowances."""
-        return self.verdict == "withdrawn" and bool(self.decisive and self.decisive.holds)
-
-    @property
-    def decisive(self) -> Finding | None:
-        """The finding with the largest error over its allowance."""
-        return max(self.findings, key=lambda finding: finding.share, default=None)
+    row: TableRow
 
     @property
     def sentence(self) -> str:
         """What is wrong, in one line."""
-        found, own = self.decisive, self.own.response
-        place = f"{self.cell.axis} {self.cell.column}, {self.cell.case.label}: {self.verdict}: {own.status}"
-        if found is None:
-            return f"{place}: {own.message}"
-        return f"{place}, error {found.error:.2g} against {found.name}, allowed {found.allowed:.2g} ({found.why})"
+        row = self.row
+        place = f"{row['axis']} {row['value']}, {row['label']}: {row['verdict']}: {row['status']}"
+        if not self.findings:
+            return f"{place}: {row['message']}"
+        return f"{place}, error {row['error']:.2g} against {row['against']}, allowed {row['allowed']:.2g} ({row['why']})"
 
 
 VERDICTS = ("right", "stopped", "withdrawn", "wrong")
@@ -193,8 +167,35 @@ VERDICTS = ("right", "stopped", "withdrawn", "wrong")
 
 
 def judged(cell: Cell, results: Results) -> Judgement:
-    """Return the judgement on `cell` by the `results` of its `cases`."""
-    own = results[cell.case]
-    checks = cell.checks if len(own.response.load_parameter) else ()
-    found = (check(cell.case, own.response, results) for check in checks)
-    return Judgement(cell=cell, own=own, findings=tuple(one for one in found if one is not None))
+    """Return the judgement on `cell` by the `results` of its `cases`; the finding with the largest error over its allowance decides.
+
+    A cell is wrong where an error is above its allowance, also if the solution stopped later, and where the case raised or lost its
+    worker. It is withdrawn needlessly where all its errors are within their allowances.
+    """
+    measured = results[cell.case]
+    own = measured.response
+    checks = cell.checks if len(own.load_parameter) else ()
+    found = [one for check in checks if (one := check(cell.case, own, results)) is not None]
+    decisive, holds = max(found, key=lambda one: one.share, default=None), all(one.holds for one in found)
+    verdict = "right" if own.status == COMPLETED else "stopped"
+    if own.status == CHECK_FAILED:
+        verdict = "withdrawn"
+    elif own.status in UNSETTLED or not holds:
+        verdict = "wrong"
+    about = {"error": "error", "allowed": "allowed", "against": "name", "why": "why"}
+    row = {
+        "axis": cell.axis,
+        "model": cell.row,
+        "value": cell.column,
+        "label": cell.case.label,
+        "verdict": verdict,
+        "needless": verdict == "withdrawn" and bool(found) and holds,
+        "status": own.status,
+        "reached": float(max(own.load_parameter, default=0.0)),
+        **{column: decisive and getattr(decisive, name) for column, name in about.items()},
+        "iterations": own.iterations,
+        "cutbacks": own.cutbacks,
+        "seconds": measured.seconds,
+        "message": own.message,
+    }
+    return Judgement(tuple(found), row)

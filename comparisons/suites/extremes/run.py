@@ -4,17 +4,14 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-from shutil import rmtree
 from typing import Any
 
 import numpy as np
 
-from comparisons.output import Row, write_numbers, write_rows
+from comparisons.output import write_numbers, write_rows
 from comparisons.report.pages import Section, rendered, write_page
 from comparisons.suite import Case
-from comparisons.suite.run import Progress
-from comparisons.suite.run import run as run_cases
-from comparisons.suite.workers import Workers
+from comparisons.suite.progress import Runner
 from comparisons.suites.extremes.axes import AXES, matrix
 from comparisons.suites.extremes.cell import VERDICTS, Judgement, judged
 
@@ -27,21 +24,18 @@ ABSENT = ("·", {"class": "none"})
 """Text and attributes of a cell of the map without a cell of the matrix."""
 
 
-def extremes(
-    folder: Path, workers: Workers, progress: Progress, *, quick: bool = False
-) -> tuple[list[Judgement], tuple[Path, ...]]:
-    """Run the matrix, or take it up where it was interrupted, and write page, table and numbers."""
-    cells, kept = matrix(quick=quick), folder / ".extremes"
-    cases = sorted(dict.fromkeys(case for cell in cells for case in cell.cases), key=_cost, reverse=True)
-    results = run_cases(cases, kept, workers, repeats=0, progress=progress)
+def extremes(folder: Path, run: Runner, *, quick: bool = False) -> tuple[list[Judgement], tuple[Path, ...]]:
+    """Run the matrix, judge it, and write page, table and numbers."""
+    cells = matrix(quick=quick)
+    cases = dict.fromkeys(case for cell in cells for case in cell.cases)
+    results = run(sorted(cases, key=_cost, reverse=True))
     judgements = [judged(cell, results) for cell in cells]
-    html, rows = folder / "extremes.html", [_row(item) for item in judgements]
+    html, rows = folder / "extremes.html", [item.row for item in judgements]
     numbers = {"quick": quick, "verdicts": counts(judgements), "cells": rows}
     tables = (write_rows(folder / "extremes.csv", rows), write_numbers(folder / "extremes.json", numbers))
     part = ", a part of the matrix (quick)" if quick else ""
     lead = f"{_counted(judgements)}{part}."
     write_page(folder, "Where it holds, where it stops", lead, _sections(judgements), (), tables, html.name)
-    rmtree(kept)
     return judgements, (html, *tables)
 
 
@@ -53,38 +47,18 @@ def _cost(case: Case) -> int:
 
 def counts(judgements: Sequence[Judgement]) -> dict[str, dict[str, int]]:
     """Return how many cells of each axis are right, stopped, withdrawn and wrong."""
-    number = Counter((item.cell.axis, item.verdict) for item in judgements)
-    axes = dict.fromkeys(item.cell.axis for item in judgements)
+    number = Counter((row["axis"], row["verdict"]) for _, row in judgements)
+    axes = dict.fromkeys(row["axis"] for _, row in judgements)
     return {axis: {verdict: number[axis, verdict] for verdict in VERDICTS} for axis in axes}
 
 
 def _counted(judgements: Sequence[Judgement]) -> str:
     """Return the number of cells, their number by verdict, and the number of withdrawn cells that are right."""
-    number, needless = Counter(item.verdict for item in judgements), sum(item.needless for item in judgements)
-    needlessly = {"withdrawn": f" ({needless} needlessly)"} if needless else {}
-    words = (f"{number[verdict]} {verdict}{needlessly.get(verdict, '')}" for verdict in VERDICTS)
+    number = Counter(row["verdict"] for _, row in judgements)
+    needless = sum(row["needless"] for _, row in judgements)
+    more = {"withdrawn": f" ({needless} needlessly)" if needless else ""}
+    words = (f"{number[verdict]} {verdict}{more.get(verdict, '')}" for verdict in VERDICTS)
     return f"{len(judgements)} cells: {', '.join(words)}"
-
-
-def _row(item: Judgement) -> Row:
-    """Return one line of the table: the cell, its verdict, and the comparison that decides it."""
-    own, decisive = item.own.response, item.decisive
-    about = {"error": "error", "allowed": "allowed", "against": "name", "why": "why"}
-    return {
-        "axis": item.cell.axis,
-        "model": item.cell.row,
-        "value": item.cell.column,
-        "label": item.cell.case.label,
-        "verdict": item.verdict,
-        "needless": item.needless,
-        "status": own.status,
-        "reached": item.reached,
-        **{column: decisive and getattr(decisive, name) for column, name in about.items()},
-        "iterations": own.iterations,
-        "cutbacks": own.cutbacks,
-        "seconds": item.own.seconds,
-        "message": own.message,
-    }
 
 
 def _sections(judgements: Sequence[Judgement]) -> list[Section]:
@@ -93,9 +67,9 @@ def _sections(judgements: Sequence[Judgement]) -> list[Section]:
     shaded = {_number(error): {"style": _shade(error)} for error in errors}
     parts = [Section("How to read the maps", rendered("maps", marks=MARKS, shaded=shaded))]
     for name, axis in AXES.items():
-        own = [item for item in judgements if item.cell.axis == name]
+        own = [item for item in judgements if item.row["axis"] == name]
         if own:
-            at = {(item.cell.row, item.cell.column): _cell(item) for item in own}
+            at = {(item.row["model"], item.row["value"]): _cell(item) for item in own}
             rows, columns = (list(dict.fromkeys(names)) for names in zip(*at, strict=True))
             grid = {row: [at.get((row, column), ABSENT) for column in columns] for row in rows}
             about = f"{axis['scene']}. {_counted(own)}."
@@ -105,22 +79,21 @@ def _sections(judgements: Sequence[Judgement]) -> list[Section]:
 
 def _cell(item: Judgement) -> tuple[str, dict[str, Any]]:
     """Return the text and the attributes of a cell of the map."""
-    own, decisive = item.own.response, item.decisive
+    findings, row = item
     lines = (
-        f"{item.cell.case.label}, {item.cell.column}: {item.verdict}",
-        f"{own.status}: {own.message}",
-        f"reached {item.reached:.4g} of 1",
+        f"{row['label']}, {row['value']}: {row['verdict']}",
+        f"{row['status']}: {row['message']}",
+        f"reached {row['reached']:.4g} of 1",
         *(
             f"against {one.name}: error {_number(one.error)}, allowed {_number(one.allowed)} ({one.why})"
-            for one in item.findings
+            for one in findings
         ),
-        f"{own.iterations} iterations, {own.cutbacks} cut-backs",
+        f"{row['iterations']} iterations, {row['cutbacks']} cut-backs",
     )
-    text, shade = own.status, None
-    if decisive and item.verdict != "stopped":
-        text = _number(decisive.error)
-        shade = _shade(decisive.error) if item.verdict == "right" else None
-    return MARKS[item.verdict] + text, {"class": item.verdict, "title": "\n".join(lines), "style": shade}
+    verdict = row["verdict"]
+    text = row["status"] if verdict == "stopped" or not findings else _number(row["error"])
+    shade = _shade(row["error"]) if verdict == "right" and findings else None
+    return MARKS[verdict] + text, {"class": verdict, "title": "\n".join(lines), "style": shade}
 
 
 def _number(value: float) -> str:

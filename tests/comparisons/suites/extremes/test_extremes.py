@@ -15,7 +15,7 @@ from comparisons.cli import main
 from comparisons.models.theory import Bending
 
 # not public: answers off by a known part, allowances before any run, and the whole matrix without its hour of solutions
-from comparisons.suite import measure
+from comparisons.suite import measure, progress
 from comparisons.suites.extremes import run as runner
 from comparisons.suites.extremes.axes import AXES, beam, cantilever, half_circle, kinds, matrix, rod, sheared
 from comparisons.suites.extremes.cell import LARGEST, allowance, judged
@@ -76,16 +76,16 @@ BECOMES = {
 def test_a_verdict_and_whether_a_check_refused_needlessly(case):
     change, verdict, needless = BECOMES[case]
     found = judge(change(measured(CASE)))
-    assert (found.verdict, found.needless) == (verdict, needless)
-    assert found.own.response.status in found.sentence
-    assert (found.reached == 0.0) == (found.findings == ()) == case.endswith("start")
+    assert (found.row["verdict"], found.row["needless"]) == (verdict, needless)
+    assert found.row["status"] in found.sentence
+    assert (found.row["reached"] == 0.0) == (found.findings == ()) == case.endswith("start")
     rod = stopped(measured(ROD), "LOST")
-    assert judged(CELL, {CASE: measured(CASE), ROD: rod}).verdict == "wrong", (
+    assert judged(CELL, {CASE: measured(CASE), ROD: rod}).row["verdict"] == "wrong", (
         "it goes on where its reference stopped"
     )
     if case == "as it is":
-        assert 1e-6 < found.decisive.error < found.decisive.allowed < 1e-3
-        assert found.reached == 1.0
+        assert 1e-6 < found.row["error"] < found.row["allowed"] < 1e-3
+        assert found.row["reached"] == 1.0
 
 
 @pytest.mark.parametrize("law", ["energy", "circle", None])
@@ -131,7 +131,7 @@ def test_what_is_allowed_falls_with_the_order_of_the_element_and_has_a_cap():
     assert allowed("timoshenko", graded, None).error == LARGEST
     uneven = cell_of("mixed", graded, None)
     for part, verdict in ((0.0, "right"), (0.05, "wrong")):
-        assert judge(off(measured(uneven.case), part), uneven).verdict == verdict
+        assert judge(off(measured(uneven.case), part), uneven).row["verdict"] == verdict
     last = half_circle(cantilever(slenderness=1e5), steps=1)
     cell = replace(cell_of("timoshenko", last, 20), checks=(rod(last),))
     (found,) = judge(measured(cell.case), cell).findings
@@ -181,13 +181,13 @@ def test_the_command_writes_every_cell_and_fails_where_one_is_wrong(tmp_path, ca
     }
     results = {case: BECOMES[change][0](measured(CASE)) for change, case in cases.items()}
 
-    def ran(_, kept, *__, **___):
-        kept.mkdir()
+    def ran(_, folder, **__):
+        folder.mkdir()
         return {**results, ROD: measured(ROD)}
 
     cells = [replace(CELL, column=change, case=case) for change, case in cases.items()]
     monkeypatch.setattr(runner, "matrix", lambda **_: cells)
-    monkeypatch.setattr(runner, "run_cases", ran)
+    monkeypatch.setattr(progress, "run", ran)
     folder = tmp_path / "out"
     assert main(["run", "extremes", "--quick", "--workers", "1", "--out", str(folder)]) == 1
     out, err = capsys.readouterr()
@@ -268,6 +268,6 @@ def test_many_elements_leave_what_the_page_says(stated):
     """5,000 elements of `mixed`: 2e-10, and 19 % off would be wrong by eight powers of ten."""
     (cell,) = (one for one in matrix() if (one.axis, one.row, one.column) == ("elements", "mixed", "5000"))
     found = judged(cell, {case: measure(case, repeats=0) for case in cell.cases})
-    assert found.verdict == "right"
-    stated("extremes.elements-5000", found.decisive.error)
-    assert found.decisive.allowed < 3e-9
+    assert found.row["verdict"] == "right"
+    stated("extremes.elements-5000", found.row["error"])
+    assert found.row["allowed"] < 3e-9
