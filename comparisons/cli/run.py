@@ -5,6 +5,7 @@ from argparse import Namespace
 from collections import Counter
 from collections.abc import Callable, Iterable
 from pathlib import Path
+from shutil import rmtree
 from typing import NamedTuple
 
 from comparisons.cli.options import refuse, workers
@@ -78,13 +79,15 @@ def _manual(given: Namespace) -> int:
 def _extremes(given: Namespace) -> int:
     folder = _out(given, "extremes.html", "extremes.csv", "extremes.json")
     from comparisons.output import tabulated
-    from comparisons.suite.progress import shown
+    from comparisons.suite.progress import running
     from comparisons.suites.extremes.run import counts, extremes
 
-    with shown(quiet=given.quiet) as progress:
-        judgements, files = extremes(folder, workers(given), progress, quick=given.quick)
+    kept = folder / ".extremes"  # until the command has come to its end
+    with running(kept, workers(given), quiet=given.quiet, repeats=0) as run_cases:
+        judgements, files = extremes(folder, run_cases, quick=given.quick)
+    rmtree(kept)
     print(tabulated([{"axis": axis, **number} for axis, number in counts(judgements).items()]))
-    return _ended(files, (item.sentence for item in judgements if item.verdict == "wrong"), WRONG)
+    return _ended(files, (item.sentence for item in judgements if item.row["verdict"] == "wrong"), WRONG)
 
 
 def _trade(given: Namespace) -> int:

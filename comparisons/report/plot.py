@@ -1,6 +1,6 @@
 """Pictures by matplotlib: what all of them share, and the overlay of deflected shapes."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -49,7 +49,7 @@ def figure(**options: Any) -> Any:
 def save(fig: Any, *paths: Path) -> None:
     """Write the figure to `paths`, in the formats of their suffixes; it is laid out once."""
     fig.draw_without_rendering()
-    fig.set_layout_engine("none")
+    fig.set_layout_engine(None)  # with "none", each file would be drawn twice
     for path in paths:
         with replacing(path) as temporary:
             fig.savefig(temporary, dpi=max(150.0, PIXELS / fig.get_figwidth()))
@@ -60,22 +60,6 @@ def arrow(axes: Any, tail: Array, tip: Array, colour: str, width: float = 1.2) -
     style = {"arrowstyle": "-|>", "color": colour, "linewidth": width, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", tip, tail, arrowprops=style, zorder=6)
     axes.update_datalim([tail, tip])
-
-
-def logarithmic(axes: Any) -> None:
-    """Make both axes of a panel logarithmic, with a grid."""
-    axes.set(xscale="log", yscale="log")
-    axes.grid(visible=True, linewidth=0.3)
-
-
-def draw_legend(fig: Any, panels: Sequence[Any], place: str) -> None:
-    """Draw one legend for all panels: one entry for each label, with a filled marker where it has one."""
-    entries: dict[str, Any] = {}
-    for axes in panels:
-        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
-            if label not in entries or entries[label].get_markerfacecolor() == "none":
-                entries[label] = handle
-    fig.legend(list(entries.values()), list(entries), loc=place, ncols=3, fontsize="small", frameon=False)
 
 
 def nearest_steps(load_parameter: Array, last: float = 1.0) -> list[int]:

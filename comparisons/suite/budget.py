@@ -66,22 +66,22 @@ def budget_cases(scene: Scene) -> dict[str, Case]:
     """Return the solutions behind the budget by name; a name ``finer ...`` is that of a mesh twice as fine."""
     short = replace(scene, load_parameters=STEPS)
     free: Changes = {("contact", "penalty"): None, ("contact", "penetration"): 1e-12}
-    rod_law: Changes = {("beam", "material"): "biot-linear"}
+    law: Changes = {("beam", "material"): "biot-linear"}
     halved: Changes = {("beam", one.name, "mesh"): (2 * one.mesh[0], 2 * one.mesh[1]) for one in scene.beams}
-    solids = {
-        "bodies": short,
-        "linear": changed(short, rod_law),
-        "free": changed(short, free),
-        "like rods": changed(short, {**rod_law, **free}),
-        "finer bodies": changed(short, halved),
-        "finer like rods": changed(short, {**rod_law, **free, **halved}),
-        "careful": replace(short, load_parameters=2 * STEPS),
+    solids: dict[str, Changes] = {
+        "bodies": {},
+        "linear": law,
+        "free": free,
+        "like rods": {**law, **free},
+        "finer bodies": halved,
+        "finer like rods": {**law, **free, **halved},
+        "careful": {("scene", "load_parameters"): 2 * STEPS},
     }
     beams = {"beams": ELEMENTS, "finer beams": 2 * ELEMENTS}
     return {
         "rods": Case(scene=short, model=ROD.name),
         **{name: Case(scene=short, model=TSM.name, options=Options(elements=n)) for name, n in beams.items()},
-        **{name: Case(scene=one, model=SOLID.name) for name, one in solids.items()},
+        **{name: Case(scene=changed(short, own), model=SOLID.name) for name, own in solids.items()},
     }
 
 

@@ -42,46 +42,30 @@ STORED = ("seconds", "repeats", "peak_memory", "verdict", "process_seconds")
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Row:
-    """A case with its answer, its cost and its errors.
+    """A case with its answer, its cost and its errors."""
 
-    Attributes
-    ----------
-    case : Case
-        What was solved.
-    response : Response
-        The answer, up to the last load parameter reached; ``REFUSED`` if the model cannot state the scene.
-        That of `measure` is storable, has no wall time, and has no axes if no run is timed.
-    seconds : float
-        Processor time from the scene to the checked response without imports [s]: the median over `repeats`
-        runs after a warm-up, nan if no run is timed. On one thread it is the wall time on an idle core.
-    repeats : int
-        Number of timed runs; one, without a warm-up, where the first run took more than 10 s.
-    peak_memory : int
-        Largest rise of the process's resident memory in the first run [byte]; zero but on Linux.
-    verdict : str
-        Verdict of the certificate for the last load parameter and the neighbours of events; empty if none was
-        reached or no run is timed.
-    process_seconds : float
-        Processor time of a whole process of ``crossval solve`` without certificate [s]; nan if it was not asked for.
-    errors, own_errors : Errors, optional
-        Errors by scope and quantity against the reference, which has none, and against the model's limit.
-    name : str
-        Label of the run, if not that of the case.
-    cause : str
-        Largest part of the error that theory allows the model; empty where theory has no estimate.
-    """
-
-    case: Case
+    case: Case  #: What was solved.
+    #: The answer, up to the last load parameter reached; ``REFUSED`` if the model cannot state the scene. That of `measure` is storable,
+    #: has no wall time, and has no axes if no run is timed.
     response: Response
+    #: Processor time from the scene to the checked response without imports [s]: the median over `repeats` runs after a warm-up, nan if no
+    #: run is timed. On one thread it is the wall time on an idle core.
     seconds: float = nan
-    repeats: int = 0
-    peak_memory: int = 0
+    repeats: int = (
+        0  #: Number of timed runs; one, without a warm-up, where the first run took more than 10 s.
+    )
+    peak_memory: int = (
+        0  #: Largest rise of the process's resident memory in the first run [byte]; zero but on Linux.
+    )
+    #: Verdict of the certificate for the last load parameter and the neighbours of events; empty if none was reached or no run is timed.
     verdict: str = ""
-    process_seconds: float = nan
-    errors: Errors | None = None
-    own_errors: Errors | None = None
-    name: str = ""
-    cause: str = ""
+    process_seconds: float = nan  #: Processor time of a process of ``crossval solve`` without certificate [s]; nan if not asked for.
+    errors: Errors | None = None  #: By scope and quantity, against the reference, which has none.
+    own_errors: Errors | None = None  #: Against the model's limit.
+    name: str = ""  #: Label of the run, if not that of the case.
+    cause: str = (
+        ""  #: Largest part of the error that theory allows the model; empty where theory has no estimate.
+    )
 
     @property
     def label(self) -> str:

@@ -12,7 +12,7 @@ from typing import Any
 from comparisons.models.progress import REDRAW, bar
 from comparisons.suite.case import Case
 from comparisons.suite.measure import Row
-from comparisons.suite.run import COMPLETED, Progress, Results, run
+from comparisons.suite.run import COMPLETED, Results, run
 from comparisons.suite.workers import Workers
 
 MILESTONES = 10
@@ -22,14 +22,10 @@ Runner = Callable[[Iterable[Case]], Results]
 
 @contextmanager
 def running(folder: Path, workers: Workers, *, quiet: bool = False, **how: Any) -> Iterator[Runner]:
-    """Give what runs cases on some workers, keeps their results in a folder, and shows its progress; `how` is that of `measure`."""
-    with shown(quiet=quiet) as progress:
-        yield partial(run, folder=folder, workers=workers, progress=progress, **how)
+    """Give what runs cases on some workers, keeps their results in a folder, and shows its progress; `how` is that of `measure`.
 
-
-@contextmanager
-def shown(*, quiet: bool = False) -> Iterator[Progress]:
-    """Give what shows progress, nothing if `quiet`; an exception ends the line, so that its message starts on a new one."""
+    An exception ends the line of progress, so that its message starts on a new one.
+    """
     stream, terminal = sys.stderr, sys.stderr.isatty()
     began, first, last = monotonic(), 0, -inf
 
@@ -38,7 +34,7 @@ def shown(*, quiet: bool = False) -> Iterator[Progress]:
         done = len(rows)
         seconds, first = monotonic() - began, first if last > -inf else done
         now = seconds if terminal else MILESTONES * done // total
-        if now == last or (terminal and done < total and now - last < REDRAW):
+        if quiet or now == last or (terminal and done < total and now - last < REDRAW):
             return
         failed, last = sum(row.response.status != COMPLETED for row in rows), now
         text = f"{done} of {total} cases done, {failed} failed"
@@ -51,7 +47,7 @@ def shown(*, quiet: bool = False) -> Iterator[Progress]:
         stream.flush()
 
     try:
-        yield (lambda *_: None) if quiet else show
+        yield partial(run, folder=folder, workers=workers, progress=show, **how)
     except BaseException:
         if terminal:
             stream.write("\n")

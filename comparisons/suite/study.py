@@ -74,9 +74,9 @@ def read_study(path: Path) -> Study:
     tables = read_tables(text, source, StudyError)
     head, mistakes = head_values(tables, "study", HEAD_RULES, required=("name", "scene"))
     mistakes += check_keys(tables, ("study", "run"), required=("study", "run"))
-    mistakes += check_tables(tables, "run")
-    cases = list[Case]()
-    if "scene" in head and not list(check_tables(tables, "run")):
+    wrong, cases = list(check_tables(tables, "run")), list[Case]()
+    mistakes += wrong
+    if "scene" in head and not wrong:
         name = head["scene"] if head["scene"] in built_in_scenes() else str(path.parent / head["scene"])
         cases = _cases(load_scene(name), tables.get("run", []), path.parent, mistakes)
     if mistakes:
@@ -86,23 +86,20 @@ def read_study(path: Path) -> Study:
 
 def _cases(scene: Scene, runs: list[dict[str, Any]], folder: Path, mistakes: list[FieldError]) -> list[Case]:
     """Return the cases of the runs; what is wrong is added to `mistakes`."""
-    axes = list[Axes | None]()
+    cases, total = list[Case](), 0
     for i, run in enumerate(runs):
         wrong = list[FieldError]()
-        varied = _axes(run, wrong)
-        axes.append(None if wrong else varied)
-        mistakes += (item.within(f"run[{i}].") for item in wrong)
-    total = sum(prod(map(len, one.values())) for one in axes if one is not None)
-    if total > LARGEST:
-        mistakes.append(FieldError("run", total, f"must be at most {LARGEST} cases"))
-        return []
-    cases: list[Case] = []
-    for i, one in enumerate(axes):
-        for chosen in () if one is None else product(*one.values()):
+        axes = _axes(run, wrong)
+        total += prod(map(len, axes.values()))
+        if total > LARGEST:
+            mistakes.append(FieldError("run", total, f"must be at most {LARGEST} cases"))
+            return []
+        for chosen in () if wrong else product(*axes.values()):
             try:
-                cases.append(_case(scene, dict(zip(one or (), chosen, strict=True)), folder))
+                cases.append(_case(scene, dict(zip(axes, chosen, strict=True)), folder))
             except FieldError as error:
-                mistakes += (item.within(f"run[{i}].") for item in error.mistakes)
+                wrong += error.mistakes
+        mistakes += (item.within(f"run[{i}].") for item in wrong)
     return cases
 
 

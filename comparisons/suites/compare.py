@@ -1,13 +1,12 @@
 """One scene through every model: table, pictures and files."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-import tsm
 from comparisons import models
 from comparisons.answer import Response
 from comparisons.answer.file import as_dict
@@ -35,7 +34,8 @@ from comparisons.suite import Case, Row
 from comparisons.suite.budget import Budget, error_budget
 from comparisons.suite.measure import verdict
 from comparisons.version import versions
-from tsm.elements import TIMOSHENKO, ElementType
+from tsm.elements import MIXED as MIXED_KIND
+from tsm.elements import TIMOSHENKO
 
 Watching = Callable[[str], AbstractContextManager[Watch]]
 Staging = Callable[[str], AbstractContextManager[Count]]
@@ -59,19 +59,15 @@ def run_of(model: Model, options: Options) -> Run:
     return Run(label=model.run_label(options), model=model.name, options=options)
 
 
-def _beams(kind: ElementType, elements: int) -> Run:
-    return run_of(models.TSM, Options(element=kind.name, elements=elements))
-
-
 RUNS = tuple(
     run_of(model, options)
     for model in sorted(models.MODELS.values(), key=lambda model: (not model.meshed) * (1 + model.rod))
     for options in model.compared()
 )
 """The runs of a comparison, by the settings that each model states: models with a mesh first, the exact rod last."""
-PAPER = tuple(_beams(TIMOSHENKO, elements) for elements in (10, 20, 50))
+PAPER = tuple(run_of(models.TSM, Options(element=TIMOSHENKO.name, elements=n)) for n in (10, 20, 50))
 """The paper's element."""
-MIXED = _beams(tsm.elements.MIXED, 20)
+MIXED = run_of(models.TSM, Options(element=MIXED_KIND.name, elements=20))
 SOLID, ROD, ELASTICA = (run_of(model, Options()) for model in (models.SOLID, models.ROD, models.ELASTICA))
 EXPORTED = (MIXED, SOLID)
 """The beams and the solid that are exported and rendered."""
@@ -205,24 +201,23 @@ def _cause(case: Case, reference: Response) -> str:
     return max(parts, key=lambda why: parts[why]).partition(":")[0]
 
 
-def _write(found: Comparison, folder: Path, report: Report) -> Iterator[Path]:
-    """Write and yield all files, the page first."""
+def _write(found: Comparison, folder: Path, report: Report) -> list[Path]:
+    """Write all files; return them, the page first."""
     scene, responses = found.scene, found.responses
-    drawn = {run.label: responses[run.label] for run in DRAWN if run.label in responses}
-    files = [folder / name for name in ("summary.json", "table.csv", "shapes.png", "shapes.svg")]
-    write_text(files[1], table_csv(found.rows))
-    plot_shapes(scene, drawn, *files[2:])
-    files += _write_picture(found, folder, report)
+    page, summary, csv, *shapes, stress, plot, drawing, numbers = (folder / name for name in NAMES)
+    write_text(csv, table_csv(found.rows))
+    plot_shapes(scene, {run.label: responses[run.label] for run in DRAWN if run.label in responses}, *shapes)
+    files = [summary, csv, *shapes, *_write_picture(found, stress, report)]
     if found.budget is not None:
-        *drawings, numbers = budget = [folder / name for name in NAMES[-3:]]
-        plot_budget(found.budget, *drawings)
+        plot_budget(found.budget, plot, drawing)
         write_budget(found.budget, numbers)
-        files += budget
+        files += plot, drawing, numbers
     for run, response in found.exported:
         write_series(writable_folder(folder / run.model), response, scene)
         files.append(folder / run.model / f"{run.model}.pvd")
-    files.insert(0, _write_page(found, files, folder))
-    summary = {
+    _write_page(found, files, stress, drawing)
+    files.insert(0, page)
+    told = {
         "scene": scene.name,
         "scene_file": to_toml(scene),
         "reference": ROD.label,
@@ -230,11 +225,11 @@ def _write(found: Comparison, folder: Path, report: Report) -> Iterator[Path]:
         "files": [str(path.relative_to(folder)) for path in files],
         "runs": [{"label": row.label, **as_dict(row.response), "errors": row.errors} for row in found.rows],
     }
-    write_text(files[1], json_text(summary))
-    yield from files
+    write_text(summary, json_text(told))
+    return files
 
 
-def _write_page(found: Comparison, files: list[Path], folder: Path) -> Path:
+def _write_page(found: Comparison, files: list[Path], stress: Path, budget: Path) -> None:
     scene, responses = found.scene, found.responses
     vtu = {run.label: f"{run.model}/{run.model}-{{}}.vtm" for run, _ in found.exported}
     shown, states = tracks(responses, ROD.label, scene), states_section(responses)
@@ -242,27 +237,29 @@ def _write_page(found: Comparison, files: list[Path], folder: Path) -> Path:
         Section("Errors", table(caption(ROD.label), [line(row) for row in found.rows])),
         motion_section("Shapes and histories", scene, responses, shown, focus=ROD.label, vtu=vtu),
         *([] if states is None else [states]),
-        *([] if found.budget is None else [budget_section(found.budget, folder / "budget.svg")]),
+        *([] if found.budget is None else [budget_section(found.budget, budget)]),
     ]
-    stress = folder / "side-by-side.png"
     if stress in files:
         sections.append(Section("Stress", picture(stress, "Beams and solid, von Mises stress.")))
     lead = " ".join(findings(scene, found.rows, ROD.label, found.budget, found.left_out))
-    return write_page(folder, f"{scene.name}: beams, solid and exact answers", lead, sections, [scene], files)
+    title = f"{scene.name}: beams, solid and exact answers"
+    write_page(stress.parent, title, lead, sections, [scene], files)
 
 
-def _write_picture(found: Comparison, folder: Path, report: Report) -> Iterator[Path]:
-    """Write and yield the picture of beams and solid side by side at load parameters that both reached."""
-    scene, path = found.scene, folder / "side-by-side.png"
+def _write_picture(found: Comparison, path: Path, report: Report) -> list[Path]:
+    """Write the picture of beams and solid side by side at load parameters that both reached; return its file."""
+    scene = found.scene
     times = min((response.load_parameter for _, response in found.exported), key=len, default=np.zeros(0))
-    if len(found.exported) < 2 or not len(times):
-        report(f"{path.name}: left out, it takes beams and solid")
-        return
-    ks = nearest_steps(times, scene.times[-1])
-    at = ", ".join(f"{times[k]:.3g}" for k in ks)
-    panels = [mises_panel(one, scene, ks, f"{run.label}\nt = {at}") for run, one in found.exported]
-    try:
-        write_picture(panels, f"von Mises stress [{unit_names(scene.units)['stress']}]", path)
-        yield path
-    except NoOpenGLError as error:
-        report(f"{path.name}: left out, {error}")
+    lack = "it takes beams and solid"
+    if len(found.exported) == 2 and len(times):
+        ks = nearest_steps(times, scene.times[-1])
+        at = ", ".join(f"{times[k]:.3g}" for k in ks)
+        panels = [mises_panel(one, scene, ks, f"{run.label}\nt = {at}") for run, one in found.exported]
+        try:
+            write_picture(panels, f"von Mises stress [{unit_names(scene.units)['stress']}]", path)
+        except NoOpenGLError as error:
+            lack = str(error)
+        else:
+            return [path]
+    report(f"{path.name}: left out, {lack}")
+    return []

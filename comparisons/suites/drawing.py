@@ -1,6 +1,7 @@
-"""Pictures of panels with one legend: a panel is its title with its lines."""
+"""Pictures of panels with one legend."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -19,6 +20,34 @@ class Line(NamedTuple):
 
 
 def draw(
+    panels: Sequence[Callable[[Any], None]],
+    *paths: Path,
+    tall: float,
+    title: str = "",
+    columns: int = 2,
+    **shared: bool,
+) -> None:
+    """Draw panels beside each other, each `tall` inches high, with axes `shared` as `Figure.subplots` says; a label stands once in the legend below them."""
+    columns = min(columns, len(panels))
+    rows = -(-len(panels) // columns)
+    fig = figure(figsize=(WIDTH, 1.3 + tall * rows))
+    grid = fig.subplots(rows, columns, squeeze=False, **shared)
+    named: dict[str, Any] = {}
+    for axes in grid.flat[len(panels) :]:
+        axes.set_axis_off()
+    for axes, panel in zip(grid.flat, panels, strict=False):
+        panel(axes)
+        axes.title.set_fontsize("small")
+        axes.grid(visible=True, linewidth=0.3)
+        handles, labels = axes.get_legend_handles_labels()
+        named = dict(zip(labels, handles, strict=True)) | named
+    place = {"loc": "outside lower center", "fontsize": "small", "frameon": False}
+    fig.legend(named.values(), named.keys(), ncols=1 if max(map(len, named)) > 50 else 2, **place)
+    fig.suptitle(title, fontsize="medium")
+    save(fig, *paths)
+
+
+def draw_lines(
     panels: Mapping[str, Iterable[Line]],
     *paths: Path,
     tall: float,
@@ -26,20 +55,12 @@ def draw(
     columns: int = 2,
     **settings: Any,
 ) -> None:
-    """Draw panels with some settings in columns, each `tall` inches high; a label stands once in the legend below them."""
-    columns = min(columns, len(panels))
-    rows = -(-len(panels) // columns)
-    fig = figure(figsize=(WIDTH, 1.3 + tall * rows))
-    named: dict[str, Any] = {}
-    for number, (title, lines) in enumerate(panels.items(), 1):
-        axes = fig.add_subplot(rows, columns, number, **settings)
-        for label, points, style in lines:
-            axes.plot(*np.asarray(points), label=label, **style)
-        axes.set_title(title, fontsize="small")
-        axes.grid(visible=True, linewidth=0.3)
-        handles, labels = axes.get_legend_handles_labels()
-        named = dict(zip(labels, handles, strict=True)) | named
-    place = {"loc": "outside lower center", "fontsize": "small", "frameon": False}
-    fig.legend(named.values(), named.keys(), ncols=1 if max(map(len, named)) > 50 else 2, **place)
-    fig.suptitle(suptitle, fontsize="medium")
-    save(fig, *paths)
+    """Draw panels of lines by their titles, all with the same `settings` of their axes."""
+    drawn = [partial(_plot, lines=lines, title=title, **settings) for title, lines in panels.items()]
+    draw(drawn, *paths, tall=tall, title=suptitle, columns=columns)
+
+
+def _plot(axes: Any, *, lines: Iterable[Line], **settings: Any) -> None:
+    for label, points, style in lines:
+        axes.plot(*np.asarray(points), label=label, **style)
+    axes.set(**settings)

@@ -3,7 +3,8 @@
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from math import ceil, isfinite
+from functools import partial
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -15,10 +16,10 @@ from comparisons.models.outside.programs import used
 from comparisons.output import write_numbers, write_rows
 from comparisons.report import palette
 from comparisons.report.pages import Section, folded, picture, table, write_page
-from comparisons.report.plot import WIDTH, draw_legend, figure, logarithmic, save
 from comparisons.scene import Scene
 from comparisons.suite import Case, Row
 from comparisons.suite.progress import Runner
+from comparisons.suites.drawing import draw
 
 MOST = 5
 """Largest number of resolutions of a program."""
@@ -29,8 +30,11 @@ SHOWN = {
     "process_seconds": "process",
 }  # fmt: skip
 """The columns that the page shows, and how it calls them."""
-COLUMNS = 2
-"""Panels of the diagram beside each other."""
+FORCE, SECONDS = (
+    "largest error of the force (reactions without contact)",
+    "seconds of the whole process",
+)
+"""What the diagram shows."""
 FLOOR = 1e-14
 """Errors below are drawn here: they are round-off."""
 FILES = ("league.csv", "league.json", "league.svg", "league.png", "report.html")
@@ -149,33 +153,31 @@ def plot_league(league: League, *paths: Path) -> None:
     A filled marker is a certified answer, a hollow one is a stop by name, and a cross is an answer that the program reported as a
     success and the referee refused.
     """
-    rows = ceil(len(league.scenes) / COLUMNS)
-    fig = figure(figsize=(WIDTH, 2.4 * rows + 1.4))
-    panels = fig.subplots(rows, COLUMNS, squeeze=False, sharex=True, sharey=True).ravel()
-    for axes, scene in zip(panels, league.scenes, strict=False):
-        for program in league.programs:
-            _draw(axes, program, league.of(scene.name, program))
-        logarithmic(axes)
-        axes.set_title(scene.name, fontsize="medium")
-        axes.tick_params(labelbottom=True, labelleft=True, labelsize="small")
     # whole decades have labels that do not overlap
-    low, high = np.log10(panels[0].get_xlim())
-    panels[0].set_xlim(10.0 ** np.floor(low), 10.0 ** np.ceil(high))
-    for axes in panels[len(league.scenes) :]:
-        axes.set_axis_off()
-    fig.supxlabel("processor seconds of the whole process")
-    fig.supylabel("largest error of the force (reactions without contact)")
-    draw_legend(fig, panels, "outside upper center")
-    save(fig, *paths)
+    spent = np.log10([seconds for row in league.rows if isfinite(seconds := _seconds(row))] or [1.0])
+    decades = 10.0 ** np.floor(spent.min() - 0.05), 10.0 ** np.ceil(spent.max() + 0.05)
+
+    def panel(axes: Any, scene: str) -> None:
+        for program in league.programs:
+            _draw(axes, program, league.of(scene, program))
+        axes.set(
+            xscale="log", yscale="log", xlim=decades, title=scene, xlabel=SECONDS, ylabel="error of the force"
+        )
+
+    panels = [partial(panel, scene=scene.name) for scene in league.scenes]
+    draw(panels, *paths, tall=2.6, title=FORCE, sharex=True, sharey=True)
+
+
+def _seconds(row: Row) -> float:
+    """Return the seconds of the whole process, of the solution where the system does not count processes."""
+    return row.process_seconds if isfinite(row.process_seconds) else row.seconds
 
 
 def _draw(axes: Any, program: str, rows: Sequence[Row]) -> None:
-    # the seconds of the solution where the system does not count processes
-    seconds = (row.process_seconds if isfinite(row.process_seconds) else row.seconds for row in rows)
-    places = [(x, max(row.error("path", "force"), FLOOR)) for x, row in zip(seconds, rows, strict=True)]
-    seen = [place for place in places if np.isfinite(place).all()]
     style = palette.style(program)
     own: dict[str, Any] = {"color": style.colour, "marker": style.marker}
+    places = [(_seconds(row), max(row.error("path", "force"), FLOOR)) for row in rows]
+    seen = [place for place in places if np.isfinite(place).all()]
     if seen:
         axes.plot(*zip(*seen, strict=True), linewidth=1.2, label=program, **own)
     for place, row in zip(places, rows, strict=True):
@@ -190,17 +192,11 @@ def summary(league: League) -> list[dict[str, object]]:
     rows: list[dict[str, object]] = []
     for program in league.programs:
         own = [row for row in league.rows if row.family == program]
-        ends = Counter(row.outcome for row in own)
-        rows.append(
-            {
-                "program": program,
-                "scenes": len({row.case.scene.name for row in own}),
-                "runs": len(own),
-                "certified": ends["certified"],
-                "stopped by name": sum(n for end, n in ends.items() if end.isupper()),
-                "said success and was wrong": ends["wrong"],
-            }
-        )
+        ends = Counter("stopped by name" if row.outcome.isupper() else row.outcome for row in own)
+        scenes = {row.case.scene.name for row in own}
+        told = {name: ends[name] for name in ("certified", "stopped by name")}
+        wrong = {"said success and was wrong": ends["wrong"]}
+        rows.append({"program": program, "scenes": len(scenes), "runs": len(own), **told, **wrong})
     return rows
 
 

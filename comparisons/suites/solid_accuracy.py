@@ -1,6 +1,6 @@
 """How far the solid can be trusted: one question each, as rows of numbers, one put to CalculiX, too."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise, product
 from typing import TYPE_CHECKING, Any
@@ -13,7 +13,7 @@ from comparisons.models.outside.adapters.calculix import Answer, pressed, tip_lo
 from comparisons.models.solid import to_solid
 from comparisons.output import Report, Row
 from comparisons.scene import Scene, load_scene
-from comparisons.suite.settings import changed
+from comparisons.suite.settings import Changes, changed
 
 if TYPE_CHECKING:
     from fem_reference import ContactHistory, Result, SolidProblem, Strip
@@ -28,8 +28,23 @@ At 20 N/m the penetration takes some 5e-5 of the force; at 200 N/m longer steps 
 """
 SHOWN = (0.1, 0.25, 0.5, 0.7)
 """Load parameters of the contact."""
+COLUMNS = (
+    "case", "clamp", "mesh", "penalty", "step", "load_parameter", "reached", "fem_reference", "calculix", "difference", "largest", "message",
+)  # fmt: skip
+STEPS = 20
+"""Load parameters of every run but those beside CalculiX."""
+LATE = slice(2, None)
+"""Load parameters past t = .1."""
+MESHES = tuple((nx, 2) for nx in range(40, 61))
+"""Meshes of the scatter study."""
+SEQUENCE = ((25, 2), (50, 2), (100, 2), (200, 4))
+SCENES = ("ks-cantilever", "ks-face")
+COMPARED = ("contact_force", "arc_position")
 PENETRATION = 1e-10
 """Penetration of the solid model, over the length."""
+EXACT: Changes = {("contact", "penetration"): PENETRATION}
+ROD_LAW: Changes = {**EXACT, ("beam", "material"): "biot-linear"}
+"""The rod's own law, without penetration."""
 
 
 def solved(
@@ -45,9 +60,8 @@ def solved(
 def peers(report: Report) -> Iterator[Row]:
     """Tip displacement and contact force of the solid and of CalculiX on the same meshes."""
     problem = to_solid(load_scene("ks-face"))
-    strip = problem.strips[0]
     for clamp, load, mesh in product((ROD.name, "full"), LOADS, PEER_MESHES):
-        yield _tip_row(replace(strip, clamp=clamp, mesh=mesh), load)
+        yield _tip_row(replace(problem.strips[0], clamp=clamp, mesh=mesh), load)
         report(f"tip load {load:g}, {clamp} clamp, {mesh[0]}x{mesh[1]}")
     for steps, penalty in RUNS:
         yield from _pin_rows(problem, steps, penalty)
@@ -58,8 +72,7 @@ def contact_forces(problem: "SolidProblem", steps: int, count: int) -> Array:
     """Contact force at the first `count` of `steps` equal load parameters."""
     contact = replace(problem.contacts[0], penetration=PENETRATION)
     result = solved(replace(problem, contacts=(contact,)), np.arange(1, count + 1) / steps)
-    force: Array = result.contacts[contact.name].force
-    return force
+    return result.contacts[contact.name].force
 
 
 def press(problem: "SolidProblem", steps: int, penalty: float) -> Answer:
@@ -76,9 +89,10 @@ def _tip_row(strip: "Strip", load: float) -> Row:
     dead = PointLoad(strip=strip.name, force=(0.0, force))
     result = solved(SolidProblem(strips=(strip,), loads=(dead,)), np.arange(1, 11) / 10)
     u, other = result.tips[strip.name][-1] - strip.end, tip_load(strip, force).tip[-1]
-    own, apart = float(np.hypot(*u)), float(np.hypot(*(other - u)))
-    found = {"fem_reference": own, "calculix": float(np.hypot(*other)), "difference": apart / own}
-    return _row(f"tip load {load:g} EI/L^2", strip, **found)
+    own, peer, apart = (float(np.hypot(*one)) for one in (u, other, other - u))
+    end = {"load_parameter": 1.0, "reached": 1.0, "message": ""}
+    found = {"fem_reference": own, "calculix": peer, "difference": apart / own}
+    return _row(strip, case=f"tip load {load:g} EI/L^2", **end, **found)
 
 
 def _pin_rows(problem: "SolidProblem", steps: int, penalty: float) -> Iterator[Row]:
@@ -95,29 +109,12 @@ def _pin_rows(problem: "SolidProblem", steps: int, penalty: float) -> Iterator[R
             found |= {"calculix": float(calculix[k]), "difference": float(differences[k])}
             found["message"] = answer.stopped if t == SHOWN[-1] else ""
         path = {"penalty": penalty, "step": 1 / steps, "load_parameter": t}
-        yield _row("pin on the face", problem.strips[0], **path, **ended, **found)
+        yield _row(problem.strips[0], case="pin on the face", **path, **ended, **found)
 
 
-def _row(case: str, strip: "Strip", **values: float | str | None) -> Row:
-    start: Row = {"case": case, "clamp": strip.clamp, "mesh": "x".join(map(str, strip.mesh))}
-    path: Row = {"penalty": None, "step": None, "load_parameter": 1.0, "reached": 1.0}
-    found = dict.fromkeys(("fem_reference", "calculix", "difference", "largest"))
-    return {**start, **path, **found, "message": "", **values}
-
-
-STEPS = 20
-"""Load parameters of every run."""
-LATE = slice(2, None)
-"""Load parameters past t = .1."""
-MESHES = tuple((nx, 2) for nx in range(40, 61))
-"""Meshes of the scatter study."""
-COMPARED = ("contact_force", "arc_position")
-SEQUENCE = ((25, 2), (50, 2), (100, 2), (200, 4))
-ROD_LAW: Mapping[tuple[str, ...], object] = {
-    ("beam", "material"): "biot-linear",
-    ("contact", "penetration"): PENETRATION,
-}
-"""The rod's own law, without penetration."""
+def _row(strip: "Strip", **values: Any) -> Row:
+    own: Row = {"clamp": strip.clamp, "mesh": "x".join(map(str, strip.mesh)), **values}
+    return {name: own.get(name) for name in COLUMNS}
 
 
 def locking(report: Report) -> Iterator[Row]:
@@ -143,8 +140,7 @@ def thin_beams(report: Report) -> Iterator[Row]:
         scene = _slender(slenderness, 0.3)
         (rod,) = solve(scene, ROD.name).contacts.values()
         solid = _history(_beam(changed(scene, ROD_LAW), mesh=(100, 2)))
-        found = np.abs(solid / np.array([rod.force, rod.arc_position])[:, LATE] - 1.0).max(axis=1)
-        row = dict(zip(COMPARED, found.tolist(), strict=True))
+        row = _largest(solid / np.array([rod.force, rod.arc_position])[:, LATE] - 1.0)
         orders = {f"{name}_order": float(np.log2(last[name] / row[name])) if last else None for name in row}
         report(f"h/L = {slenderness:g}")
         last = row
@@ -153,39 +149,35 @@ def thin_beams(report: Report) -> Iterator[Row]:
 
 def scatter(report: Report) -> Iterator[Row]:
     """Largest relative difference of force and arc position between any two of 21 meshes, and from mesh to finer mesh."""
-    for name, radius in (("ks-cantilever", 0.0), ("ks-face", 0.005)):
-        scene = changed(_stepped(name), ROD_LAW)
+    for name, radius in zip(SCENES, (0.0, 0.005), strict=True):
+        scene = _stepped(name)
         x, y = scene.pins[0].points[0]
         # the centre of a pin of finite radius lies that much below the scene's sharp pin
-        scene = changed(scene, {("pin", "start"): (x, y - radius), ("pin", "radius"): radius or None})
+        pin: Changes = {("pin", "start"): (x, y - radius), ("pin", "radius"): radius or None}
+        scene = changed(scene, {**ROD_LAW, **pin})
         found, finer = (
             np.array([_history(_beam(scene, mesh=one)) for one in of]) for of in (MESHES, SEQUENCE)
         )
         differences = {"21 meshes, 40x2 to 60x2": np.ptp(found, axis=0) / found.mean(axis=0)}
         for (a, b), (coarse, fine) in zip(pairwise(finer), pairwise(SEQUENCE), strict=True):
-            differences[f"{coarse[0]}x{coarse[1]} to {fine[0]}x{fine[1]}"] = np.abs(a / b - 1.0)
+            differences[f"{coarse[0]}x{coarse[1]} to {fine[0]}x{fine[1]}"] = a / b - 1.0
         for label, apart in differences.items():
-            largest = dict(zip(COMPARED, apart.max(axis=1).tolist(), strict=True))
-            yield {"scene": name, "radius": radius, "meshes": label, **largest}
+            yield {"scene": name, "radius": radius, "meshes": label, **_largest(apart)}
         report(f"{name}, radius {radius:g}")
 
 
 def penalty(report: Report) -> Iterator[Row]:
     """Penetration half way and error of the force, against augmented Lagrangian steps, over sixteen decades of the penalty."""
-    for name in ("ks-cantilever", "ks-face"):
+    for name in SCENES:
         scene = _stepped(name)
-        exact = _contact(changed(scene, {("contact", "penetration"): PENETRATION})).force
-        for eps in 10.0 ** np.arange(-3, 14):
-            stated = changed(scene, {("contact", "penalty"): float(eps)})
-            result = solved(to_solid(stated), stated.times, throw=False)
-            contact, reached = next(iter(result.contacts.values())), result.status.name == "COMPLETED"
-            yield {
-                "scene": name,
-                "penalty": float(eps),
-                "penetration": float(-contact.gap[STEPS // 2 - 1]) if reached else None,
-                "force_error": float(np.abs(contact.force / exact - 1.0).max()) if reached else None,
-                "message": result.message,
-            }
+        exact = _contact(changed(scene, EXACT)).force
+        for eps in (10.0 ** np.arange(-3, 14)).tolist():
+            result = solved(to_solid(changed(scene, {("contact", "penalty"): eps})), scene.times, throw=False)
+            (contact,), found = result.contacts.values(), (None, None)
+            if result.status.name == "COMPLETED":
+                found = -contact.gap[STEPS // 2 - 1], np.abs(contact.force / exact - 1.0).max()
+            measured = dict(zip(("penetration", "force_error"), found, strict=True))
+            yield {"scene": name, "penalty": eps, **measured, "message": result.message}
         report(name)
 
 
@@ -200,7 +192,7 @@ STUDIES: dict[str, Callable[[Report], Iterator[Row]]] = {
 
 
 def _stepped(name: str) -> Scene:
-    return changed(load_scene(name), {("scene", "load_parameters"): STEPS})
+    return replace(load_scene(name), load_parameters=STEPS)
 
 
 def _slender(slenderness: float, nu: float) -> Scene:
@@ -223,3 +215,8 @@ def _history(scene: Scene) -> Array:
     """Return the quantities compared past t = .1, shape (2, n)."""
     contact = _contact(scene)
     return np.array([contact.force, contact.arc_position])[:, LATE]
+
+
+def _largest(apart: Array) -> Row:
+    """Return the largest size of a difference of the quantities compared."""
+    return dict(zip(COMPARED, np.abs(apart).max(axis=1).tolist(), strict=True))

@@ -2,19 +2,18 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from enum import StrEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from comparisons.answer import Response
 from comparisons.answer.errors import difference
-from comparisons.models import MODELS, TSM
+from comparisons.models import TSM
 from comparisons.models.theory import FLOOR, Bending, bending, chord_term, element_lengths, ordinal
 from comparisons.models.verify import CHECK_FAILED
+from comparisons.output import Row as TableRow
 from comparisons.scene import BeamSpec
-from comparisons.suite.case import Case
-from comparisons.suite.measure import Row
+from comparisons.suite import Case, Row
 from comparisons.suite.run import COMPLETED, UNSETTLED
 from comparisons.suites.finding import Finding
 from tsm.elements import ClosedForm
@@ -28,8 +27,8 @@ LARGEST = 0.2
 """Largest allowed error for any model; an answer with a larger error should have stopped."""
 Results = Mapping[Case, Row]
 """Rows by case."""
-Law = Callable[[Case, Response], Finding]
-"""What a case's response must obey by itself."""
+Check = Callable[[Case, Response, Results], Finding | None]
+"""What must hold of a case's response; None where there is nothing to hold it against."""
 
 
 class Allowance(NamedTuple):
@@ -52,50 +51,50 @@ def in_units_of(other: BeamSpec, beam: BeamSpec, response: Response) -> Response
     """Return the response of `beam` in the units of `other`, which differs in units only."""
     length = other.length / beam.length
     force = other.EI / beam.EI / length**2
-    contacts, supports = response.contacts.items(), response.supports.items()
+
+    def scaled(histories: Mapping[str, Any], **factors: float) -> dict[str, Any]:
+        return {
+            name: replace(one, **{key: factor * getattr(one, key) for key, factor in factors.items()})
+            for name, one in histories.items()
+        }
+
     return replace(
         response,
-        contacts={
-            name: replace(one, force=force * one.force, arc_position=length * one.arc_position)
-            for name, one in contacts
-        },
-        supports={
-            name: replace(one, force=force * one.force, moment=force * length * one.moment)
-            for name, one in supports
-        },
+        contacts=scaled(response.contacts, force=force, arc_position=length),
+        supports=scaled(response.supports, force=force, moment=force * length),
         tips={name: length * values for name, values in response.tips.items()},
     )
 
 
 @dataclass(frozen=True, kw_only=True)
 class Against:
-    """Comparison with the answer of another case in any units; by default theory says what is allowed."""
+    """The check against the answer of another case in any units; by default theory says what is allowed."""
 
     case: Case
     name: str = "exact rod"
     allowed: Allowance | None = None
 
-    def finding(self, case: Case, own: Response, results: Results) -> Finding | None:
+    def __call__(self, case: Case, own: Response, results: Results) -> Finding | None:
         """Return the error of `own` at the load parameters of both; None where the other is no reference."""
         # a model of another rod, as the elastica, may go further than its reference, or be too soft for one
-        other, beam = results[self.case].response, self.case.scene.beams[0]
+        other, beam, rod = results[self.case].response, self.case.scene.beams[0], case.found.rod
         allowed, why = self.allowed or allowance(case, bending(beam, other))
-        if not MODELS[case.model].rod and (allowed > LARGEST or not len(other.load_parameter)):
+        if not rod and (allowed > LARGEST or not len(other.load_parameter)):
             return None
-        if MODELS[case.model].rod and len(own.load_parameter) > len(other.load_parameter):
-            why = f"it went on where the {self.name} stopped: {other.status}: {other.message}"
-            return Finding(name=self.name, error=np.inf, allowed=allowed, why=why)
-        answer = in_units_of(beam, case.scene.beams[0], own)
-        found = [difference(answer, other, self.case.scene, quantity) for quantity in COMPARED]
-        error = float(np.fmax.reduce(found, initial=0.0))
+        if rod and len(own.load_parameter) > len(other.load_parameter):
+            why, error = f"it went on where the {self.name} stopped: {other.status}: {other.message}", np.inf
+        else:
+            answer = in_units_of(beam, case.scene.beams[0], own)
+            found = [difference(answer, other, self.case.scene, quantity) for quantity in COMPARED]
+            error = float(np.fmax.reduce(found, initial=0.0))
         return Finding(name=self.name, error=error, allowed=allowed, why=why)
 
 
-def energy(case: Case, own: Response) -> Finding:
+def energy(case: Case, own: Response, _: Results) -> Finding:
     """Energy integral of a rod under a pin on its axis: its largest violation over ``2 EI sin b``."""
     # with the force F (-sin b, cos b) at (x, y), c = 1/EA - 1/GA and S = (F/GA)/(1 + sqrt(1 - F^2 c/GA)):
     #     F (x cos b + y sin b)^2 = 2 EI (sin b - S) (1 - F c (sin b + S)/2);  S = c = 0 for the elastica
-    beam, pin, rod = case.scene.beams[0], case.scene.pins[0], MODELS[case.model].rod
+    beam, pin, rod = case.scene.beams[0], case.scene.pins[0], case.found.rod
     force = -own.supports[f"{beam.name}.start"].force
     F = np.hypot(*force.T)
     closed = F > 0.0
@@ -111,7 +110,7 @@ def energy(case: Case, own: Response) -> Finding:
     return Finding(name=what, error=error, allowed=INVARIANT, why="an identity, to round-off")
 
 
-def circle(case: Case, own: Response) -> Finding:
+def circle(case: Case, own: Response, _: Results) -> Finding:
     """A beam rolled up to an arc by a moment: the largest error of the tip's position over the length."""
     # the first term that the strains neglect makes an element's chord, and so the whole circle, too large
     beam, load, kind = case.scene.beams[0], case.scene.loads[0], TSM.element(case.options)
@@ -119,12 +118,12 @@ def circle(case: Case, own: Response) -> Finding:
     half = angle / (2.0 * np.pi)
     exact = np.stack([np.sinc(2.0 * half), np.sin(angle / 2.0) * np.sinc(half)], axis=1)
     error = float(np.hypot(*(own.tips[beam.name] / beam.length - exact).T).max(initial=0.0))
-    if not isinstance(kind, ClosedForm):
-        return Finding(name="circle", error=error, allowed=FLOOR, why="accuracy of the integration")
-    turns = angle * element_lengths(case.scene, case.options)[0]
-    term = float((chord_term(turns, kind.order) * np.hypot(*exact.T)).max(initial=0.0))
-    why = f"{ordinal(kind.order)} order of the element"
-    return Finding(name="circle", error=error, allowed=FLOOR + NEXT_TERM * term, why=why)
+    allowed, why = FLOOR, "accuracy of the integration"
+    if isinstance(kind, ClosedForm):
+        turns = angle * element_lengths(case.scene, case.options)[0]
+        term = float((chord_term(turns, kind.order) * np.hypot(*exact.T)).max(initial=0.0))
+        allowed, why = FLOOR + NEXT_TERM * term, f"{ordinal(kind.order)} order of the element"
+    return Finding(name="circle", error=error, allowed=allowed, why=why)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -135,73 +134,68 @@ class Cell:
     row: str
     column: str
     case: Case
-    against: tuple[Against, ...] = ()
-    law: Law | None = None
+    checks: tuple[Check, ...]
 
     @property
     def cases(self) -> tuple[Case, ...]:
         """The case, and those that it is compared with."""
-        return (self.case, *(one.case for one in self.against))
+        return (self.case, *(one.case for one in self.checks if isinstance(one, Against)))
+
+    def also(self, check: Check) -> "Cell":
+        """Return the cell with one more check."""
+        return replace(self, checks=(*self.checks, check))
 
 
-class Verdict(StrEnum):
-    """Verdict on a cell."""
+class Judgement(NamedTuple):
+    """What was found of a cell over the load parameters that were reached, and the line of the table about it."""
 
-    RIGHT = "right"
-    STOPPED = "stopped"
-    WITHDRAWN = "withdrawn"
-    """The checks of the response refuse the answer. It counts neither as right nor as stopped."""
-    WRONG = "wrong"
-
-
-@dataclass(frozen=True, kw_only=True)
-class Judgement:
-    """A cell, its measurement and what was found over the load parameters that were reached."""
-
-    cell: Cell
-    own: Row
     findings: tuple[Finding, ...]
-
-    @property
-    def verdict(self) -> Verdict:
-        """Wrong: an error is above its allowance, also if the solution stopped later, or the case raised or lost its worker."""
-        status = self.own.response.status
-        if status == CHECK_FAILED:
-            return Verdict.WITHDRAWN
-        if status in UNSETTLED or not all(one.holds for one in self.findings):
-            return Verdict.WRONG
-        return Verdict.RIGHT if status == COMPLETED else Verdict.STOPPED
-
-    @property
-    def reached(self) -> float:
-        """The last load parameter reached, zero if none was."""
-        return float(max(self.own.response.load_parameter, default=0.0))
-
-    @property
-    def needless(self) -> bool:
-        """Whether the answer is withdrawn although all its errors are within their allowances."""
-        return self.verdict is Verdict.WITHDRAWN and bool(self.decisive and self.decisive.holds)
-
-    @property
-    def decisive(self) -> Finding | None:
-        """The finding with the largest error over its allowance."""
-        return max(self.findings, key=lambda finding: finding.share, default=None)
+    row: TableRow
 
     @property
     def sentence(self) -> str:
         """What is wrong, in one line."""
-        found, own = self.decisive, self.own.response
-        place = f"{self.cell.axis} {self.cell.column}, {self.cell.case.label}: {self.verdict}: {own.status}"
-        if found is None:
-            return f"{place}: {own.message}"
-        return f"{place}, error {found.error:.2g} against {found.name}, allowed {found.allowed:.2g} ({found.why})"
+        row = self.row
+        place = f"{row['axis']} {row['value']}, {row['label']}: {row['verdict']}: {row['status']}"
+        if not self.findings:
+            return f"{place}: {row['message']}"
+        return f"{place}, error {row['error']:.2g} against {row['against']}, allowed {row['allowed']:.2g} ({row['why']})"
+
+
+VERDICTS = ("right", "stopped", "withdrawn", "wrong")
+"""Verdicts on a cell. The checks of the response refuse an answer that is withdrawn; it counts neither as right nor as stopped."""
 
 
 def judged(cell: Cell, results: Results) -> Judgement:
-    """Return the judgement on `cell` by the `results` of its `cases`."""
+    """Return the judgement on `cell` by the `results` of its `cases`; the finding with the largest error over its allowance decides.
+
+    A cell is wrong where an error is above its allowance, also if the solution stopped later, and where the case raised or lost its
+    worker. It is withdrawn needlessly where all its errors are within their allowances.
+    """
     measured = results[cell.case]
-    own, found = measured.response, list[Finding | None]()
-    if len(own.load_parameter):
-        found += [cell.law(cell.case, own)] if cell.law else []
-        found += (one.finding(cell.case, own, results) for one in cell.against)
-    return Judgement(cell=cell, own=measured, findings=tuple(one for one in found if one is not None))
+    own = measured.response
+    checks = cell.checks if len(own.load_parameter) else ()
+    found = [one for check in checks if (one := check(cell.case, own, results)) is not None]
+    decisive, holds = max(found, key=lambda one: one.share, default=None), all(one.holds for one in found)
+    verdict = "right" if own.status == COMPLETED else "stopped"
+    if own.status == CHECK_FAILED:
+        verdict = "withdrawn"
+    elif own.status in UNSETTLED or not holds:
+        verdict = "wrong"
+    about = {"error": "error", "allowed": "allowed", "against": "name", "why": "why"}
+    row = {
+        "axis": cell.axis,
+        "model": cell.row,
+        "value": cell.column,
+        "label": cell.case.label,
+        "verdict": verdict,
+        "needless": verdict == "withdrawn" and bool(found) and holds,
+        "status": own.status,
+        "reached": float(max(own.load_parameter, default=0.0)),
+        **{column: decisive and getattr(decisive, name) for column, name in about.items()},
+        "iterations": own.iterations,
+        "cutbacks": own.cutbacks,
+        "seconds": measured.seconds,
+        "message": own.message,
+    }
+    return Judgement(tuple(found), row)

@@ -14,7 +14,7 @@ from comparisons import models as registry
 from comparisons.files import writable_folder, write_text
 from comparisons.output import Report, write_numbers
 from comparisons.report import palette
-from comparisons.suites.drawing import Line, draw
+from comparisons.suites.drawing import Line, draw_lines
 from comparisons.suites.finding import Finding, junit_text
 from comparisons.suites.formula import sentence
 from comparisons.suites.manual.measures import (
@@ -110,7 +110,7 @@ def draw_case(case: Sequence[Judgement], path: Path) -> None:
     lines += (drawn._replace(style=STYLES[drawn.label]) for drawn in _exact(problem, case[0].lines))
     scales: dict[str, Any] = {} if picture.axes else {"aspect": "equal", "adjustable": "datalim"}
     scales |= {"xscale": "log", "yscale": "log"} if picture.guide else {}
-    draw({problem.title: lines}, path, tall=3.6, xlabel=x, ylabel=y, **scales)
+    draw_lines({problem.title: lines}, path, tall=3.6, xlabel=x, ylabel=y, **scales)
 
 
 def _exact(problem: Problem, found: Sequence[Line]) -> Iterator[Line]:

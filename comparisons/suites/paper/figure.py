@@ -13,7 +13,7 @@ from comparisons.output import Row, write_numbers, write_rows
 from comparisons.report import palette
 from comparisons.report.pages import Section
 from comparisons.scene import Scene
-from comparisons.suites.drawing import Line, draw
+from comparisons.suites.drawing import Line, draw_lines
 from tsm import elements
 
 STATED: dict[str, Any] = tomllib.loads(Path(__file__).with_name("claims.toml").read_text(encoding="utf-8"))
@@ -44,7 +44,7 @@ class Study:
             if callable(drawn):
                 drawn(*paths)
             else:
-                draw(drawn, *paths, **STATED["picture"][stem])
+                draw_lines(drawn, *paths, **STATED["picture"][stem])
             files += paths
         files += [write_rows(folder / f"{stem}.csv", rows) for stem, rows in self.tables.items()]
         return [*files, write_numbers(folder / f"{name}.json", self.numbers)]

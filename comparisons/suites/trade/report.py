@@ -1,6 +1,7 @@
 """The tables and diagrams of a trade-off: every setting, the cheapest for an accuracy, fronts, orders."""
 
 from collections.abc import Sequence
+from functools import partial
 from itertools import product
 from math import isfinite
 from operator import itemgetter
@@ -10,15 +11,15 @@ from typing import Any
 import numpy as np
 
 from comparisons.answer.quantities import KEPT, SCOPES
-from comparisons.models import MODELS, ROD, SOLID, TSM
+from comparisons.models import MODELS, ROD, SOLID
 from comparisons.output import tabulated, write_numbers, write_rows
 from comparisons.report import palette
 from comparisons.report.pages import Section, definitions, folded, picture, table, write_page
-from comparisons.report.plot import WIDTH, draw_legend, figure, logarithmic, save
 from comparisons.scene import to_toml
 from comparisons.suite import Row
 from comparisons.suite.study import result_rows
-from comparisons.suites.trade.trade import COSTS, MESHED, TARGETS, THERE, Line, Trade, cheapest, front, orders
+from comparisons.suites.drawing import draw
+from comparisons.suites.trade.trade import COSTS, MESHED, TARGETS, Line, Trade, cheapest, front, orders
 
 SHOWN = "force"
 """The quantity of the diagrams, and of the tables for people; the files have all."""
@@ -33,36 +34,15 @@ APART = 0.045
 
 def plot_work(trade: Trade, scope: str, cost: str, folder: Path) -> list[Path]:
     """Draw the errors of all settings over a cost, against the reference and against each model's limit."""
-    fig = figure(figsize=(WIDTH, 9.2))
-    upper, lower = fig.subplots(2, 1, sharex=True, sharey=True)
-    doubt = trade.uncertainty(SOLID.name, scope, SHOWN)
-    if np.isfinite(doubt) and doubt > 0.0:
-        lower.axhline(doubt, color=SOLID.colour, linewidth=0.9, linestyle=":")
-        lower.annotate(
-            "the solid's limit is known to this", (1.0, doubt), (-4, -4), color="0.3", ha="right", va="top",
-            xycoords=("axes fraction", "data"), textcoords="offset points", fontsize="x-small",
-        )  # fmt: skip
-    titles = "against the exact rod", "against what each model converges to, Pareto fronts"
-    for axes, own, title in zip((upper, lower), (False, True), titles, strict=True):
-        _draw(axes, trade, scope, cost, own=own)
-        logarithmic(axes)
-        axes.margins(x=0.3, y=0.06)
-        axes.set_title(title, fontsize="medium")
-    for model in MESHED:
-        _draw_front(lower, front(trade, model, scope, SHOWN, cost), model)
-    lower.set_xlabel(AXES[cost])
-    state = f"at t = {trade.reference.end:g}" if scope == "end" else "largest over the load parameters"
-    fig.supylabel(f"error of {SHOWN}, {state}", fontsize="medium")
-    draw_legend(fig, [upper], "outside lower center")
-    title = f"{trade.scene.name}: what accuracy costs\n[n]: load steps; hollow: fewer than the scene's"
-    fig.suptitle(title, fontsize="large")
     paths = [folder / f"{scope}-{cost}{suffix}" for suffix in (".png", ".svg")]
-    save(fig, *paths)
+    title = f"{trade.scene.name}: what accuracy costs\n[n]: load steps; hollow: fewer than the scene's"
+    panels = [partial(_draw, trade=trade, scope=scope, cost=cost, own=own) for own in (False, True)]
+    draw(panels, *paths, tall=3.95, title=title, columns=1, sharex=True, sharey=True)
     return paths
 
 
 def _draw(axes: Any, trade: Trade, scope: str, cost: str, *, own: bool) -> None:
-    """Draw the completed settings in the order of the legend; what is uncertain bounds errors from below."""
+    """Draw the completed settings in the order of the legend, and fronts; what is uncertain bounds errors from below."""
     order = [words for model in MODELS.values() for words in model.styles()]
     rows = [
         (max(k for k, words in enumerate(order) if row.family.startswith(words)), row)
@@ -80,6 +60,18 @@ def _draw(axes: Any, trade: Trade, scope: str, cost: str, *, own: bool) -> None:
             spent, max(error, floor), color=style.colour, marker=style.marker, linestyle="none", label=row.family,
             markersize=9 if style.marker == "*" else 6, markerfacecolor=style.colour if full else "none", alpha=0.85,
         )  # fmt: skip
+    state = f"at t = {trade.reference.end:g}" if scope == "end" else "largest over the load parameters"
+    title = "against what each model converges to, Pareto fronts" if own else "against the exact rod"
+    axes.set(xscale="log", yscale="log", ylabel=f"error of {SHOWN}, {state}", title=title)
+    axes.margins(x=0.3, y=0.06)
+    if own:
+        axes.set_xlabel(AXES[cost])
+        doubt = trade.uncertainty(SOLID.name, scope, SHOWN)
+        if np.isfinite(doubt) and doubt > 0.0:
+            words = "the solid's limit is known to this"
+            axes.axhline(doubt, color=SOLID.colour, linewidth=0.9, linestyle=":", label=words)
+        for model in MESHED:
+            _draw_front(axes, front(trade, model, scope, SHOWN, cost), model)
 
 
 def _draw_front(axes: Any, points: Sequence[Line], model: str) -> None:
@@ -101,22 +93,17 @@ SETTING = (
     "label", "scene.load_parameters", "status", "unknowns", "iterations", "seconds", "own_error_end_force", "own_error_path_force",
     "error_path_force",
 )  # fmt: skip
-CHEAPEST = (
-    "target", TSM.name, f"{TSM.name}_seconds", SOLID.name, f"{SOLID.name}_seconds", "ratio", THERE, f"{THERE}_seconds",
-    "ratio_against_reference",
-)  # fmt: skip
-ORDER = (
-    "family", "order", "order_points", "order_from", "order_to", "cost_exponent", "cost_exponent_points", "cost_exponent_from",
-    "cost_exponent_to",
-)  # fmt: skip
-"""Columns of the tables for people; the files have all."""
+"""Columns of all settings for people; the files have all."""
+HIDDEN = ("scope", "quantity", "limit_uncertainty", "settings", "order_scatter", "cost_exponent_scatter")
+"""Columns that the other tables for people leave out."""
 STATES = {"end": "at the end", "path": "largest over the path"}
 SECONDS = "processor time of one thread from the scene to the checked answer, median of repeats"
 
 
-def shown(rows: Sequence[Line], columns: Sequence[str]) -> list[Line]:
-    """Return some columns of rows, with blanks in their names."""
-    return [{name.replace("_", " "): row[name] for name in columns} for row in rows]
+def _shown(rows: Sequence[Line], columns: Sequence[str] = ()) -> list[Line]:
+    """Return rows for people, of some columns or without `HIDDEN`, with blanks in the names."""
+    kept = columns or [name for name in next(iter(rows), ()) if name not in HIDDEN]
+    return [{name.replace("_", " "): row[name] for name in kept} for row in rows]
 
 
 def write_trade(trade: Trade, folder: Path) -> list[Path]:
@@ -161,7 +148,7 @@ def _write_page(trade: Trade, settings: list[Line], files: Sequence[Path], folde
         "Orders of convergence": [table(*_orders(trade))],
         "All settings": [
             definitions(_references(trade)),
-            folded("table of all settings", table(f"Seconds: {SECONDS}.", shown(settings, SETTING))),
+            folded("table of all settings", table(f"Seconds: {SECONDS}.", _shown(settings, SETTING))),
             folded("settings without a solution", definitions(reasons)),
         ],
     }
@@ -191,12 +178,12 @@ def _cheapest(trade: Trade) -> list[tuple[str, list[Line]]]:
         "path": f"the largest over all {trade.scene.load_parameters} load parameters",
     }
     rows = {scope: [cheapest(trade, scope, SHOWN, target) for target in TARGETS] for scope in SCOPES}
-    return [(f"cheapest for an error of {SHOWN}, {places[of]}", shown(rows[of], CHEAPEST)) for of in SCOPES]
+    return [(f"cheapest for an error of {SHOWN}, {places[of]}", _shown(rows[of])) for of in SCOPES]
 
 
 def _orders(trade: Trade) -> tuple[str, list[Line]]:
     title = f"orders over elements and cost exponents over unknowns, error of {SHOWN} over the path"
-    return title, shown(list(orders(trade, SHOWN)), ORDER)
+    return title, _shown(list(orders(trade, SHOWN)))
 
 
 def _references(trade: Trade) -> dict[str, str]:

@@ -145,17 +145,16 @@ def cheapest(trade: Trade, scope: str, quantity: str, target: float) -> Line:
         return min(good, key=lambda row: row.seconds, default=None)
 
     doubt = trade.uncertainty(SOLID.name, scope, quantity)
-    found = {
-        TSM.name: least(TSM.name, False),
-        SOLID.name: least(SOLID.name, True) if doubt <= target else None,
-        THERE: least(SOLID.name, False, True),
+    fast = least(TSM.name, False)
+    solids = {
+        SOLID.name: (least(SOLID.name, True) if doubt <= target else None, "ratio"),
+        THERE: (least(SOLID.name, False, True), "ratio_against_reference"),
     }
     line: Line = {"scope": scope, "quantity": quantity, "target": target, "limit_uncertainty": doubt}
-    for name, row in found.items():
-        line |= {name: row and short(row), f"{name}_seconds": row and row.seconds}
-    for name, ratio in ((SOLID.name, "ratio"), (THERE, "ratio_against_reference")):
-        slow, fast = line[f"{name}_seconds"], line[f"{TSM.name}_seconds"]
-        line[ratio] = slow / fast if slow and fast else None
+    line |= {TSM.name: fast and short(fast), f"{TSM.name}_seconds": fast and fast.seconds}
+    for name, (row, ratio) in solids.items():
+        times = row.seconds / fast.seconds if row and fast else None
+        line |= {name: row and short(row), f"{name}_seconds": row and row.seconds, ratio: times}
     return line
 
 
