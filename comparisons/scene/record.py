@@ -81,6 +81,11 @@ class Record:
         """Whether none of the named values is wrong."""
         return vars(self).keys() >= set(names)
 
+    def records(self, name: str) -> tuple[Any, ...]:
+        """Return the records that a value lists; none where it is wrong."""
+        records: tuple[Any, ...] = vars(self).get(name, ())
+        return records
+
     if not TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any:
