@@ -3,7 +3,6 @@
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from shutil import get_terminal_size
 from time import monotonic
 from typing import TYPE_CHECKING, TextIO
 
@@ -22,6 +21,11 @@ PATIENCE = 2.0
 def report(line: str) -> None:
     """Report a line on standard error."""
     print(printable(line), file=sys.stderr, flush=True)
+
+
+def teller(*, quiet: bool) -> Callable[[str], None]:
+    """Return what reports a line of progress."""
+    return (lambda _: None) if quiet else report
 
 
 def files_named(*files: object) -> None:
@@ -46,6 +50,8 @@ def _line(*, quiet: bool, stream: TextIO) -> Iterator[Callable[[str], None]]:
     def draw(text: str) -> None:
         nonlocal drawn
         if shown and monotonic() - drawn >= REDRAW:
+            from shutil import get_terminal_size
+
             drawn = monotonic()
             print(f"\r{text[: get_terminal_size().columns - 1]}\x1b[K", end="", file=stream, flush=True)
 
