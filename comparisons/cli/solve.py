@@ -67,9 +67,10 @@ def _write(kind: str, path: Path, response: Response, scene: Scene, more: dict[s
 
         write_series(path, response, scene)
     elif len(response.load_parameter):
-        from comparisons.report.answer import plot_answer
+        from comparisons.report.answer import picture
+        from comparisons.report.plot import save
 
-        plot_answer(response, path)
+        save(picture(response), path)
 
 
 def _found(response: Response, scene: Scene) -> list[tuple[str, str]]:

@@ -1,6 +1,5 @@
 """The picture of one answer: deformed shape, section forces along the beams, and forces over the load parameter."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,7 +9,7 @@ from comparisons.answer.quantities import forces, size
 from comparisons.answer.round_off import round_off
 from comparisons.answer.table import unit_names
 from comparisons.report import palette
-from comparisons.report.plot import WIDTH, figure, save
+from comparisons.report.plot import WIDTH, figure
 from comparisons.report.sketch import ARROW, Sketch, axis
 from comparisons.report.symbols import LEFT
 from comparisons.scene import Scene
@@ -25,11 +24,6 @@ COLOURS = (palette.BLUE, palette.ORANGE, palette.GREEN, palette.PURPLE, palette.
 HEIGHT, DIAGRAM, HISTORY = 3.6, 1.25, 1.9
 """Heights of the shape, of each diagram and of the forces over the load parameter [inch]."""
 DIAGRAMS = (("N", "axial", "force"), ("V", "shear", "force"), ("M", "moment", "moment"))
-
-
-def plot_answer(response: Response, path: Path) -> None:
-    """Draw an answer to `path`, in the format of its suffix; see `picture`."""
-    save(picture(response), path)
 
 
 def picture(response: Response, scene: Scene | None = None) -> "Figure":

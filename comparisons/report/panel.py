@@ -4,7 +4,7 @@ Beams are ribbons of their height, so that beams and solids are shown on one foo
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,8 +41,7 @@ COLOURS = {OPEN: CONTACT_STATES[OPEN], "contact": PIN, **CONTACT_STATES}
 """Colours of contacts by their state, the open ones first, below the others; a closed one without friction is a ``contact``."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Panel:
+class Panel(NamedTuple):
     """Deformed bodies as m quadrilaterals with a stress at their corners, the p nodes that touch them, and the supports.
 
     The nodes are pins, and ends of beams that touch other beams. `radii` are zero for a point. `forces` are what they exert on the beams,
@@ -101,7 +100,7 @@ def mises_panel(response: Response, scene: Scene, ks: Sequence[int], title: str)
                 data["axial_stress_right"], data["axial_stress_left"] = direct + bent, direct - bent
                 data["shear_stress"] = 1.5 * data["V"] / area
     found = panel(states, title, stress="von_mises")
-    return replace(found, forces=0.0 * found.forces)
+    return found._replace(forces=0.0 * found.forces)
 
 
 def panel(
@@ -201,8 +200,7 @@ def _state(force: Array, slip: float) -> str:
     return "contact" if np.isnan(slip) else str(SLIPS[int(slip)])
 
 
-@dataclass(frozen=True, kw_only=True)
-class Scale:
+class Scale(NamedTuple):
     """What pictures of panels share.
 
     The view has a centre and an `extent`, half its width and half its height. `stress` are the lowest and the

@@ -63,9 +63,8 @@ class Scene(Statement):
 
     def tip(self, beam: str) -> str:
         """Return the end of a beam with fewer held components, "end" at equality."""
-        own = self.supports_of(beam)
-        more = bool(own) and own[0].end == "end" and (len(own) == 1 or own[0].held != own[1].held)
-        return "start" if more else "end"
+        held = {support.end: len(support.held) for support in self.supports_of(beam)}
+        return "start" if held.get("start", 0) < held.get("end", 0) else "end"
 
     @cached_property
     def times(self) -> tuple[float, ...]:
