@@ -26,17 +26,8 @@ PARTS, LAYERS = 8, (4, 8)
 """Quadrilaterals along an element of a beam, and over its height for a stress linear in it or not."""
 THIN = 2e-3
 """Height of a beam whose section has none, over the size of the picture."""
-ARROW, LEAST, POINT = 0.2, 0.02, 0.014
-"""Length of the longest arrow and the least length of one over the size of the picture; radius of a mark over half the size."""
-_TURN = np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False)
-CIRCLE = np.stack([np.cos(_TURN), np.sin(_TURN)], axis=-1)
-SHAFT, HEAD = np.array(
-    [
-        [[-1, -0.025], [-0.25, -0.025], [-0.25, 0.025], [-1, 0.025]],
-        [[-0.25, -0.08], [0, 0], [0, 0], [-0.25, 0.08]],
-    ]
-)
-"""The two parts of an arrow of unit length along the first axis, which ends at the origin."""
+ARROW = 0.2
+"""Length of the longest arrow over the size of the picture."""
 COLOURS = {OPEN: CONTACT_STATES[OPEN], "contact": PIN, **CONTACT_STATES}
 """Colours of contacts by their state, the open ones first, below the others; a closed one without friction is a ``contact``."""
 
@@ -68,19 +59,6 @@ class Panel(NamedTuple):
         return [
             part.reshape(-1, 2) for part in (self.quads, self.pins + reach, self.pins - reach, self.supports)
         ]
-
-    def shapes(self, scale: "Scale") -> Iterator[tuple[str, float, Array]]:
-        """Yield colour, opacity and polygons (n, corners, 2) of discs, marks and arrows, from below."""
-        lengths = scale.force * np.hypot(*self.forces.T)
-        for state in self.shown():
-            own, colour = self.states == state, COLOURS[state]
-            discs, drawn = own & (self.radii > 0.0), own & (lengths > 2.0 * LEAST * scale.half)
-            yield colour, 0.35, self.pins[discs, None] + self.radii[discs, None, None] * CIRCLE
-            yield colour, 1.0, self.pins[own, None] + POINT * scale.half * CIRCLE
-            along = self.forces[drawn] / np.hypot(*self.forces[drawn].T)[:, None]
-            axes = lengths[drawn, None, None] * np.stack([along, along @ LEFT], axis=1)
-            tips = self.pins[drawn] + self.radii[drawn, None] * along
-            yield colour, 1.0, np.concatenate([tips[:, None] + part @ axes for part in (SHAFT, HEAD)])
 
 
 def mises_panel(response: Response, scene: Scene, ks: Sequence[int], title: str) -> Panel:
