@@ -29,7 +29,7 @@ def scene_rules(scene: Statement) -> Mistakes:
     """Yield what is wrong between the records of `scene`."""
     for rule in (
         scene.names.repeated,
-        _contacts(scene),
+        *(_contact(one, scene, f"contact[{i}]") for i, one in enumerate(scene.records("contacts"))),
         *(_named(*one, scene.names) for one in _lists(scene)),
         *(_moved_supports(scene, stage, f"{key}support") for key, stage in _stages(scene)),
         joint_rules(scene),
@@ -104,12 +104,6 @@ def _weight(scene: Statement) -> Mistakes:
         yield FieldError("scene.gravity", scene.gravity, "needs the density of a beam")
     elif not (any(scene.gravity) or pulled):
         yield FieldError("scene.gravity", scene.gravity, "must not be zero in every stage")
-
-
-def _contacts(scene: Statement) -> Mistakes:
-    for i, contact in enumerate(scene.contacts):
-        with suppress(Unjudged):
-            yield from _contact(contact, scene, f"contact[{i}]")
 
 
 def _contact(contact: ContactSpec, scene: Statement, key: str) -> Mistakes:
