@@ -157,6 +157,6 @@ def command_parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="store_true", help=looked_up)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for name in STATED["command"]:
-        add_command(commands, name, suites=", ".join(SUITES))
+        add_command(commands, name)
     commands.choices["run"].description = "; ".join(f"{name}: {what}" for name, what in SUITES.items())
     return parser

@@ -14,6 +14,7 @@ from comparisons.models import MODELS
 from comparisons.models.options import BRANCHES, ModelError, Options
 from comparisons.scene import rules
 from comparisons.scene.rules import Rule, RuleError
+from comparisons.suites.names import SUITES
 
 if TYPE_CHECKING:
     from comparisons.suite.workers import Workers
@@ -86,8 +87,8 @@ TYPES: dict[str, Callable[[str], object]] = {
 """How the text of an argument is read that has no rule."""
 
 
-def add_command(commands: Any, name: str, **words: object) -> None:
-    """Add a command to the subparsers of the parser; `words` are those of its help that are not stated."""
+def add_command(commands: Any, name: str) -> None:
+    """Add a command to the subparsers of the parser."""
     stated = STATED["command"][name]
     parser = commands.add_parser(name, **{key: stated.get(key) for key in ("help", "description", "epilog")})
     for argument in stated["arguments"].split():
@@ -98,7 +99,7 @@ def add_command(commands: Any, name: str, **words: object) -> None:
             reading["type"] = TYPES.get(argument) or partial(obeying, getattr(rules, rule))
         action = parser.add_argument(argument.partition("=")[0], **reading)
         models = ", ".join(model.name for model in MODELS.values() if action.dest in model.options)
-        vars(action).update(words, models=models, names=LISTED.get(argument))
+        vars(action).update(models=models, names=LISTED.get(argument), suites=", ".join(SUITES))
     parser.set_defaults(command=name)
 
 
