@@ -54,10 +54,7 @@ def _run(arguments: list[str] | None) -> int:
             status = import_module(f"comparisons.cli.{given.command}").run(given)
         sys.stdout.flush()
     except (InputError, ModelError, OutputError) as error:
-        for line in str(error).split("\n"):
-            status = _told(line, BAD_INPUT)
-    except _program_error() as error:
-        status = _told(error, BAD_INPUT if error.status.name == "NOT_STARTED" else STOPPED)
+        status = _told(error, BAD_INPUT)
     except BrokenPipeError:
         # whoever read the output has had enough
         _drop_output()
@@ -72,6 +69,8 @@ def _run(arguments: list[str] | None) -> int:
         status = _told(f"{missing}: cannot be imported, {install(missing)}", BAD_INPUT)
     except KeyboardInterrupt:
         status = _told("interrupted", INTERRUPTED)
+    except _program_error() as error:
+        status = _told(error, BAD_INPUT if error.status.name == "NOT_STARTED" else STOPPED)
     return status
 
 
@@ -98,7 +97,8 @@ def _ended_as_a_whole() -> Iterator[None]:
 
 
 def _told(reason: object, status: int) -> int:
-    report(f"crossval: {reason}")
+    for line in str(reason).split("\n"):
+        report(f"crossval: {line}")
     return status
 
 

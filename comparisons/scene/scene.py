@@ -51,8 +51,7 @@ class Scene(Statement):
         """The dead loads through all stages, place by place in the order of the file."""
         found: dict[str, LoadHistory] = {}
         for number, load in self.numbered_loads():
-            rest = ((0.0, 0.0, 0.0),) * (len(self.stages) + 1)
-            first, amounts = found.setdefault(load.node, LoadHistory(load, rest))
+            first, amounts = found.get(load.node) or (load, ((0.0, 0.0, 0.0),) * (len(self.stages) + 1))
             found[load.node] = LoadHistory(first, (*amounts[:number], load.amount, *amounts[number + 1 :]))
         return tuple(found.values())
 
