@@ -53,7 +53,10 @@ def _run(arguments: list[str] | None) -> int:
         with _ended_as_a_whole():
             status = import_module(f"comparisons.cli.{given.command}").run(given)
         sys.stdout.flush()
-    except (InputError, ModelError, OutputError) as error:
+    except InputError as error:
+        for line in str(error).split("\n"):
+            status = _told(line, BAD_INPUT)
+    except (ModelError, OutputError) as error:
         status = _told(error, BAD_INPUT)
     except BrokenPipeError:
         # whoever read the output has had enough
@@ -97,8 +100,7 @@ def _ended_as_a_whole() -> Iterator[None]:
 
 
 def _told(reason: object, status: int) -> int:
-    for line in str(reason).split("\n"):
-        report(f"crossval: {line}")
+    report(f"crossval: {reason}")
     return status
 
 
