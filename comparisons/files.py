@@ -7,7 +7,6 @@ import errno
 import os
 import signal
 import stat
-import tempfile
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from importlib import import_module
@@ -162,6 +161,8 @@ def staging(folder: Path, named: Path | None = None) -> Iterator[Path]:
 
     Raises OutputError, which names `named` or the folder, if the disk is full or the system refuses to write.
     """
+    import tempfile  # 4 ms that only a command which writes needs
+
     try:
         # an interrupt within its making or its removal would leave it; at any other point its finalizer removes it
         with interrupts_held():
@@ -195,6 +196,8 @@ def write_text(path: Path, text: str) -> None:
 
 def writable_folder(folder: Path, *names: str) -> Path:
     """Return `folder`, made if it is not there, after a trial of writing in it; `names` must be free in it."""
+    import tempfile
+
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):

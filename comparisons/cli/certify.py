@@ -2,18 +2,17 @@
 
 from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from comparisons.answer import Response
+from comparisons.answer.file import read_response
 from comparisons.cli.options import STANDARD, outputs, write
 from comparisons.cli.screen import DONE, STOPPED, WRONG, watching
 from comparisons.files import OutputError
 from comparisons.models import TSM, certified, restored, solve
 from comparisons.models.options import ModelError
+from comparisons.output import json_text
+from comparisons.referee import Judgement, Verdict, certify
 from comparisons.scene import load_scene
-
-if TYPE_CHECKING:
-    from comparisons.answer import Response
-    from comparisons.referee import Judgement
 
 
 def run(given: Namespace) -> int:
@@ -22,10 +21,6 @@ def run(given: Namespace) -> int:
     if stored and Path(given.answer).resolve() in (Path(name).resolve() for name in given.out):
         raise OutputError(f"{given.answer}: is the answer to be judged, choose another name")
     files = outputs(given.out, ".json")
-    from comparisons.answer.file import read_response
-    from comparisons.output import json_text
-    from comparisons.referee import Verdict, certify
-
     if stored:
         response, scene = read_response(given.answer, given.scene)
         response = restored(response, scene)
@@ -50,7 +45,7 @@ def run(given: Namespace) -> int:
     return DONE if found.certified else WRONG
 
 
-def _unjudged(response: "Response") -> list[str]:
+def _unjudged(response: Response) -> list[str]:
     """Return what an answer states, or leaves out, and no certificate judges."""
     rubbed = any(contact.friction is not None for contact in response.contacts.values())
     missing = {
@@ -63,7 +58,7 @@ def _unjudged(response: "Response") -> list[str]:
     return [name for name, no in missing.items() if no] + ["times", "numbers of iterations and unknowns"]
 
 
-def _row(item: "Judgement") -> str:
+def _row(item: Judgement) -> str:
     """Return what was found at a load parameter."""
     text = f"at {item.load_parameter:.6g}: "
     if item.distance is None:

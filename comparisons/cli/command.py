@@ -7,29 +7,21 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, redirect_stderr, suppress
+from importlib import import_module
 from pathlib import Path
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
-from comparisons.cli import certify, compare, run, scene_files, solve, view
 from comparisons.cli.options import STATED, add_command
 from comparisons.cli.screen import BAD_INPUT, DONE, INTERRUPTED, STOPPED, WRONG, report
 from comparisons.extras import EXTRAS, install
 from comparisons.files import OutputError, printable
 from comparisons.models.options import ModelError
-from comparisons.models.outside.child import ProgramError, ProgramStatus
 from comparisons.scene import InputError
+from comparisons.suites.names import SUITES
 
-COMMANDS = {
-    "scenes": scene_files.run_scenes,
-    "new": scene_files.run_new,
-    "check": scene_files.run_check,
-    "solve": solve.run,
-    "compare": compare.run,
-    "certify": certify.run,
-    "run": run.run,
-    "view": view.run,
-}
-"""What runs each command, in the order of the help."""
+if TYPE_CHECKING:
+    from comparisons.models.outside.child import ProgramError
+
 GONE: dict[str, str] = STATED["gone"]
 """Commands and options of earlier versions, and what does their work."""
 NEEDED = ("numpy", "scipy", "scikit-fem", "meshio", "matplotlib", "jinja2")
@@ -59,15 +51,13 @@ def _run(arguments: list[str] | None) -> int:
     given = command_parser().parse_args(arguments)
     try:
         with _ended_as_a_whole():
-            status = given.run(given)
+            status = import_module(f"comparisons.cli.{given.command}").run(given)
         sys.stdout.flush()
     except InputError as error:
         for line in str(error).split("\n"):
             status = _told(line, BAD_INPUT)
     except (ModelError, OutputError) as error:
         status = _told(error, BAD_INPUT)
-    except ProgramError as error:
-        status = _told(error, BAD_INPUT if error.status is ProgramStatus.NOT_STARTED else STOPPED)
     except BrokenPipeError:
         # whoever read the output has had enough
         _drop_output()
@@ -82,7 +72,16 @@ def _run(arguments: list[str] | None) -> int:
         status = _told(f"{missing}: cannot be imported, {install(missing)}", BAD_INPUT)
     except KeyboardInterrupt:
         status = _told("interrupted", INTERRUPTED)
+    except _program_error() as error:
+        status = _told(error, BAD_INPUT if error.status.name == "NOT_STARTED" else STOPPED)
     return status
+
+
+def _program_error() -> "type[ProgramError]":
+    """Return the error of a program of others, whose room is not imported before something fails."""
+    from comparisons.models.outside.child import ProgramError
+
+    return ProgramError
 
 
 @contextmanager
@@ -123,17 +122,23 @@ def _version() -> int:
             return metadata.version(name)
         return None
 
-    uses = {name: f"missing, extra {extra.name}: {extra.use}" for name, extra in EXTRAS.items()}
-    uses["ccx"] = "missing, Debian's calculix-ccx: --model calculix, crossval run peers"
-    uses["OpenGL"] = "missing: no picture of stressed bodies, by compare and view"
-    states: dict[str, str | None] = {"python": ".".join(map(str, sys.version_info[:3]))}
-    states |= {name: found(name) for name in (*NEEDED, *EXTRAS)}
-    states |= {"ccx": shutil.which("ccx"), "OpenGL": "off-screen rendering works" if renders() else None}
+    rows = [("python", sys.version.partition(" ")[0], ""), *((name, found(name), "") for name in NEEDED)]
+    rows += (
+        (name, found(name), f"missing, extra {extra.name}: {extra.use}") for name, extra in EXTRAS.items()
+    )
+    rows += [
+        ("ccx", shutil.which("ccx"), "missing, Debian's calculix-ccx: --model calculix, crossval run peers"),
+        (
+            "OpenGL",
+            "off-screen rendering works" if renders() else None,
+            "missing: no picture of stressed bodies, by compare and view",
+        ),
+    ]
     print(f"crossval {metadata.version('tsm-crossval')}")
-    for name, state in states.items():
-        mark = "ok" if state else "-" if name in uses else "MISSING"
-        print(f"{mark:8s}{name:14s} {state or uses.get(name, 'missing')}")
-    return DONE if all(states[name] for name in NEEDED) else WRONG
+    for name, state, absent in rows:
+        mark = "ok" if state else "-" if absent else "MISSING"
+        print(f"{mark:8s}{name:14s} {state or absent or 'missing'}")
+    return DONE if all(state or absent for _, state, absent in rows) else WRONG
 
 
 class _Parser(argparse.ArgumentParser):
@@ -153,7 +158,7 @@ def command_parser() -> argparse.ArgumentParser:
     looked_up = "print the version, and which libraries and programs are here"
     parser.add_argument("--version", action="store_true", help=looked_up)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for name, function in COMMANDS.items():
-        add_command(commands, name, function, suites=", ".join(run.SUITES))
-    commands.choices["run"].description = "; ".join(f"{name}: {one.what}" for name, one in run.SUITES.items())
+    for name in STATED["command"]:
+        add_command(commands, name)
+    commands.choices["run"].description = "; ".join(f"{name}: {what}" for name, what in SUITES.items())
     return parser

@@ -13,12 +13,19 @@ from comparisons.cli.screen import (
     files_named,
     report,
     staging,
+    teller,
     watching,
 )
 from comparisons.files import writable_folder, write_text
 from comparisons.models import TSM, find
 from comparisons.models.options import ModelError
+from comparisons.output import tabulated
+from comparisons.report.table import table_text
 from comparisons.scene import Scene, built_in_scenes, load_scene
+from comparisons.suite.progress import running
+from comparisons.suites.compare import ROD, Run, compare, run_of
+from comparisons.suites.gate import gate
+from comparisons.suites.league import FILES, measure_league, summary, write_league
 
 MODEL = ("model", "element", "elements", "mesh")
 """The options that say which model is meant."""
@@ -47,10 +54,7 @@ def run(given: argparse.Namespace) -> int:
 
 def _compare(scene: Scene, given: argparse.Namespace) -> int:
     """Compare all models, print the table and name the files."""
-    from comparisons.report.table import table_text
-    from comparisons.suites.compare import ROD, Run, compare, run_of
-
-    tell = (lambda _: None) if given.quiet else report
+    tell = teller(quiet=given.quiet)
     more = [run_of(model, options) for model in map(find, given.others) for options in model.compared()]
     if any(getattr(given, option) is not None for option in MODEL):
         model, options = find(given.model or TSM.name), chosen(given)
@@ -72,8 +76,6 @@ def _compare(scene: Scene, given: argparse.Namespace) -> int:
 def _held(scene: Scene, given: argparse.Namespace) -> int:
     """Measure one model, print its bounds and write them."""
     files = outputs([str(given.out)] if given.out else [], ".xml")
-    from comparisons.suites.gate import gate
-
     found = gate(scene, given.model or TSM.name, chosen(given), dict(given.max_error), given.against)
     for _, file in files:
         write_text(file, found.junit())
@@ -92,10 +94,6 @@ def _held(scene: Scene, given: argparse.Namespace) -> int:
 
 def _league(scenes: list[Scene], given: argparse.Namespace) -> int:
     """Measure every program on every scene, print the summary and name the files."""
-    from comparisons.output import tabulated
-    from comparisons.suite.progress import running
-    from comparisons.suites.league import FILES, measure_league, summary, write_league
-
     folder = writable_folder(given.out or Path("out/league"), *FILES)
     with running(folder / "results", workers(given, 1), quiet=given.quiet, process=True) as run_cases:
         league = measure_league(scenes, given.others, run_cases, quick=given.quick)

@@ -3,7 +3,7 @@
 import argparse
 import sys
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -12,30 +12,28 @@ from typing import TYPE_CHECKING, Any
 from comparisons.files import OutputError, result_file, write_text
 from comparisons.models import MODELS
 from comparisons.models.options import BRANCHES, ModelError, Options
-from comparisons.models.outside.programs import ADAPTERS, known
 from comparisons.scene import rules
 from comparisons.scene.rules import Rule, RuleError
+from comparisons.suites.names import SUITES
 
 if TYPE_CHECKING:
     from comparisons.suite.workers import Workers
 
 
-class Names:
-    """Names that are looked up where they are asked for, and whether a name is one of them."""
+class Listed:
+    """Names for a help, which are looked up where it is asked for."""
 
-    def __init__(
-        self, listed: Callable[[], Iterable[str]], known: Callable[[str], bool] = lambda _: False
-    ) -> None:
-        self.listed, self.known = listed, known
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.listed())
-
-    def __contains__(self, name: str) -> bool:
-        return name in self.listed() or self.known(name)
+    def __init__(self, names: Callable[[], Iterable[str]]) -> None:
+        self.names = names
 
     def __str__(self) -> str:
-        return ", ".join(self)
+        return ", ".join(self.names())
+
+
+def _models() -> Iterable[str]:
+    from comparisons.models.outside.programs import ADAPTERS
+
+    return (*MODELS, *ADAPTERS)
 
 
 def _quantities(*, path: bool) -> Iterable[str]:
@@ -44,32 +42,32 @@ def _quantities(*, path: bool) -> Iterable[str]:
     return names(path=path)
 
 
-MODEL_NAMES = Names(lambda: (*MODELS, *ADAPTERS), known)
-"""The models of this package, programs of others, and program files, which are read only when they are used."""
-QUANTITIES = {
-    f"--{name}": Names(partial(_quantities, path=name == "max-error")) for name in ("accuracy", "max-error")
+LISTED = {
+    "--model": Listed(_models),
+    "--accuracy": Listed(partial(_quantities, path=False)),
+    "--max-error": Listed(partial(_quantities, path=True)),
 }
-"""The quantities that an argument names."""
+"""The names that an argument takes."""
 
 
-def obeying(rule: Rule, text: str, value: str | None = None) -> Any:
-    """Return the number or word, all of an argument's text or a part, that obeys a rule of the scene."""
-    word: object = text if value is None else value
+def obeying(rule: Rule, text: str, whole: str = "") -> Any:
+    """Return the number or word that obeys a rule of the scene; it is a part of the argument `whole`."""
+    word: object = text
     for form in (float, int):
         with suppress(ValueError):
-            word = form(text if value is None else value)
+            word = form(text)
     try:
         return rule(word)
     except RuleError as error:
-        raise argparse.ArgumentTypeError(f"{text}: {error}") from None
+        raise argparse.ArgumentTypeError(f"{whole or text}: {error}") from None
 
 
 def _bound(argument: str, rule: Rule, default: str, text: str) -> tuple[str, float]:
     """Return what ``QUANTITY=X`` states, one of the quantities of an argument; without one it is `default`."""
     name, _, value = text.rpartition("=")
-    if (name or default) not in QUANTITIES[argument]:
-        raise argparse.ArgumentTypeError(f"{text}: must be QUANTITY=X, one of {QUANTITIES[argument]}")
-    return name or default, obeying(rule, text, value)
+    if (name or default) not in LISTED[argument].names():
+        raise argparse.ArgumentTypeError(f"{text}: must be QUANTITY=X, one of {LISTED[argument]}")
+    return name or default, obeying(rule, value, text)
 
 
 def _workers(text: str) -> int | str:
@@ -82,28 +80,27 @@ STATED = tomllib.loads(Path(__file__).with_name("commands.toml").read_text(encod
 TYPES: dict[str, Callable[[str], object]] = {
     "--accuracy": partial(_bound, "--accuracy", rules.fraction, "force"),
     "--max-error": partial(_bound, "--max-error", rules.positive, ""),
+    "--branch": partial(obeying, rules.choice(*BRANCHES)),
     "--workers": _workers,
     "--out": Path,
 }
 """How the text of an argument is read that has no rule."""
 
 
-def add_command(commands: Any, name: str, run: Callable[[argparse.Namespace], int], **words: object) -> None:
-    """Add a command to the subparsers of the parser; `words` are those of its help that are not stated."""
+def add_command(commands: Any, name: str) -> None:
+    """Add a command to the subparsers of the parser."""
     stated = STATED["command"][name]
-    texts = {key: stated.get(key, "") for key in ("help", "description", "epilog")}
-    parser = commands.add_parser(name, **texts)
+    parser = commands.add_parser(name, **{key: stated.get(key) for key in ("help", "description", "epilog")})
     for argument in stated["arguments"].split():
         reading = {**STATED["argument"][argument]}
         reading["help"] = stated.get("own", {}).get(argument, reading.get("help"))
-        if (rule := reading.pop("rule", "")) or argument in TYPES:
+        rule = reading.pop("rule", None)
+        if rule or argument in TYPES:
             reading["type"] = TYPES.get(argument) or partial(obeying, getattr(rules, rule))
-        if isinstance(listed := reading.get("choices"), str):
-            reading["choices"] = {"models": MODEL_NAMES, "branches": BRANCHES}[listed]
         action = parser.add_argument(argument.partition("=")[0], **reading)
         models = ", ".join(model.name for model in MODELS.values() if action.dest in model.options)
-        vars(action).update(words, models=models, quantities=QUANTITIES.get(argument))
-    parser.set_defaults(run=run)
+        vars(action).update(models=models, names=LISTED.get(argument), suites=", ".join(SUITES))
+    parser.set_defaults(command=name)
 
 
 def refuse(given: argparse.Namespace, names: Iterable[str], rule: str) -> None:
@@ -134,11 +131,13 @@ def outputs(names: Sequence[str], *kinds: str) -> list[tuple[str, Path]]:
 
     Raises OutputError for a file of another kind, or one that cannot be written or is not this program's.
     """
+    ends = f"must end in {', '.join(filter(None, kinds))}"
+    rule = f"{ends}, or be a folder that is there, for VTK files" if "" in kinds else ends
     found = []
     for name, path in zip(names, map(Path, names), strict=True):
         kind = ".json" if path == STANDARD else "" if path.is_dir() else path.suffix
         if kind not in kinds or not name:
-            raise OutputError(f"{name or '--out'}: must end in {', '.join(filter(None, kinds))}")
+            raise OutputError(f"{name or '--out'}: {rule}")
         found.append((kind, result_file(path) if kind and path != STANDARD else path))
     return found
 

@@ -6,13 +6,24 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from shutil import rmtree
-from typing import NamedTuple
 
 from comparisons.cli.options import refuse, workers
-from comparisons.cli.screen import DONE, STOPPED, WRONG, files_named, report
+from comparisons.cli.screen import DONE, STOPPED, WRONG, files_named, report, teller
 from comparisons.files import writable_folder
+from comparisons.output import tabulated, write_rows
 from comparisons.scene import InputError, load_scene
+from comparisons.suite.progress import running
+from comparisons.suite.run import UNSETTLED
+from comparisons.suite.study import read_study, result_rows, result_table
+from comparisons.suites.extremes.run import counts, extremes
+from comparisons.suites.manual import problems, write_manual
+from comparisons.suites.manual.cards import write_cards
 from comparisons.suites.names import FIGURES, QUESTIONS
+from comparisons.suites.paper.reproduce import reproduce
+from comparisons.suites.solid_accuracy import STUDIES
+from comparisons.suites.trade.reference import NoReferenceError
+from comparisons.suites.trade.report import summary, write_trade
+from comparisons.suites.trade.trade import measure_trade
 
 
 def run(given: Namespace) -> int:
@@ -21,18 +32,15 @@ def run(given: Namespace) -> int:
     suite = STUDY_FILE if name.endswith(".toml") or os.sep in name else SUITES.get(name)
     if suite is None:
         raise InputError(name, f"must be a study file, NAME.toml, or one of {', '.join(SUITES)}")
-    foreign = (option for option in ("of", "quick", "workers") if option not in suite.options.split())
+    options, suite_run = suite
+    foreign = (option for option in ("of", "quick", "workers") if option not in options.split())
     refuse(given, foreign, f"is no option of {name}")
-    return suite.run(given)
+    return suite_run(given)
 
 
 def _out(given: Namespace, *names: str) -> Path:
     """Return the folder of the results, tried out."""
     return writable_folder(given.out or Path("out") / Path(given.suite).stem, *names)
-
-
-def _told(given: Namespace) -> Callable[[str], None]:
-    return (lambda _: None) if given.quiet else report
 
 
 def _ended(files: Iterable[Path], reasons: Iterable[str] = (), status: int = STOPPED) -> int:
@@ -47,30 +55,21 @@ def _ended(files: Iterable[Path], reasons: Iterable[str] = (), status: int = STO
 
 def _figures(given: Namespace) -> int:
     folder = _out(given, "report.html")
-    from comparisons.suites.paper.reproduce import reproduce
-
     figure = "all" if given.suite == "paper" else given.suite
     return _ended(*reproduce(figure, folder, quick=given.quick, report=report))
 
 
 def _cards(given: Namespace) -> int:
-    from comparisons.suites.manual import problems
-    from comparisons.suites.manual.cards import write_cards
-
     folder = given.out or Path("out") / given.suite
-    count = write_cards(folder, _told(given), problems(given.of or None))
+    count = write_cards(folder, teller(quiet=given.quiet), problems(given.of or None))
     print(f"{count} cards and their schema in {folder}")
     return DONE
 
 
 def _manual(given: Namespace) -> int:
-    from comparisons.suites.manual import problems
-
     stated = problems(given.of or None)
     folder = _out(given, "index.md", "manual.json", "junit.xml")
-    from comparisons.suites.manual import write_manual
-
-    answers, files = write_manual(folder, _told(given), stated)
+    answers, files = write_manual(folder, teller(quiet=given.quiet), stated)
     failed = [f"{one.problem.name}, {one.trial.label}: {one.failure}" for one in answers if not one.passed]
     print(f"{len(stated)} cases, {len(answers)} answers, {len(failed)} beyond their tolerance")
     return _ended(files, failed, WRONG)
@@ -78,10 +77,6 @@ def _manual(given: Namespace) -> int:
 
 def _extremes(given: Namespace) -> int:
     folder = _out(given, "extremes.html", "extremes.csv", "extremes.json")
-    from comparisons.output import tabulated
-    from comparisons.suite.progress import running
-    from comparisons.suites.extremes.run import counts, extremes
-
     kept = folder / ".extremes"  # until the command has come to its end
     with running(kept, workers(given), quiet=given.quiet, repeats=0) as run_cases:
         judgements, files = extremes(folder, run_cases, quick=given.quick)
@@ -96,11 +91,6 @@ def _trade(given: Namespace) -> int:
     scene = load_scene(given.of[0])
     folder = given.out or Path("out/trade") / scene.name
     writable_folder(folder, "report.html", "trade.csv", "trade.json")
-    from comparisons.suite.progress import running
-    from comparisons.suites.trade.reference import NoReferenceError
-    from comparisons.suites.trade.report import summary, write_trade
-    from comparisons.suites.trade.trade import measure_trade
-
     try:
         with running(folder / "results", workers(given, 1), quiet=given.quiet) as run_cases:
             trade = measure_trade(scene, run_cases, quick=given.quick)
@@ -114,20 +104,12 @@ def _trade(given: Namespace) -> int:
 
 def _question(given: Namespace) -> int:
     folder = _out(given, f"{given.suite}.csv")
-    from comparisons.output import tabulated, write_rows
-    from comparisons.suites.solid_accuracy import STUDIES
-
     rows = list(STUDIES[given.suite](report))
     print(tabulated(rows))
     return _ended([write_rows(folder / f"{given.suite}.csv", rows)])
 
 
 def _study(given: Namespace) -> int:
-    from comparisons.output import write_rows
-    from comparisons.suite.progress import running
-    from comparisons.suite.run import UNSETTLED
-    from comparisons.suite.study import read_study, result_rows, result_table
-
     study = read_study(Path(given.suite))
     table = f"{study.name}.csv"
     folder = writable_folder(given.out or Path("out/study"), table)
@@ -141,34 +123,13 @@ def _study(given: Namespace) -> int:
     return _ended([write_rows(folder / table, rows)], again)
 
 
-class Suite(NamedTuple):
-    """A sentence about a suite, the options it has beside ``--out``, and the function that runs it."""
-
-    what: str
-    options: str
-    run: Callable[[Namespace], int]
-
-
-SUITES = {
-    "paper": Suite("all figures of the paper, and its claims", "quick", _figures),
-    **{name: Suite(what, "quick", _figures) for name, what in FIGURES.items()},
-    "manual": Suite(
-        "the verification manual, problems with exact answers, put to every model that can state them",
-        "of",
-        _manual,
-    ),
-    "cards": Suite("the problems of the manual as JSON files, with scene, values and source", "of", _cards),
-    "extremes": Suite(
-        "where the models hold and where they stop, over units, slenderness, shear, meshes, contact positions, load steps, penalty, "
-        "Poisson's ratio, depth and time",
-        "quick workers",
-        _extremes,
-    ),
-    "trade": Suite(
-        "what accuracy costs on SCENE, error against seconds, iterations and unknowns of many settings",
-        "of quick workers",
-        _trade,
-    ),
-    **{name: Suite(what, "", _question) for name, what in QUESTIONS.items()},
+SUITES: dict[str, tuple[str, Callable[[Namespace], int]]] = {
+    **dict.fromkeys(("paper", *FIGURES), ("quick", _figures)),
+    "manual": ("of", _manual),
+    "cards": ("of", _cards),
+    "extremes": ("quick workers", _extremes),
+    "trade": ("of quick workers", _trade),
+    **dict.fromkeys(QUESTIONS, ("", _question)),
 }
-STUDY_FILE = Suite("a scene, and what is varied in it", "workers", _study)
+"""The options that a suite has beside ``--out``, and the function that runs it."""
+STUDY_FILE = "workers", _study

@@ -3,9 +3,8 @@
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from shutil import get_terminal_size
 from time import monotonic
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING
 
 from comparisons.files import printable
 from comparisons.models.progress import REDRAW, Count, Reached, Watch, bar
@@ -24,6 +23,11 @@ def report(line: str) -> None:
     print(printable(line), file=sys.stderr, flush=True)
 
 
+def teller(*, quiet: bool) -> Callable[[str], None]:
+    """Return what reports a line of progress."""
+    return (lambda _: None) if quiet else report
+
+
 def files_named(*files: object) -> None:
     """Print the names of the files that were written."""
     print("files:", *(f"  {path}" for path in files), sep="\n")
@@ -39,25 +43,27 @@ def exit_status(scene: "Scene", responses: "Iterable[tuple[str, Response]]") -> 
 
 
 @contextmanager
-def _line(*, quiet: bool, stream: TextIO) -> Iterator[Callable[[str], None]]:
+def _line(*, quiet: bool) -> Iterator[Callable[[str], None]]:
     """Yield what draws a line on a terminal in place of the line before; the line is cleared afterwards. Elsewhere nothing is drawn."""
-    drawn, shown = 0.0, not quiet and stream.isatty()
+    drawn, shown = 0.0, not quiet and sys.stderr.isatty()
 
     def draw(text: str) -> None:
         nonlocal drawn
         if shown and monotonic() - drawn >= REDRAW:
+            from shutil import get_terminal_size
+
             drawn = monotonic()
-            print(f"\r{text[: get_terminal_size().columns - 1]}\x1b[K", end="", file=stream, flush=True)
+            print(f"\r{text[: get_terminal_size().columns - 1]}\x1b[K", end="", file=sys.stderr, flush=True)
 
     try:
         yield draw
     finally:
         if shown:
-            print("\r\x1b[K", end="", file=stream, flush=True)
+            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
 
 
 @contextmanager
-def watching(label: str, *, quiet: bool = False, stream: TextIO | None = None) -> Iterator[Watch]:
+def watching(label: str, *, quiet: bool = False) -> Iterator[Watch]:
     """Yield a `Watch` whose line shows the load parameter of one solution, the Newton iterations so far and the elements in contact."""
     iterations = 0
 
@@ -67,20 +73,20 @@ def watching(label: str, *, quiet: bool = False, stream: TextIO | None = None) -
         t = reached.load_parameter
         draw(f"{label} {bar(t)} {', '.join((f't = {t:.4f}', f'{iterations} iterations', *reached.contacts))}")
 
-    with _line(quiet=quiet, stream=stream or sys.stderr) as draw:
+    with _line(quiet=quiet) as draw:
         yield show
 
 
 @contextmanager
-def staging(label: str, *, quiet: bool = False, stream: TextIO | None = None) -> Iterator[Count]:
+def staging(label: str, *, quiet: bool = False) -> Iterator[Count]:
     """Write the line of a stage of the work, and yield a `Count`, which draws a bar below after `PATIENCE` seconds."""
-    stream, began = stream or sys.stderr, monotonic()
+    began = monotonic()
     if not quiet:
-        print(label, file=stream, flush=True)
+        report(label)
 
     def show(done: int, parts: int) -> None:
         if monotonic() - began >= PATIENCE:
             draw(f"{bar(done / parts)} {done} of {parts}")
 
-    with _line(quiet=quiet, stream=stream) as draw:
+    with _line(quiet=quiet) as draw:
         yield show

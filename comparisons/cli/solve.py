@@ -5,15 +5,16 @@ from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from comparisons.answer import Response
+from comparisons.answer.material import frictions_found
+from comparisons.answer.page import text
 from comparisons.cli.options import STANDARD, chosen, outputs, refuse, write
 from comparisons.cli.screen import DONE, STOPPED, exit_status, report, watching
 from comparisons.files import writable_folder
 from comparisons.models import TSM, certified, find, solve
-from comparisons.scene import load_scene
+from comparisons.scene import Scene, load_scene
 
 if TYPE_CHECKING:
-    from comparisons.answer import Response
-    from comparisons.scene import Scene
     from comparisons.suite.accuracy import Answer
 
 PICTURES = (".png", ".svg", ".pdf")
@@ -43,8 +44,6 @@ def run(given: Namespace) -> int:
     for kind, path in files:
         _write(kind, path, response, scene, more)
     if STANDARD not in dict(files).values():
-        from comparisons.answer.page import text
-
         print(text(response, [*_found(response, scene), *lines], rule))
     status = exit_status(scene, [("", response)])
     if answer is None or answer.reached or status != DONE:
@@ -53,7 +52,7 @@ def run(given: Namespace) -> int:
     return STOPPED
 
 
-def _write(kind: str, path: Path, response: "Response", scene: "Scene", more: dict[str, Any]) -> None:
+def _write(kind: str, path: Path, response: Response, scene: Scene, more: dict[str, Any]) -> None:
     """Write a file, or the files of a folder."""
     if kind == ".json":
         from comparisons.answer.file import as_json
@@ -68,15 +67,14 @@ def _write(kind: str, path: Path, response: "Response", scene: "Scene", more: di
 
         write_series(path, response, scene)
     elif len(response.load_parameter):
-        from comparisons.report.answer import plot_answer
+        from comparisons.report.answer import picture
+        from comparisons.report.plot import save
 
-        plot_answer(response, path)
+        save(picture(response), path)
 
 
-def _found(response: "Response", scene: "Scene") -> list[tuple[str, str]]:
+def _found(response: Response, scene: Scene) -> list[tuple[str, str]]:
     """Return the coefficient of friction that a clamp's reactions show, at the last load parameter in contact, and the scene's."""
-    from comparisons.answer.material import frictions_found
-
     given = {contact.beam: contact.friction for contact in scene.contacts}
     rows = []
     for beam, found in frictions_found(response, scene).items():
@@ -88,7 +86,7 @@ def _found(response: "Response", scene: "Scene") -> list[tuple[str, str]]:
     return rows
 
 
-def _answer(scene: "Scene", given: Namespace) -> "Answer | None":
+def _answer(scene: Scene, given: Namespace) -> "Answer | None":
     """Return the answer to an accuracy, explained unless it is quiet; None where a model was chosen by hand."""
     if given.accuracy is None:
         return None

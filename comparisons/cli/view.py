@@ -4,26 +4,21 @@ import os
 import sys
 from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from comparisons.answer import Response
 from comparisons.cli.screen import DONE, exit_status, files_named, report, staging, watching
 from comparisons.files import writable_folder
 from comparisons.models import SOLID, TSM, solve
 from comparisons.models.options import ModelError, Options
-from comparisons.scene import load_scene
-
-if TYPE_CHECKING:
-    from comparisons.answer import Response
-    from comparisons.report.export import Series
-    from comparisons.scene import Scene
+from comparisons.report.export import Series, read_series, solved_series
+from comparisons.report.render import film, show, write_film
+from comparisons.scene import Scene, load_scene
 
 BEAMS = Options(elements=20)
 
 
 def run(given: Namespace) -> int:
     """Solve or read, then show or write."""
-    from comparisons.report.export import read_series, solved_series
-
     folder = Path(given.what)
     if folder.is_dir():
         out = _target(given.out, folder.resolve().name)
@@ -45,7 +40,7 @@ def _target(out: Path | None, name: str) -> Path | None:
     return writable_folder(out or Path("out") / f"{name}-view", "view.png", "view.gif")
 
 
-def _solve(scene: "Scene") -> "list[tuple[str, Response]]":
+def _solve(scene: Scene) -> "list[tuple[str, Response]]":
     """Return the responses of the models that can state the scene."""
     found = []
     for model, options in ((TSM, BEAMS), (SOLID, Options())):
@@ -61,8 +56,6 @@ def _solve(scene: "Scene") -> "list[tuple[str, Response]]":
 
 
 def _present(series: "list[Series]", factor: float, out: Path | None) -> int:
-    from comparisons.report.render import film, show, write_film
-
     shown = film(series, factor)
     if out is None:
         report("opening a window")

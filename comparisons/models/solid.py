@@ -321,7 +321,7 @@ def rectangle(beam: BeamSpec) -> tuple[float, float]:
             f'the solid model needs the width and height of beam "{beam.name}": the rectangle of its area and second '
             f"moment is {height:.3g} high, more than an eighth of the length"
         )
-    return beam.cross_section[0] / height, height
+    return beam.section()[0] / height, height
 
 
 def _strip(beam: BeamSpec, clamps: set[str], mesh: tuple[int, int] | None) -> Strip:

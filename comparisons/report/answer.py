@@ -1,7 +1,6 @@
 """The picture of one answer: deformed shape, section forces along the beams, and forces over the load parameter."""
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -10,15 +9,11 @@ from comparisons.answer.quantities import forces, size
 from comparisons.answer.round_off import round_off
 from comparisons.answer.table import unit_names
 from comparisons.report import palette
-from comparisons.report.plot import WIDTH, figure, save
+from comparisons.report.plot import WIDTH, figure
 from comparisons.report.sketch import ARROW, Sketch, axis
 from comparisons.report.symbols import LEFT
 from comparisons.scene import Scene
 from comparisons.version import release
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 COLOURS = (palette.BLUE, palette.ORANGE, palette.GREEN, palette.PURPLE, palette.SKY, palette.GREY)
 """Colours of the beams, and of the forces, in turn."""
@@ -27,13 +22,8 @@ HEIGHT, DIAGRAM, HISTORY = 3.6, 1.25, 1.9
 DIAGRAMS = (("N", "axial", "force"), ("V", "shear", "force"), ("M", "moment", "moment"))
 
 
-def plot_answer(response: Response, path: Path) -> None:
-    """Draw an answer to `path`, in the format of its suffix; see `picture`."""
-    save(picture(response), path)
-
-
-def picture(response: Response, scene: Scene | None = None) -> "Figure":
-    """Return a picture: deformed shape at the last load parameter at which a force acts, section forces along each beam, and the forces.
+def picture(response: Response, scene: Scene | None = None) -> Any:
+    """Return a matplotlib figure: deformed shape at the last load parameter at which a force acts, section forces along each beam, and the forces.
 
     A response that was read from a file needs the `scene` that was solved; a `ValueError` says so.
     """
@@ -44,7 +34,7 @@ def picture(response: Response, scene: Scene | None = None) -> "Figure":
         raise ValueError(f"{response.scene}: {response.status}, no load parameter was reached")
     diagrams = DIAGRAMS if response.sections is not None else ()
     heights = (HEIGHT, *(DIAGRAM for _ in diagrams), HISTORY)
-    fig: Figure = figure(figsize=(WIDTH, sum(heights)))
+    fig = figure(figsize=(WIDTH, sum(heights)))
     shape, *panels, history = fig.subplots(len(heights), 1, height_ratios=heights)
     k = _loaded(response, scene)
     for axes, (name, words, kind) in zip(panels, diagrams, strict=True):
@@ -72,7 +62,7 @@ def _loaded(response: Response, scene: Scene) -> int:
     return int(numbers[-1]) if len(numbers) else len(response.load_parameter) - 1
 
 
-def _shape(axes: "Axes", response: Response, scene: Scene, k: int) -> None:
+def _shape(axes: Any, response: Response, scene: Scene, k: int) -> None:
     t, lines = float(response.load_parameter[k]), {}
     for beam in scene.beams:
         arcs, line = response.axis_line(beam.name, k)
@@ -111,7 +101,7 @@ def _shape(axes: "Axes", response: Response, scene: Scene, k: int) -> None:
     sketch.separate(1)
 
 
-def _diagram(axes: "Axes", response: Response, scene: Scene, name: str, kind: str, k: int) -> None:
+def _diagram(axes: Any, response: Response, scene: Scene, name: str, kind: str, k: int) -> None:
     assert response.sections is not None, "diagrams are those of a model that states section forces"
     least = getattr(round_off(response, scene), kind)
     for number, beam in enumerate(scene.beams):
@@ -124,7 +114,7 @@ def _diagram(axes: "Axes", response: Response, scene: Scene, name: str, kind: st
     axes.margins(x=0.01)
 
 
-def _history(axes: "Axes", response: Response, scene: Scene) -> None:
+def _history(axes: Any, response: Response, scene: Scene) -> None:
     t, unit = response.load_parameter, unit_names(scene.units)["force"]
     for number, (name, values) in enumerate(forces(response).items()):
         colour, whole = COLOURS[number % len(COLOURS)], np.append(0.0, size(values))

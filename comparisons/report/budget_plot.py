@@ -8,7 +8,7 @@ import numpy as np
 
 from comparisons.output import write_numbers
 from comparisons.report import palette
-from comparisons.report.pages import Section, definitions, picture, table
+from comparisons.report.pages import Section, picture, piece, table
 from comparisons.report.plot import WIDTH, figure, save
 from comparisons.suite.budget import PARTS, STEPS, TIMES, Budget, budget_rows
 
@@ -76,7 +76,7 @@ def budget_section(budget: Budget, drawn: Path) -> Section:
     caption = "(TSM - solid) / exact rod; parts are measured by themselves, the rest is over the difference"
     numbers = table(caption, rows)
     shown = picture(drawn, "What the difference of TSM and solid is made of.")
-    return Section("Error budget", f"{shown}\n{numbers}\n{definitions(PARTS)}")
+    return Section("Error budget", f"{shown}\n{numbers}\n{piece('definitions', PARTS)}")
 
 
 def write_budget(budget: Budget, path: Path) -> None:

@@ -6,13 +6,13 @@ The PVD file lists the load parameters.
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from comparisons.answer import Array, Grid, Response
+from comparisons.answer.table import unit_names
 from comparisons.files import OutputError, alone_in, check_free, interrupts_held, move, own, staging
 from comparisons.report.symbols import fixed, inward
 from comparisons.report.vtk import read_entries, read_grid, read_units, write_blocks, write_grid, write_list
@@ -20,23 +20,20 @@ from comparisons.scene import ContactSpec, Scene
 
 CONTACTS, SUPPORTS, HINGES = POINTS = ("contact points", "support points", "hinge points")
 """Names of the blocks besides the beams; no beam has a name with a space."""
-DIMENSIONS = {
-    "L": "displacement deformed arc height beam_displacement gap radius", "rad": "rotation",
-    "F": "N V contact_force tangential normal reaction_force", "F L": "M dissipated reaction_moment",
-    "F/L^2": "stress_xx stress_yy stress_xy von_mises axial_stress axial_stress_right axial_stress_left",
-}  # fmt: skip
-"""The fields by their dimensions, in force F and length L; other fields are plain numbers."""
+FIELDS = {
+    "length": "displacement deformed arc height beam_displacement gap radius",
+    "angle": "rotation",
+    "force": "N V contact_force tangential normal reaction_force",
+    "moment": "M dissipated reaction_moment",
+    "stress": "stress_xx stress_yy stress_xy von_mises axial_stress axial_stress_right axial_stress_left",
+}
+"""The fields that have a unit, by the kind of quantity; other fields are plain numbers."""
 
 
 def field_units(scene: Scene) -> dict[str, str]:
     """Return the units of all fields in the scene's units of force and length."""
-    force, length = (unit.strip() for unit in scene.units.split(","))
-    symbols = {"F": force, "L": length}
-    return {
-        name: "".join(symbols.get(letter, letter) for letter in dimension)
-        for dimension, names in DIMENSIONS.items()
-        for name in names.split()
-    }
+    units = unit_names(scene.units) | {"angle": "rad"}
+    return {name: units[kind] for kind, names in FIELDS.items() for name in names.split()}
 
 
 def blocks(response: Response, scene: Scene, k: int) -> dict[str, Grid]:
@@ -187,8 +184,7 @@ def write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
     return [folder / name for name in sets]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Series:
+class Series(NamedTuple):
     """The `blocks` of a model's answer at load parameter k, its load parameters (s,), and the units of the fields by name."""
 
     title: str

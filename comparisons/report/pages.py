@@ -91,7 +91,7 @@ def write_page(
     inputs = [folded(f"{scene.name}.toml", piece("code", to_toml(scene))) for scene in scenes]
     closing = [
         *([Section("Input", "\n".join(inputs))] if inputs else []),
-        Section("Versions and machine", definitions({**versions(), **machine()})),
+        Section("Versions and machine", piece("definitions", {**versions(), **machine()})),
         Section("Files", piece("links", [path.relative_to(folder).as_posix() for path in files])),
     ]
     write_text(folder / name, page(title, lead, [*sections, *closing]))
@@ -107,11 +107,6 @@ def picture(path: Path, caption: str) -> str:
     """Return an SVG or PNG file as an image: markup of two SVGs in one page would share names and styles."""
     content = base64.b64encode(path.read_bytes()).decode("ascii")
     return piece("picture", caption, f"data:{TYPES[path.suffix]};base64,{content}")
-
-
-def definitions(terms: Mapping[str, Any]) -> str:
-    """Return names and what they are as a list."""
-    return piece("definitions", terms)
 
 
 def folded(summary: str, inner: str) -> str:

@@ -4,7 +4,7 @@ Beams are ribbons of their height, so that beams and solids are shown on one foo
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,23 +26,13 @@ PARTS, LAYERS = 8, (4, 8)
 """Quadrilaterals along an element of a beam, and over its height for a stress linear in it or not."""
 THIN = 2e-3
 """Height of a beam whose section has none, over the size of the picture."""
-ARROW, LEAST, POINT = 0.2, 0.02, 0.014
-"""Length of the longest arrow and the least length of one over the size of the picture; radius of a mark over half the size."""
-_TURN = np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False)
-CIRCLE = np.stack([np.cos(_TURN), np.sin(_TURN)], axis=-1)
-SHAFT, HEAD = np.array(
-    [
-        [[-1, -0.025], [-0.25, -0.025], [-0.25, 0.025], [-1, 0.025]],
-        [[-0.25, -0.08], [0, 0], [0, 0], [-0.25, 0.08]],
-    ]
-)
-"""The two parts of an arrow of unit length along the first axis, which ends at the origin."""
+ARROW = 0.2
+"""Length of the longest arrow over the size of the picture."""
 COLOURS = {OPEN: CONTACT_STATES[OPEN], "contact": PIN, **CONTACT_STATES}
 """Colours of contacts by their state, the open ones first, below the others; a closed one without friction is a ``contact``."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Panel:
+class Panel(NamedTuple):
     """Deformed bodies as m quadrilaterals with a stress at their corners, the p nodes that touch them, and the supports.
 
     The nodes are pins, and ends of beams that touch other beams. `radii` are zero for a point. `forces` are what they exert on the beams,
@@ -70,19 +60,6 @@ class Panel:
             part.reshape(-1, 2) for part in (self.quads, self.pins + reach, self.pins - reach, self.supports)
         ]
 
-    def shapes(self, scale: "Scale") -> Iterator[tuple[str, float, Array]]:
-        """Yield colour, opacity and polygons (n, corners, 2) of discs, marks and arrows, from below."""
-        lengths = scale.force * np.hypot(*self.forces.T)
-        for state in self.shown():
-            own, colour = self.states == state, COLOURS[state]
-            discs, drawn = own & (self.radii > 0.0), own & (lengths > 2.0 * LEAST * scale.half)
-            yield colour, 0.35, self.pins[discs, None] + self.radii[discs, None, None] * CIRCLE
-            yield colour, 1.0, self.pins[own, None] + POINT * scale.half * CIRCLE
-            along = self.forces[drawn] / np.hypot(*self.forces[drawn].T)[:, None]
-            axes = lengths[drawn, None, None] * np.stack([along, along @ LEFT], axis=1)
-            tips = self.pins[drawn] + self.radii[drawn, None] * along
-            yield colour, 1.0, np.concatenate([tips[:, None] + part @ axes for part in (SHAFT, HEAD)])
-
 
 def mises_panel(response: Response, scene: Scene, ks: Sequence[int], title: str) -> Panel:
     """Return the von Mises stress at the load parameters numbered `ks`, over each other, without arrows.
@@ -101,7 +78,7 @@ def mises_panel(response: Response, scene: Scene, ks: Sequence[int], title: str)
                 data["axial_stress_right"], data["axial_stress_left"] = direct + bent, direct - bent
                 data["shear_stress"] = 1.5 * data["V"] / area
     found = panel(states, title, stress="von_mises")
-    return replace(found, forces=0.0 * found.forces)
+    return found._replace(forces=0.0 * found.forces)
 
 
 def panel(
@@ -201,8 +178,7 @@ def _state(force: Array, slip: float) -> str:
     return "contact" if np.isnan(slip) else str(SLIPS[int(slip)])
 
 
-@dataclass(frozen=True, kw_only=True)
-class Scale:
+class Scale(NamedTuple):
     """What pictures of panels share.
 
     The view has a centre and an `extent`, half its width and half its height. `stress` are the lowest and the

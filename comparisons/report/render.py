@@ -8,7 +8,7 @@ import pickle
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -35,6 +35,8 @@ LOWEST, AROUND, TALLEST, RIM = 520, 380, 610, 1.12
 """Pixels of a panel's height at least, of title, legend and colours together, and of the tallest drawing; rim beside a wide drawing."""
 TITLE, LABEL, LINE, BELOW_TITLE, BAR = 15, 30, 40, 85, 70
 """Sizes of the title in points of VTK, of other words, of a line and the place of the legend, and of the colours, in pixels."""
+LEAST, POINT = 0.04, 0.014
+"""Least length of an arrow and radius of a mark, over half the size of the view."""
 LAYER = 0.01
 """Height of a drawing above the one that it covers, over half the size of the view."""
 
@@ -177,15 +179,17 @@ def _draw(plotter: Any, panels: list[Panel], scale: Scale) -> None:
         plotter.subplot(0, i)
         # one bar in each panel takes different titles
         bar = {"title": f"{scale.label}{' ' * i}\n", "color": "black", "n_labels": 3, **sizes, **place}
-        body, stress = _mesh(one.quads, 0.0), one.stress.ravel()
         plotter.add_mesh(
-            body, scalars=stress, clim=scale.stress, cmap=scale.colours, scalar_bar_args=bar, **plain
+            _bodies(one.quads),
+            scalars=one.stress.ravel(),
+            clim=scale.stress,
+            cmap=scale.colours,
+            scalar_bar_args=bar,
+            **plain,
         )
-        for layer, (colour, opacity, polygons) in enumerate(one.shapes(scale), 1):
-            if len(polygons):
-                plotter.add_mesh(
-                    _mesh(polygons, layer * LAYER * scale.half), color=colour, opacity=opacity, **plain
-                )
+        for layer, (colour, opacity, shapes) in enumerate(_shapes(one, scale), 1):
+            shapes.points[:, 2] += layer * LAYER * scale.half
+            plotter.add_mesh(shapes, color=colour, opacity=opacity, **plain)
         if len(one.supports):
             lines = pyvista.line_segments_from_points(_in_space(one.supports, LAYER * scale.half))
             plotter.add_mesh(lines, color="black", line_width=2, **plain)
@@ -198,17 +202,37 @@ def _draw(plotter: Any, panels: list[Panel], scale: Scale) -> None:
             legend.SetPosition(0.02, 1.0 - BELOW_TITLE / height - size[1])
 
 
-def _in_space(shapes: Array, height: float) -> Array:
-    """Return the corners of shapes (n, corners, 2) as points (n corners, 3)."""
-    return np.insert(shapes.reshape(-1, 2), 2, height, axis=1)
-
-
-def _mesh(polygons: Array, height: float) -> Any:
-    """Return polygons (n, corners, 2) in space."""
+def _shapes(one: Panel, scale: Scale) -> Iterator[tuple[str, float, Any]]:
+    """Yield colour, opacity and meshes of discs, marks and arrows, from below."""
     import pyvista
 
-    faces = np.arange(polygons.size // 2).reshape(polygons.shape[:2])
-    return pyvista.PolyData.from_regular_faces(_in_space(polygons, height), faces)
+    disc, lengths = pyvista.Disc(inner=0.0, outer=1.0, c_res=60), np.hypot(*one.forces.T)
+    along = one.forces / np.where(lengths > 0.0, lengths, 1.0)[:, None]
+    tails = one.pins + one.radii[:, None] * along - scale.force * one.forces
+    for state in one.shown():
+        own, colour = one.states == state, COLOURS[state]
+        for opacity, radii in ((0.35, one.radii), (1.0, 0.0 * one.radii + POINT * scale.half)):
+            nodes = pyvista.PolyData(_in_space(one.pins[own]))
+            nodes["radius"] = radii[own]
+            yield colour, opacity, nodes.glyph(orient=False, scale="radius", geom=disc)
+        drawn = own & (scale.force * lengths > LEAST * scale.half)
+        if drawn.any():
+            forces = pyvista.PolyData(_in_space(tails[drawn]))
+            forces["force"] = _in_space(one.forces[drawn])
+            arrow = pyvista.Arrow(tip_radius=0.08, shaft_radius=0.025)
+            yield colour, 1.0, forces.glyph(orient="force", scale="force", factor=scale.force, geom=arrow)
+
+
+def _in_space(points: Array, height: float = 0.0) -> Array:
+    """Return points (..., 2) in space, shape (n, 3)."""
+    return np.insert(points.reshape(-1, 2), 2, height, axis=1)
+
+
+def _bodies(quads: Array) -> Any:
+    """Return quadrilaterals (n, 4, 2) in space."""
+    import pyvista
+
+    return pyvista.PolyData.from_regular_faces(_in_space(quads), np.arange(quads.size // 2).reshape(-1, 4))
 
 
 def _window(scale: Scale) -> tuple[int, float]:

@@ -118,45 +118,30 @@ class Sketch:
         self, loads: Sequence[tuple[LoadSpec, Sequence[float]]], gravity: Sequence[float], after: str = ""
     ) -> None:
         """Draw loads (force or force per length, and moment) and weights as arrows of one length."""
-        force, named = self.units["force"], "force, arrow not to scale"
+        force = self.units["force"]
         for load, (*vector, moment) in loads:
-            if load.force_per_length is not None:
-                tips, words = (
-                    self.at(load.beam, np.linspace(*load.span, ROW)),
-                    f"{force}/{self.units['length']}",
-                )
-                self._force(
-                    tips,
-                    vector,
-                    0.9,
-                    f"{hypot(*vector):.6g} {words}{after}",
-                    "force per length, arrows not to scale",
-                )
-                continue
-            tips = self.at(load.beam, [load.at if load.at is not None else float(load.end == "end")])
-            pulls = any(vector) and _pulls(self.scene.beam(load.beam), load.end, vector)
-            self._force(tips, vector, 2.0, f"{hypot(*vector):.6g} {force}{after}", named, pulls=pulls)
+            along = load.force_per_length is not None
+            at = (
+                np.linspace(*load.span, ROW) if along else [load.end == "end" if load.at is None else load.at]
+            )
+            tips, unit = self.at(load.beam, at), f"{force}/{self.units['length']}" if along else force
+            self._force(tips, vector, f"{hypot(*vector):.6g} {unit}{after}", load)
             if moment:
                 self.turn(tips[0], moment, f"{abs(moment):.6g} {self.units['moment']}{after}", LOAD)
                 self.legend.setdefault("moment", legend_symbol(chain(arc(1.0)), LOAD))
         for beam in (beam for beam in self.scene.beams if beam.density):
             words = f"weight {hypot(*gravity) * beam.mass:.4g} {force}{after}"
-            self._force(self.at(beam.name, [WEIGHT]), gravity, 2.0, words, named)
+            self._force(self.at(beam.name, [WEIGHT]), gravity, words)
 
-    def _force(
-        self,
-        tips: Array,
-        vector: Sequence[float],
-        width: float,
-        words: str,
-        named: str,
-        *,
-        pulls: bool = False,
-    ) -> None:
-        if any(vector):
-            drawn = ARROW / (1 if width > 1.0 else 2) * self.size * _unit(vector)
-            self.arrows(tips + pulls * drawn, drawn, words, LOAD, width, at_tip=pulls)
-            self.named(named, LOAD, marker=">", linewidth=width)
+    def _force(self, tips: Array, vector: Sequence[float], words: str, load: LoadSpec | None = None) -> None:
+        """Draw the arrow of a force, or those of a force per length, shorter and thinner."""
+        if not any(vector):
+            return
+        many, pulls = len(tips) > 1, load is not None and _pulls(self.scene.beam(load.beam), load.end, vector)
+        width, named = (0.9, "force per length, arrows") if many else (2.0, "force, arrow")
+        drawn = ARROW / (1 + many) * self.size * _unit(vector)
+        self.arrows(tips + pulls * drawn, drawn, words, LOAD, width, at_tip=pulls)
+        self.named(f"{named} not to scale", LOAD, marker=">", linewidth=width)
 
     def turn(self, at: Array, turn: float, words: str, colour: str) -> None:
         """Draw a moment or a rotation as an arc with its value."""

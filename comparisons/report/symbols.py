@@ -4,7 +4,9 @@ Every symbol has its node at the origin. A picture turns, enlarges and moves its
 matplotlib and by pyvista, and stand in a legend.
 """
 
+import tomllib
 from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -40,31 +42,24 @@ def arc(turn: float, points: int = 25, part: float = 0.75) -> Array:
     return np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
 
-def _ground(y: float, half: float) -> Segments:
-    """Return a line with hatches below it."""
-    hatches = [((at, y), (at - 0.3, y - 0.35)) for at in np.linspace(-half, half, HATCHES + 1)[1:].tolist()]
-    return np.array([((-half, y), (half, y)), *hatches])
+def _symbol(lines: list[Any], ground: tuple[float, float] = (0.0, 0.0), **_: Any) -> Segments:
+    """Return the segments of lines, and of a ground at a height with strokes below it."""
+    (y, half), drawn = ground, [chain(line) for line in lines]
+    if half:
+        strokes = [((x, y), (x - 0.3, y - 0.35)) for x in np.linspace(-half, half, HATCHES + 1)[1:]]
+        drawn.append(np.array([((-half, y), (half, y)), *strokes]))
+    return np.concatenate(drawn)
 
 
-_TRIANGLE = chain([(0, 0), (-0.6, -1), (0.6, -1), (0, 0)])
-_ROLLER = np.concatenate([_TRIANGLE, _ground(-1.25, 0.9)])
-_GUIDE = np.concatenate(
-    [chain([(-0.9, 0), (0.9, 0)]), chain([(-0.9, -0.25), (0.9, -0.25)]), _ground(-0.25, 0.9)]
-)
-_SQUARE = chain([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5)])
-_COIL = chain([(0, 0), (0, -0.4), (0.4, -0.6), (-0.4, -1), (0.4, -1.4), (-0.4, -1.8), (0, -2), (0, -2.4)])
-_SPRING = np.concatenate([_COIL, _ground(-2.4, 0.7)])
+_DATA = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+_SPRING = _symbol(**_DATA["spring"])
 _ANGLE = np.linspace(0.0, 4.0 * np.pi, 41)
 _SPIRAL = chain((0.25 + 0.15 * _ANGLE / np.pi)[:, None] * np.stack([np.cos(_ANGLE), np.sin(_ANGLE)], axis=1))
 HINGE = chain(0.35 * arc(1.0, points=17, part=1.0))
 SUPPORTS: dict[tuple[str, ...], tuple[str, Segments]] = {
-    ("x", "y", "rotation"): ("clamped", _ground(0.0, 1.0)),
-    ("x", "y"): ("pinned", np.concatenate([_TRIANGLE, _ground(-1.0, 0.9)])),
-    ("y",): ("roller, free in x", _ROLLER),
-    ("x",): ("roller, free in y", _ROLLER),
-    ("y", "rotation"): ("guided, free in x", _GUIDE),
-    ("x", "rotation"): ("guided, free in y", _GUIDE),
-    ("rotation",): ("rotation held", _SQUARE),
+    tuple(held.split()): (words, _symbol(**one))
+    for one in _DATA["support"]
+    for held, words in one["named"].items()
 }
 """Names and symbols of supports by the components that they hold."""
 
@@ -141,19 +136,15 @@ def draw_symbols(axes: Any, scene: Scene, lines: Mapping[str, Array], size: floa
 def legend_symbol(segments: Segments, colour: str = palette.BLACK) -> Any:
     """Return an entry of a legend that shows segments of unit size."""
     from matplotlib.lines import Line2D
-    from matplotlib.path import Path
+    from matplotlib.path import Path as Marker
 
     vertices = segments.reshape(-1, 2)
     vertices = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2
-    marker = Path(vertices, [Path.MOVETO, Path.LINETO] * len(segments))
+    marker = Marker(vertices, [Marker.MOVETO, Marker.LINETO] * len(segments))
     size = min(13 * float(np.abs(vertices).max()), LARGEST)  # matplotlib enlarges all markers to one size
-    style: dict[str, Any] = {
-        "marker": marker,
-        "markersize": size,
-        "markerfacecolor": "none",
-        "linestyle": "none",
-    }
-    return Line2D([], [], color=colour, **style)
+    return Line2D(
+        [], [], color=colour, marker=marker, markersize=size, markerfacecolor="none", linestyle="none"
+    )
 
 
 def inward(scene: Scene, support: SupportSpec | SpringSpec) -> Array:

@@ -168,12 +168,7 @@ class BeamSpec(Record):
         area, inertia, sheared = self.section(fraction)
         return self.youngs_modulus * area, G * sheared, self.youngs_modulus * inertia
 
-    @property
-    def cross_section(self) -> tuple[float, float, float]:
-        """Area, second moment of area and effective shear area; the middle section's where the beam tapers."""
-        return self.section(0.5)
-
-    def section(self, fraction: float) -> tuple[float, float, float]:
+    def section(self, fraction: float = 0.5) -> tuple[float, float, float]:
         """Return area, second moment of area and effective shear area at a fraction of the length."""
         width, height = _between(self.width, fraction), self.height_at(fraction)
         if width and height:
@@ -189,7 +184,7 @@ class BeamSpec(Record):
     @property
     def rectangle_height(self) -> float:
         """Largest height of the section, or ``sqrt(12 I/A)`` of the rectangle with its area and second moment."""
-        area, inertia, _ = self.cross_section
+        area, inertia, _ = self.section()
         return max(self.height_at(0.0), self.height_at(1.0)) or math.sqrt(12.0 * inertia / area)
 
     def mass_per_length(self, fraction: float) -> float:

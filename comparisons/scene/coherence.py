@@ -5,19 +5,17 @@ A rule is judged where the values that it reads are right; reading a wrong one r
 
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from comparisons.scene.beam import BeamSpec
 from comparisons.scene.conditions import moved_where_free
 from comparisons.scene.contact import ContactSpec
 from comparisons.scene.ends import free_ends
 from comparisons.scene.joints import joint_rules
-from comparisons.scene.record import Record, Unjudged
+from comparisons.scene.record import Unjudged
 from comparisons.scene.rules import MISSING, FieldError, Mistakes, Point, shown
 from comparisons.scene.stages import StageSpec
-
-if TYPE_CHECKING:
-    from comparisons.scene.scene import Scene
+from comparisons.scene.statement import Names, Statement
 
 PLACED = ("beam", "beam", "node", "end")
 LISTS = {"contact": ("beam", "beam", "pair", "node"), "support": ("beam", "beam", "", "")}
@@ -27,11 +25,11 @@ IN_STAGES = {"pin": ("name", "pin", "name", "name"), "load": PLACED}
 """The same of the lists in a stage."""
 
 
-def scene_rules(scene: "Scene") -> Mistakes:
+def scene_rules(scene: Statement) -> Mistakes:
     """Yield what is wrong between the records of `scene`."""
     for rule in (
         scene.names.repeated,
-        _contacts(scene),
+        *(_contact(one, scene, f"contact[{i}]") for i, one in enumerate(scene.records("contacts"))),
         *(_named(*one, scene.names) for one in _lists(scene)),
         *(_moved_supports(scene, stage, f"{key}support") for key, stage in _stages(scene)),
         joint_rules(scene),
@@ -43,74 +41,20 @@ def scene_rules(scene: "Scene") -> Mistakes:
             yield from rule
 
 
-class Names:
-    """Beams and pins by their names. They are `complete` unless a name is wrong or appears twice.
-
-    A name that nothing has, or that appears twice, raises `Unjudged`, a ``KeyError``.
-    """
-
-    def __init__(self, scene: "Scene") -> None:
-        self.complete, self.repeated = scene.has("beams", "pins"), list[FieldError]()
-        self._found: dict[str, tuple[str, Any]] = {}
-        for kind in ("beam", "pin"):
-            for i, record in enumerate(_listed(scene, f"{kind}s")):
-                place = f"{kind}[{i}]"
-                if not record.has("name"):
-                    self.complete = False
-                elif self._found.setdefault(record.name, (place, record))[0] != place:
-                    self.repeated.append(FieldError(f"{place}.name", record.name, "must not appear twice"))
-        for mistake in self.repeated:
-            self._found.pop(str(mistake.value), None)
-            self.complete = False
-
-    def place(self, name: str, kind: str = "") -> str:
-        """Return the place of a beam or pin, as ``beam[0]``."""
-        if name not in self._found or not self._found[name][0].startswith(kind):
-            raise Unjudged(name)
-        return self._found[name][0]
-
-    def record(self, kind: str, name: str) -> Any:
-        """Return the beam or the pin of a name, by its kind."""
-        self.place(name, kind)
-        return self._found[name][1]
-
-    def is_a(self, kind: str, name: str) -> bool:
-        """Whether `name` is that of a "beam" or a "pin"."""
-        found = name in self._found and self._found[name][0].startswith(kind)
-        if not found and not self.complete:
-            raise Unjudged(name)
-        return found
-
-    def is_node(self, node: str) -> bool:
-        """Whether `node` is a pin's name, or a beam's end as ``upper.end``."""
-        name, dot, end = node.partition(".")
-        return self.is_a("beam" if dot else "pin", name) and (end in ("start", "end") or not dot)
-
-    def of(self, kind: str) -> list[str]:
-        """Return the names of a kind."""
-        return [name for name, (place, _) in self._found.items() if place.startswith(kind)]
-
-
 def _list(names: Iterable[str]) -> str:
     """Return names as they stand in a file, separated by commas."""
     return ", ".join(map(shown, names)) or "there is none"
 
 
-def _listed(record: Record, field: str) -> Sequence[Any]:
-    """Return the records that a field lists; none where it is wrong."""
-    records: Sequence[Any] = getattr(record, field) if record.has(field) else ()
-    return records
+def _stages(scene: Statement) -> Iterator[tuple[str, StageSpec]]:
+    yield from ((f"stage[{i}].", stage) for i, stage in enumerate(scene.records("stages")))
 
 
-def _stages(scene: "Scene") -> Iterator[tuple[str, StageSpec]]:
-    yield from ((f"stage[{i}].", stage) for i, stage in enumerate(_listed(scene, "stages")))
-
-
-def _lists(scene: "Scene") -> Iterator[tuple[str, Sequence[Any], tuple[str, str, str, str]]]:
+def _lists(scene: Statement) -> Iterator[tuple[str, Sequence[Any], tuple[str, str, str, str]]]:
     """Yield the place of every list of records, the records, and what `LISTS` says of them."""
-    yield from ((kind, _listed(scene, f"{kind}s"), how) for kind, how in LISTS.items())
+    yield from ((kind, scene.records(f"{kind}s"), how) for kind, how in LISTS.items())
     for key, stage in _stages(scene):
-        yield from ((key + kind, _listed(stage, kind), how) for kind, how in IN_STAGES.items())
+        yield from ((key + kind, stage.records(kind), how) for kind, how in IN_STAGES.items())
 
 
 def _named(place: str, records: Sequence[Any], how: tuple[str, str, str, str], names: Names) -> Mistakes:
@@ -119,7 +63,9 @@ def _named(place: str, records: Sequence[Any], how: tuple[str, str, str, str], n
     for i, record in enumerate(records):
         with suppress(Unjudged):
             if key and not names.is_a(kind, name := getattr(record, key)):
-                yield FieldError(f"{place}[{i}].{key}", name, f"must name a {kind}: {_list(names.of(kind))}")
+                yield FieldError(
+                    f"{place}[{i}].{key}", name, f"must name a {kind}: {_list(names.found[kind])}"
+                )
         with suppress(Unjudged):
             value = getattr(record, attribute) if attribute else None
             if value in seen:
@@ -130,7 +76,7 @@ def _named(place: str, records: Sequence[Any], how: tuple[str, str, str, str], n
                 seen.add(value)
 
 
-def _idle_pins(scene: "Scene") -> Mistakes:
+def _idle_pins(scene: Statement) -> Mistakes:
     names = scene.names
     touching = {contact.node for contact in scene.contacts}
     if all(names.is_node(one.node) and one.node.partition(".")[0] != one.beam for one in scene.contacts):
@@ -140,14 +86,14 @@ def _idle_pins(scene: "Scene") -> Mistakes:
                     yield FieldError(f"pin[{i}].name", pin.name, "must be the node of a contact")
 
 
-def _cause(scene: "Scene") -> Mistakes:
+def _cause(scene: Statement) -> Mistakes:
     moving = any(pin.moving for pin in scene.pins) or any(support.moves for support in scene.supports)
     if scene.beams and not (moving or scene.loads or scene.gravity or scene.stages):
         key, value = ("pin[0].displacement", scene.pins[0].displacement) if scene.pins else ("pin", MISSING)
         yield FieldError(key, value, "give a load, or a pin or a support that moves: nothing happens")
 
 
-def _weight(scene: "Scene") -> Mistakes:
+def _weight(scene: Statement) -> Mistakes:
     heavy = [(f"beam[{i}].density", beam.density) for i, beam in enumerate(scene.beams) if beam.density]
     pulled = [(f"{key}gravity", stage.gravity) for key, stage in _stages(scene) if any(stage.gravity)]
     if scene.gravity is None:
@@ -160,18 +106,12 @@ def _weight(scene: "Scene") -> Mistakes:
         yield FieldError("scene.gravity", scene.gravity, "must not be zero in every stage")
 
 
-def _contacts(scene: "Scene") -> Mistakes:
-    for i, contact in enumerate(scene.contacts):
-        with suppress(Unjudged):
-            yield from _contact(contact, scene, f"contact[{i}]")
-
-
-def _contact(contact: ContactSpec, scene: "Scene", key: str) -> Mistakes:
+def _contact(contact: ContactSpec, scene: Statement, key: str) -> Mistakes:
     """Yield the first mistake of a contact: its node, its surface, and where the node is."""
     names = scene.names
     if not names.is_node(contact.node):
-        ends = (f"{beam}.{end}" for beam in names.of("beam") for end in ("start", "end"))
-        rule = f"must name a pin or a beam's end: {_list((*names.of('pin'), *ends))}"
+        ends = (f"{beam}.{end}" for beam in names.found["beam"] for end in ("start", "end"))
+        rule = f"must name a pin or a beam's end: {_list((*names.found['pin'], *ends))}"
         yield FieldError(f"{key}.node", contact.node, rule)
         return
     beam = scene.beam(contact.beam)
@@ -185,7 +125,7 @@ def _contact(contact: ContactSpec, scene: "Scene", key: str) -> Mistakes:
         yield from _position(contact, beam, scene)
 
 
-def _position(contact: ContactSpec, beam: BeamSpec, scene: "Scene") -> Mistakes:
+def _position(contact: ContactSpec, beam: BeamSpec, scene: Statement) -> Mistakes:
     """Yield a mistake where the undeformed position of a contact's node is on the wrong side, or else over an end."""
     name, dot, end = contact.node.partition(".")
     if dot:
@@ -207,7 +147,7 @@ def _position(contact: ContactSpec, beam: BeamSpec, scene: "Scene") -> Mistakes:
             yield FieldError(key, position, f"must lie clear of {where}, overlap {over:.6g}")
 
 
-def _moved_supports(scene: "Scene", stage: StageSpec, key: str) -> Mistakes:
+def _moved_supports(scene: Statement, stage: StageSpec, key: str) -> Mistakes:
     supports = {scene.place(support.node): support for support in scene.all_supports}
     beams, seen = {beam.name for beam in scene.beams}, set[Point]()
     for j, move in enumerate(stage.support):

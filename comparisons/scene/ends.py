@@ -3,35 +3,34 @@
 import math
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
-if TYPE_CHECKING:
-    from comparisons.scene.contact import ContactSpec
-    from comparisons.scene.rules import Point
-    from comparisons.scene.scene import Scene
+from comparisons.scene.contact import ContactSpec
+from comparisons.scene.rules import Point
+from comparisons.scene.statement import Statement
 
 
 class BeamEnd(NamedTuple):
     """An end that a contact's node may meet: the segment |y| <= half across it, and the radius of the contact's pin."""
 
     name: str
-    place: "Point"
-    inward: "Point"
+    place: Point
+    inward: Point
     half: float
     radius: float
 
-    def local(self, point: "Point") -> "Point":
+    def local(self, point: Point) -> Point:
         """Return a point in the frame of the end."""
         size, (x, y) = math.hypot(*self.inward), (point[0] - self.place[0], point[1] - self.place[1])
         c, s = -self.inward[0] / size, -self.inward[1] / size
         return c * x + s * y, c * y - s * x
 
-    def room(self, point: "Point") -> float:
+    def room(self, point: Point) -> float:
         """Distance of the pin about a point from the segment; infinite where the point is not beyond the end."""
         x, y = self.local(point)
         return math.hypot(x, max(abs(y) - self.half, 0.0)) - self.radius if x > 0.0 else math.inf
 
-    def meeting(self, start: "Point", end: "Point") -> float:
+    def meeting(self, start: Point, end: Point) -> float:
         """Part of a straight way at which the pin first meets the segment from beyond; nan if it does not."""
         (x, y), (x1, y1) = self.local(start), self.local(end)
         (dx, dy), found = (x1 - x, y1 - y), []
@@ -46,7 +45,7 @@ class BeamEnd(NamedTuple):
         return min((part for part in found if 0.0 <= part <= 1.0 and x + part * dx >= 0.0), default=math.nan)
 
 
-def free_ends(scene: "Scene", spec: "ContactSpec") -> Iterator[BeamEnd]:
+def free_ends(scene: Statement, spec: ContactSpec) -> Iterator[BeamEnd]:
     """Yield the ends of the touched undeformed beam that no other beam shares; none for a point on an axis."""
     beam, radius = scene.beam(spec.beam), scene.radius(spec)
     if spec.surface == "axis" and not radius:
@@ -59,7 +58,7 @@ def free_ends(scene: "Scene", spec: "ContactSpec") -> Iterator[BeamEnd]:
             yield BeamEnd(name, place, (way * x, way * y), offset - radius, radius)
 
 
-def near_ends(scene: "Scene") -> Iterator[str]:
+def near_ends(scene: Statement) -> Iterator[str]:
     """Yield one line for each undeformed end that the path of a pin in contact with its beam comes to within the pin's radius."""
     for spec in scene.contacts:
         ways = list(pairwise(scene.pin(spec.node).points)) if "." not in spec.node else []

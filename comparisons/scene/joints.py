@@ -5,15 +5,12 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from itertools import islice
-from typing import TYPE_CHECKING
 
 from comparisons.scene.beam import BeamSpec
 from comparisons.scene.conditions import COMPONENTS
 from comparisons.scene.record import Unjudged
 from comparisons.scene.rules import FieldError, Mistakes, Point
-
-if TYPE_CHECKING:
-    from comparisons.scene.scene import Scene
+from comparisons.scene.statement import Statement
 
 NEAR = 1e-6
 """Distance of two ends, relative to the beam's length, below which a joint is meant: the ends must then have equal coordinates."""
@@ -21,7 +18,7 @@ LEAST = 1e-9
 """Least pivot of the equations of rigid motions, in coordinates over the longest beam; a smaller one counts as zero."""
 
 
-def joint_rules(scene: "Scene") -> Mistakes:
+def joint_rules(scene: Statement) -> Mistakes:
     """Yield ends that nearly meet and beams end to end; without any, supports at one joint, hinges and structures that are not held."""
     misplaced = [*_nearly_meeting(scene), *_end_to_end(scene)]
     yield from misplaced
@@ -30,7 +27,7 @@ def joint_rules(scene: "Scene") -> Mistakes:
         yield from _held(scene)
 
 
-def _held(scene: "Scene") -> Mistakes:
+def _held(scene: Statement) -> Mistakes:
     """Yield the hinges that do nothing, and the structures that are free or, untouched, can move without strain."""
     for name in (
         *(beam.name for beam in scene.beams),
@@ -62,7 +59,7 @@ def _held(scene: "Scene") -> Mistakes:
             yield FieldError(f"hinge[{hinges[0][0]}].end", hinges[0][1], rule)
 
 
-def _structures(scene: "Scene") -> Iterator[list[BeamSpec]]:
+def _structures(scene: Statement) -> Iterator[list[BeamSpec]]:
     """Yield the beams, grouped by what is joined together."""
     meeting, free = _meeting(scene.beams), {beam.name: beam for beam in scene.beams}
     while free:
@@ -82,7 +79,7 @@ def _meeting(beams: Sequence[BeamSpec]) -> dict[Point, list[BeamSpec]]:
     return meeting
 
 
-def _nearly_meeting(scene: "Scene") -> Mistakes:
+def _nearly_meeting(scene: Statement) -> Mistakes:
     """Yield ends that nearly meet an end of an earlier beam. Along a direction that is no beam's, only neighbours can be near."""
     ends = sorted(
         (math.cos(1.0) * place[0] + math.sin(1.0) * place[1], i, end)
@@ -102,7 +99,7 @@ def _nearly_meeting(scene: "Scene") -> Mistakes:
                 yield FieldError(f"beam[{last}].{near}", place, rule)
 
 
-def _end_to_end(scene: "Scene") -> Mistakes:
+def _end_to_end(scene: Statement) -> Mistakes:
     """Yield beams between the same ends as an earlier one, unless they are different arcs."""
     there: dict[tuple[frozenset[Point], float], int] = {}
     for j, beam in enumerate(scene.beams):
@@ -114,7 +111,7 @@ def _end_to_end(scene: "Scene") -> Mistakes:
                 yield FieldError(f"beam[{j}].end", beam.end, rule)
 
 
-def _one_support(scene: "Scene") -> Mistakes:
+def _one_support(scene: Statement) -> Mistakes:
     """Yield supports at a place that an earlier support holds."""
     keys = [f"beam[{i}].clamped" for i, beam in enumerate(scene.beams) for _ in beam.clamped]
     keys += [f"support[{i}].end" for i in range(len(scene.supports))]
@@ -127,7 +124,7 @@ def _one_support(scene: "Scene") -> Mistakes:
         held.setdefault(place, support.node)
 
 
-def _useless_hinges(scene: "Scene") -> Mistakes:
+def _useless_hinges(scene: Statement) -> Mistakes:
     """Yield the hinges at ends that nothing turns, and one hinge of every joint that all its beams leave free to turn."""
     meeting = _meeting(scene.beams)
     turned = {scene.place(item.node) for item in scene.holding if "rotation" in item.held}
@@ -145,7 +142,7 @@ def _useless_hinges(scene: "Scene") -> Mistakes:
             yield FieldError(f"hinge[{i}].end", hinge.node, rule)
 
 
-def _moves(scene: "Scene", structure: list[BeamSpec], free: Sequence[str]) -> bool:
+def _moves(scene: Statement, structure: list[BeamSpec], free: Sequence[str]) -> bool:
     """Whether rigid beams can move: joints by (ux, uy, turn), and a beam turns by the relative motion of its ends.
 
     The ends `free` do not turn with their joints.

@@ -18,7 +18,6 @@ from comparisons.scene.tables import (
     read_text,
     stated,
 )
-from comparisons.scene.words import meant
 
 Table = dict[str, Any]
 FOLDER = Path(__file__).parent / "scenes"
@@ -53,6 +52,8 @@ def load_scene(scene: str) -> Scene:
     names = [path.stem for path in FOLDER.glob("*.toml")]
     if scene in names:
         return read_scene((FOLDER / f"{scene}.toml").read_text(encoding="utf-8"), scene)
+    from comparisons.scene.words import meant
+
     name = None if os.path.lexists(scene) else meant(scene, names)
     near = f" (did you mean {name}?)" if name else ""
     absent = f"no such file or built-in scene{near}; crossval scenes lists them"

@@ -81,6 +81,11 @@ class Record:
         """Whether none of the named values is wrong."""
         return vars(self).keys() >= set(names)
 
+    def records(self, name: str) -> tuple[Any, ...]:
+        """Return the records that a value lists; none where it is wrong."""
+        records: tuple[Any, ...] = vars(self).get(name, ())
+        return records
+
     if not TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any:
@@ -95,19 +100,17 @@ class Record:
     def __delattr__(self, name: str) -> None:
         self.__setattr__(name, None)
 
-    def _values(self) -> list[Any]:
-        return [vars(self).get(name) for name in self._rules]
+    def _values(self) -> tuple[Any, ...]:
+        return (type(self), *(vars(self).get(name) for name in self._rules))
 
     def __eq__(self, other: object) -> bool:
-        return (
-            isinstance(other, type(self)) and type(other) is type(self) and self._values() == other._values()
-        )
+        return isinstance(other, Record) and self._values() == other._values()
 
     def __hash__(self) -> int:
-        return hash(tuple(self._values()))
+        return hash(self._values())
 
     def __repr__(self) -> str:
-        values = (f"{name}={value!r}" for name, value in zip(self._rules, self._values(), strict=True))
+        values = (f"{name}={vars(self).get(name)!r}" for name in self._rules)
         return f"{type(self).__name__}({', '.join(values)})"
 
 

@@ -211,7 +211,6 @@ text = ValueRule("a printable text, not empty", worded(r"\S"))
 name = ValueRule("a name of letters, digits, '-' and '_'", worded(r"^[\w-]+$"))
 units = ValueRule('the units of force and of length, as "N, m"', worded("^[^,]*[^, ][^,]*,[^,]*[^, ][^,]*$"))
 truth = ValueRule("true or false", {"type": "boolean"})
-sequence = ValueRule("a list", several({"type": "object"}), form=tuple)
 
 
 def whole(largest: int = 100_000) -> ValueRule:

@@ -1,19 +1,16 @@
-"""The record of a whole scene, which checks the rules between its records at construction."""
+"""A whole scene, which checks the rules between its records at construction, and what happens over the load parameters."""
 
 from collections.abc import Iterator
 from functools import cached_property
 
-from comparisons.scene import rules
-from comparisons.scene.beam import BeamSpec
-from comparisons.scene.coherence import Names, scene_rules
-from comparisons.scene.conditions import HingeSpec, LoadSpec, SpringSpec, SupportSpec
-from comparisons.scene.contact import ContactSpec, PinSpec
-from comparisons.scene.record import Record, Unjudged, copied, key, listed, optional
+from comparisons.scene.coherence import scene_rules
+from comparisons.scene.conditions import LoadSpec, SupportSpec
 from comparisons.scene.rules import Point
-from comparisons.scene.stages import LoadHistory, PinMove, PrescribedMotion, StageSpec, amount
+from comparisons.scene.stages import LoadHistory, PrescribedMotion, amount
+from comparisons.scene.statement import Statement
 
 
-class Scene(Record):
+class Scene(Statement):
     """Beams with supports and loads, pins and contacts, and the load parameters ``t_k = k/n`` that every model hits exactly.
 
     Beams whose ends have the same coordinates are rigidly joined there, unless a hinge is between them. The load parameter goes from
@@ -21,69 +18,7 @@ class Scene(Record):
     no beam may be free.
     """
 
-    name: str = key(rules.name, "Letters, digits, ``-`` and ``_``.")
-    units: str = optional(rules.units, 'Units of force and length, as ``"N, m"``.', "N, m")
-    load_parameters: int = key(rules.whole_number, "Number n of load parameters.")
-    gravity: Point | None = optional(
-        rules.point,
-        "Acceleration of gravity at load parameter 1; times a `density` it is a force per volume [length/time^2].",
-    )
-    beams: tuple[BeamSpec, ...] = key(rules.Records("beam", BeamSpec, at_least=1), "The beams.")
-    supports: tuple[SupportSpec, ...] = listed("support", SupportSpec, "The supports.")
-    loads: tuple[LoadSpec, ...] = listed("load", LoadSpec, "The loads of the first stage.")
-    pins: tuple[PinSpec, ...] = listed("pin", PinSpec, "The pins.")
-    contacts: tuple[ContactSpec, ...] = listed("contact", ContactSpec, "The contacts.")
-    hinges: tuple[HingeSpec, ...] = listed("hinge", HingeSpec, "The hinges.")
-    springs: tuple[SpringSpec, ...] = listed("spring", SpringSpec, "The springs.")
-    stages: tuple[StageSpec, ...] = listed("stage", StageSpec, "Stages after the first one.")
-
     obeys = (scene_rules,)
-
-    def _settle(self) -> None:
-        if self.has("pins"):
-            vars(self)["pins"] = tuple(copied(pin, moves=self._moves(pin)) for pin in self.pins)
-
-    def _moves(self, pin: PinSpec) -> tuple[PinMove | None, ...] | None:
-        """Return the motions of a pin in the stages; None where one is wrong."""
-        try:
-            return tuple({move.name: move for move in stage.pin}.get(pin.name) for stage in self.stages)
-        except Unjudged:
-            return None
-
-    @cached_property
-    def names(self) -> Names:
-        """The beams and pins by their names."""
-        return Names(self)
-
-    def beam(self, name: str) -> BeamSpec:
-        """Return the beam called `name`."""
-        beam: BeamSpec = self.names.record("beam", name)
-        return beam
-
-    def pin(self, name: str) -> PinSpec:
-        """Return the pin called `name`."""
-        pin: PinSpec = self.names.record("pin", name)
-        return pin
-
-    def offset(self, contact: ContactSpec, fraction: float = 0.5) -> float:
-        """Distance of the contact's node, or of its pin's centre, from the axis where they touch, at a fraction of a beam that tapers."""
-        surface = 0.0 if contact.surface == "axis" else self.beam(contact.beam).height_at(fraction) / 2.0
-        return surface + self.radius(contact)
-
-    def radius(self, contact: ContactSpec) -> float:
-        """Radius of the contact's pin, zero for a point."""
-        return 0.0 if "." in contact.node else self.pin(contact.node).radius or 0.0
-
-    @cached_property
-    def all_supports(self) -> tuple[SupportSpec, ...]:
-        """The clamped ends of the beams, then `supports`."""
-        ends = ((beam.name, end) for beam in self.beams for end in beam.clamped)
-        return (*(SupportSpec(beam=name, end=end, kind="clamped") for name, end in ends), *self.supports)
-
-    @property
-    def holding(self) -> tuple[SupportSpec | SpringSpec, ...]:
-        """The supports and the springs."""
-        return (*self.all_supports, *self.springs)
 
     @cached_property
     def prescribed_motions(self) -> dict[str, PrescribedMotion]:
@@ -116,16 +51,9 @@ class Scene(Record):
         """The dead loads through all stages, place by place in the order of the file."""
         found: dict[str, LoadHistory] = {}
         for number, load in self.numbered_loads():
-            rest = ((0.0, 0.0, 0.0),) * (len(self.stages) + 1)
-            first, amounts = found.setdefault(load.node, LoadHistory(load, rest))
+            first, amounts = found.get(load.node) or (load, ((0.0, 0.0, 0.0),) * (len(self.stages) + 1))
             found[load.node] = LoadHistory(first, (*amounts[:number], load.amount, *amounts[number + 1 :]))
         return tuple(found.values())
-
-    def place(self, node: str) -> Point:
-        """Return the undeformed position of a beam's end, ``upper.end``."""
-        name, end = node.split(".")
-        beam = self.beam(name)
-        return beam.start if end == "start" else beam.end
 
     def supports_of(self, beam: str) -> tuple[SupportSpec, ...]:
         """Return the supports of a beam by falling number of held components; at equality the support at the start is first."""
@@ -134,9 +62,8 @@ class Scene(Record):
 
     def tip(self, beam: str) -> str:
         """Return the end of a beam with fewer held components, "end" at equality."""
-        own = self.supports_of(beam)
-        more = bool(own) and own[0].end == "end" and (len(own) == 1 or own[0].held != own[1].held)
-        return "start" if more else "end"
+        held = {support.end: len(support.held) for support in self.supports_of(beam)}
+        return "start" if held.get("start", 0) < held.get("end", 0) else "end"
 
     @cached_property
     def times(self) -> tuple[float, ...]:

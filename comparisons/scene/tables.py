@@ -8,7 +8,6 @@ from typing import Any
 
 from comparisons.files import read_regular
 from comparisons.scene.rules import MISSING, MOST, UNREADABLE, FieldError, RecordError, Rule, RuleError, shown
-from comparisons.scene.words import hint, meant
 
 LARGEST_FILE = 16_000_000
 """Largest size of an input file [byte]."""
@@ -68,7 +67,12 @@ def read_tables(text: str, source: str, kind: type[InputError]) -> dict[str, Any
 
 def misnamed(table: Mapping[str, Any], known: Collection[str]) -> dict[str, str | None]:
     """Return the unknown keys of a table, each with the known key that it means by another name or misspelt."""
-    return {key: meant(key, known) for key in islice((key for key in table if key not in known), MOST)}
+    unknown = list(islice((key for key in table if key not in known), MOST))
+    if not unknown:
+        return {}
+    from comparisons.scene.words import meant  # its tables only for a file with a mistake
+
+    return {key: meant(key, known) for key in unknown}
 
 
 def stated(table: Mapping[str, Any], known: Collection[str]) -> set[str | None]:
@@ -82,6 +86,8 @@ def check_keys(
     """Yield the keys of `table` that are not known, and the keys that are required and not there."""
     others = misnamed(table, known)
     for key in others:
+        from comparisons.scene.words import hint
+
         rule = f"unknown key, {hint(key, known)}"
         yield FieldError(key if key.isprintable() else repr(key), table[key], rule)
     there = {*table, *others.values()}

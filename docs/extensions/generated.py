@@ -15,6 +15,7 @@ from comparisons.answer.quantities import QUANTITIES
 from comparisons.models import MODELS
 from comparisons.models.cantilever import STOPS
 from comparisons.models.outside.child import ProgramStatus
+from comparisons.output import markdown
 from comparisons.referee import Verdict
 from comparisons.scene import Scene, load_scene, read_scene
 from comparisons.scene.read import LISTS
@@ -51,18 +52,14 @@ def line(docstring: str) -> str:
     """
     parts = re.split(r"(``[^`]+``|`[^`]+`)", " ".join(docstring.split()))
     return "".join(
-        f"`{part.strip('`')}`" if part.startswith("`") else re.sub(r"([*_<\[{$|\\])", r"\\\1", part)
+        f"`{part.strip('`')}`" if part.startswith("`") else re.sub(r"([*_<\[{$\\])", r"\\\1", part)
         for part in parts
     )
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Return a Markdown table; cells are Markdown in one line."""
-    lines = (
-        " | ".join(re.sub(r"(?<!\\)\|", r"\\|", cell) for cell in row)
-        for row in (head, ["---"] * len(head), *rows)
-    )
-    return "\n".join(f"| {text} |" for text in lines)
+    return markdown([head, *rows]).rstrip("\n")
 
 
 def scene_file() -> str:

@@ -50,7 +50,7 @@ def test_extremes_by_statics():
     response = answer("tip-load")
     found, beam = response.table(), response.definition.beams[0]
     clamp, tip = response.supports["cantilever.start"], response.tips["cantilever"]
-    area, inertia, _ = beam.cross_section
+    area, inertia, _ = beam.section()
     expected = {"bending_moment": -clamp.moment, "displacement": np.hypot(*(tip - beam.end).T)}
     for name, sign in (("tensile_stress", 1.0), ("compressive_stress", -1.0)):
         expected[name] = -clamp.force[:, 0] / area - sign * clamp.moment * beam.height / (2.0 * inertia)

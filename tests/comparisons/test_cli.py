@@ -6,13 +6,12 @@ import re
 import subprocess
 import sys
 import tomllib
-from importlib import metadata
+from importlib import import_module, metadata
 from pathlib import Path
 
 import pytest
 
 # the table of the commands: that it is whole is the contract
-from comparisons.cli.command import COMMANDS
 from comparisons.cli.options import STATED
 from comparisons.scene import built_in_scenes
 from tests.comparisons.suite.conftest import crossval
@@ -37,7 +36,7 @@ def test_the_table_of_commands_is_whole_and_its_old_names_are_gone():
     commands = {name: stated["arguments"].split() for name, stated in STATED["command"].items()}
     named = [argument for arguments in commands.values() for argument in arguments]
     options = [argument.partition("=")[0] for argument in named if argument.startswith("-")]
-    assert list(commands) == list(COMMANDS)
+    assert all(callable(import_module(f"comparisons.cli.{name}").run) for name in commands)
     assert set(named) == STATED["argument"].keys()
     assert len(["--version", *options]) <= 35
     assert not STATED["gone"].keys() & {*commands, *options}

@@ -2,6 +2,7 @@
 
 import io
 import re
+from contextlib import redirect_stderr
 from dataclasses import replace
 
 import pytest
@@ -48,7 +49,7 @@ def test_a_bar_on_a_terminal_fits_into_it(monkeypatch):
     whole = f"solid [{15 * '#'}{15 * '.'}] t = 0.5000, 7 iterations, pin->beam on element 3 of 10"
     monkeypatch.setenv("COLUMNS", "40")
     stream = Terminal()
-    with shown.watching("solid", stream=stream) as watch:
+    with redirect_stderr(stream), shown.watching("solid") as watch:
         watch(Reached(0.5, 7, ("pin->beam on element 3 of 10",)))
         watch(Reached(1.0, 5, ()))
     last = f"solid [{30 * '#'}] t = 1.0000, 12 iterations"[:39]
@@ -58,8 +59,8 @@ def test_a_bar_on_a_terminal_fits_into_it(monkeypatch):
 @pytest.mark.parametrize("quiet", [False, True])
 def test_without_a_terminal_there_are_lines_and_where_it_is_quiet_nothing(quiet):
     stream = Terminal() if quiet else io.StringIO()
-    with shown.watching("solid", quiet=quiet, stream=stream) as watch:
+    with redirect_stderr(stream), shown.watching("solid", quiet=quiet) as watch:
         watch(Reached(0.5, 7, ()))
-    with shown.staging("drawing", quiet=quiet, stream=stream) as count:
+    with redirect_stderr(stream), shown.staging("drawing", quiet=quiet) as count:
         count(1, 4)
     assert stream.getvalue() == ("" if quiet else "drawing\n")

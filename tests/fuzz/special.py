@@ -132,7 +132,7 @@ def along(random: Random, scene: Scene) -> Scene:
 def weight(random: Random, scene: Scene) -> Scene:
     """Give beams a weight."""
     heavy = tuple(
-        replace(beam, density=random.uniform(0.1, 3.0) * beam.EI / beam.length**3 / beam.cross_section[0])
+        replace(beam, density=random.uniform(0.1, 3.0) * beam.EI / beam.length**3 / beam.section()[0])
         if random.random() < 0.7
         else beam
         for beam in scene.beams

@@ -70,7 +70,7 @@ def request(scene: Scene, options: Options, load_parameters: Sequence[float]) ->
 
 
 def _beam(scene: Scene, beam: BeamSpec, options: Options) -> dict[str, Any]:
-    area, second_moment, shear_area = beam.cross_section
+    area, second_moment, shear_area = beam.section()
     return kept(beam, BEAM) | {
         "tip": scene.tip(beam.name),
         "shear_modulus": beam.GA / shear_area,

@@ -14,7 +14,7 @@ from comparisons.answer.quantities import KEPT, SCOPES
 from comparisons.models import MODELS, ROD, SOLID
 from comparisons.output import tabulated, write_numbers, write_rows
 from comparisons.report import palette
-from comparisons.report.pages import Section, definitions, folded, picture, table, write_page
+from comparisons.report.pages import Section, folded, picture, piece, table, write_page
 from comparisons.scene import to_toml
 from comparisons.suite import Row
 from comparisons.suite.study import result_rows
@@ -147,9 +147,9 @@ def _write_page(trade: Trade, settings: list[Line], files: Sequence[Path], folde
         ],
         "Orders of convergence": [table(*_orders(trade))],
         "All settings": [
-            definitions(_references(trade)),
+            piece("definitions", _references(trade)),
             folded("table of all settings", table(f"Seconds: {SECONDS}.", _shown(settings, SETTING))),
-            folded("settings without a solution", definitions(reasons)),
+            folded("settings without a solution", piece("definitions", reasons)),
         ],
     }
     lead = f"{len(trade.rows)} settings of beams and solid; {len(reasons)} without a solution."

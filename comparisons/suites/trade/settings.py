@@ -59,7 +59,7 @@ def _settings(model: Model, scene: Scene, *, quick: bool) -> Iterator[Case]:
         for order in ("Q1", "Q2-full"):
             yield from (solid(scene, mesh, order) for mesh in REFINED[: 2 if quick else 4])
         beam = scene.beams[0]
-        stiffness = float(f"{beam.youngs_modulus * beam.cross_section[0] / beam.rectangle_height:.2g}")
+        stiffness = float(f"{beam.youngs_modulus * beam.section()[0] / beam.rectangle_height:.2g}")
         for factor in PENALTIES[:2] if quick else PENALTIES:
             yield solid(scene, (25, 2), penalty=factor * stiffness)
         yield solid(scene, (25, 2), penetration=PENETRATION)

@@ -136,7 +136,7 @@ def test_errors_are_relative_and_the_worst_is_named_on_every_way_out(tmp_path, m
     """Screen, exit status, JUnit, JSON and page; what is no number fails, and a page escapes bars."""
     monkeypatch.setitem(MEASURES, "told", telling(*(answer for answer, *_ in JUDGED)))
     files = [made_up(tmp_path, len(JUDGED)), PROBLEMS["roll-up"]]
-    monkeypatch.setattr("comparisons.suites.manual.problems", lambda _: files)
+    monkeypatch.setattr("comparisons.cli.run.problems", lambda _: files)
     folder = tmp_path / "m"
     junit = folder / "junit.xml"
     assert main(["run", "manual", "--out", str(folder), "--quiet"]) == 1

@@ -1,0 +1,20 @@
+"""``crossval scenes``: the built-in scenes, or the schema of scene files."""
+
+import json
+import re
+from argparse import Namespace
+
+from comparisons.cli.screen import DONE
+from comparisons.scene import built_in_scenes
+from comparisons.scene.read import json_schema
+
+
+def run(given: Namespace) -> int:
+    """Print the names of the built-in scenes and what they are, or the schema."""
+    if given.schema:
+        print(json.dumps(json_schema(), indent=1))
+        return DONE
+    for scene, text in built_in_scenes().items():
+        said = re.split(r"(?<!al)[:.]\s", text)[0].replace("\n# ", " ").removeprefix("# ")
+        print(f"{scene:26s} {said}")
+    return DONE
