@@ -20,8 +20,7 @@ from comparisons.models.verify import CHECK_FAILED
 from comparisons.referee.certificate import Verdict
 from comparisons.scene import BeamSpec, Scene
 from comparisons.scene.keys import PROGRAMS, unstated
-from comparisons.scene.rules import FieldError
-from comparisons.scene.tables import check_keys
+from comparisons.scene.rules import MISSING, FieldError
 
 BEAM = "name start end length direction EA GA EI youngs_modulus width height"
 SUPPORT, LOAD = "node beam end motion", "node beam end force moment"
@@ -82,16 +81,12 @@ def _beam(scene: Scene, beam: BeamSpec, options: Options) -> dict[str, Any]:
 
 
 def refusal(output: bytes) -> str | None:
-    """Return why the program cannot state the scene; None if it can, or gave no answer."""
-    try:
-        data = _parsed(output)
-    except ProgramError:
-        return None
-    return _reason(data) if data.get("status") == REFUSED else None
+    """Return why the program cannot state the scene, None if it can; raise `ProgramError` if it gave no answer."""
+    return _reason(_parsed(output))
 
 
-def _reason(data: dict[str, Any]) -> str:
-    return one_line(data.get("message") or "no reason given")
+def _reason(data: dict[str, Any]) -> str | None:
+    return one_line(data.get("message") or "no reason given") if data.get("status") == REFUSED else None
 
 
 def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
@@ -102,22 +97,24 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
     an output that is no response to the scene a `ProgramError`.
     """
     data = _parsed(output)
-    status = data.get("status")
-    if status == REFUSED:
-        raise ModelError(_reason(data))
+    if (reason := _reason(data)) is not None:
+        raise ModelError(reason)
+    status, given = data.get("status", MISSING), {"message": "as the program reports", "wall_seconds": seconds}
     reported = status == COMPLETED
-    mistakes = [*check_keys(data, SCHEMA["properties"], required=("status",))]
-    if not isinstance(status, str) or not WORD.fullmatch(status) or status in VERDICTS:
-        # a misspelt success, and the words that only this program says of an answer
-        rule = f"must be {COMPLETED}, in capitals, {REFUSED}, or another word in capitals"
-        mistakes.append(FieldError("status", status, f"{rule} that is no verdict of this program"))
+    if not reported and "load_parameter" not in data:
+        given |= _nothing(scene)
     try:
-        for mistake in mistakes:
-            raise mistake
-        known = {"message": "as the program reports", "wall_seconds": seconds}
-        if not reported and "load_parameter" not in data:
-            return silent(scene, model, str(status), data.get("message", known["message"]))
-        response = _read(scene, model, {**known, **data})
+        if not isinstance(status, str) or not WORD.fullmatch(status) or status in VERDICTS:
+            # a misspelt success, and the words that only this program says of an answer
+            rule = f"must be {COMPLETED}, in capitals, {REFUSED}, or another word in capitals"
+            raise FieldError("status", status, f"{rule} that is no verdict of this program")
+        response = restated({"scene": scene.name, **given, **data, "model": model})
+        t = np.array(scene.times[: len(response.load_parameter)])
+        if "tips" not in data and t.size:
+            ends = {beam.name: -1 if scene.tip(beam.name) == "end" else 0 for beam in scene.beams}
+            lines = sampled_axes(response).position
+            tips = {name: lines[name][:, end] for name, end in ends.items() if name in lines}
+            response = replace(response, tips=tips)
         wrong = next(contradictions(response, scene), "")
     except NotFiniteError as error:
         raise ProgramError(ProgramStatus.NOT_FINITE, str(error), reported_success=reported) from None
@@ -127,28 +124,22 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
         raise ProgramError(ProgramStatus.INVALID_RESPONSE, wrong, reported_success=reported)
     return replace(
         response,
-        load_parameter=np.array(scene.times[: len(response.load_parameter)]),
+        load_parameter=t,
         contacts={pair: penetrating(item) for pair, item in response.contacts.items()},
         grid=lambda k: axis_grid(scene, response.axis_line, k),
     )
 
 
-def silent(scene: Scene, model: str, status: str, message: object, *, success: bool = False) -> Response:
-    """Return a response without any load parameter, which states why there is none."""
-    none = vars(Histories(json.loads(request(scene, Options(), ()))))
-    said = {"status": status, "message": message, "reported_success": success, "wall_seconds": 0.0}
-    return _read(scene, model, {**none, **said})
+def unanswered(scene: Scene, model: str, error: ProgramError) -> Response:
+    """Return the response without any load parameter which says why there is none."""
+    said = {"status": error.status.name, "message": error, "reported_success": error.reported_success}
+    return restated({**_nothing(scene), **said, "scene": scene.name, "model": model, "wall_seconds": 0.0})
 
 
-def _read(scene: Scene, model: str, data: dict[str, Any]) -> Response:
-    """Return the response that tables state, with the tips at the ends of the axes if they state none."""
-    response = restated({"scene": scene.name, **data, "model": model})
-    if "tips" in data:
-        return response
-    ends = {beam.name: -1 if scene.tip(beam.name) == "end" else 0 for beam in scene.beams}
-    lines = {name: line for name, line in sampled_axes(response).position.items() if name in ends}
-    tips = {name: line[:, ends[name]] if line.size else np.empty((0, 2)) for name, line in lines.items()}
-    return replace(response, tips=tips)
+def _nothing(scene: Scene) -> dict[str, Any]:
+    """Return the histories of an answer without any load parameter."""
+    histories = Histories(json.loads(request(scene, Options(), ())))
+    return {**vars(histories), "tips": {beam.name: [] for beam in scene.beams}}
 
 
 def _parsed(output: bytes) -> dict[str, Any]:

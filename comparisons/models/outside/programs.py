@@ -149,17 +149,16 @@ class Program(Model):
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:  # noqa: ARG002 - a program states no steps
         """Return the response to `scene`, not yet checked. Its status names what failed if there is none."""
-        from comparisons.models.outside.exchange import answer, request, silent
+        from comparisons.models.outside.exchange import answer, request, unanswered
 
         missing = self.missing()
         if missing is not None:
             raise ModelError(missing)
         given, began = request(scene, options, scene.times), perf_counter()
         try:
-            output = self.source.ask(given)
-            return answer(output, scene, self.name, perf_counter() - began)
+            return answer(self.source.ask(given), scene, self.name, perf_counter() - began)
         except ProgramError as error:
-            return silent(scene, self.name, error.status.name, error, success=error.reported_success)
+            return unanswered(scene, self.name, error)
 
     def setting(self, scene: Scene, options: Options) -> str:
         """Return the numbers of elements; empty if the program chooses its resolution itself."""
