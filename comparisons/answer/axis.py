@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from comparisons.answer.record import Array, Grid, Response, not_kept
+from comparisons.answer.record import Array, Grid, not_kept
+from comparisons.answer.response import Response
 from comparisons.scene import Scene
 
 STATIONS = np.linspace(0.0, 1.0, 101)

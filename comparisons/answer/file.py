@@ -14,7 +14,8 @@ import numpy as np
 from comparisons.answer import record
 from comparisons.answer.axis import SampledAxes, sampled_axes
 from comparisons.answer.material import clamped
-from comparisons.answer.record import Array, Response
+from comparisons.answer.record import Array
+from comparisons.answer.response import Response
 from comparisons.files import one_line
 from comparisons.output import json_text
 from comparisons.scene import Scene, load_scene
@@ -143,7 +144,8 @@ def resolved(field: Field) -> Field:
     return {**SCHEMA["$defs"].get(name, {}), "record": name, **field} if name else field
 
 
-def _require(right: object, key: str, value: object, rule: str) -> None:
+def require(right: object, key: str, value: object, rule: str) -> None:
+    """Raise FieldError unless a value is right."""
     if not right:
         raise FieldError(key, value, rule)
 
@@ -160,12 +162,12 @@ def _read(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
     if "object" in kinds:
         return _table(field, value, key, sizes)
     if "array" in kinds:
-        _require(isinstance(value, list), key, value, "must be a list")
+        require(isinstance(value, list), key, value, "must be a list")
         return tuple(_read(field["items"], item, key, sizes) for item in value)
     if kinds == "integer":
-        _require(type(value) is int and abs(value) <= LARGEST_WHOLE, key, value, "must be a whole number")
+        require(type(value) is int and abs(value) <= LARGEST_WHOLE, key, value, "must be a whole number")
     if kinds == "string":
-        _require(key == "message" or isinstance(value, str), key, value, "must be a name")
+        require(key == "message" or isinstance(value, str), key, value, "must be a name")
         return one_line(value)
     return value is True if kinds == "boolean" else value
 
@@ -173,7 +175,7 @@ def _read(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
 def _table(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
     """Return a table by name, or the record of a table with fields."""
     rule = "must be a table, as `crossval solve --out` writes it"
-    _require(isinstance(value, dict), key or "file", value, rule)
+    require(isinstance(value, dict), key or "file", value, rule)
     prefix = f"{key}." if key else ""
     if "properties" not in field:
         named = field["additionalProperties"]
@@ -211,16 +213,16 @@ def _numbers(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
         return float(found)
     if names == ["m"] and sizes["s"]:
         rises = len(found) > 1 and np.all(np.diff(found) > 0.0)
-        _require(rises, key, value, "must be two or more increasing numbers")
+        require(rises, key, value, "must be two or more increasing numbers")
     sizes |= {name: own for name, own in zip(names, found.shape, strict=True) if isinstance(name, str)}
     item = field["items"]
     if "enum" in item:
         rule = f"must be a list of {', '.join(map(str, item['enum']))}"
-        _require(np.isin(found, item["enum"]).all(), key, value, rule)
+        require(np.isin(found, item["enum"]).all(), key, value, rule)
     elif item.get("type") != "integer":
         return found
     whole = np.all(np.abs(found) <= LARGEST_WHOLE) and not np.any(found % 1.0)
-    _require(whole, key, value, "must be a list of whole numbers")
+    require(whole, key, value, "must be a list of whole numbers")
     return found.astype(np.int64)
 
 

@@ -21,7 +21,8 @@ from functools import cache
 
 import numpy as np
 
-from comparisons.answer.record import Array, Response
+from comparisons.answer.record import Array
+from comparisons.answer.response import Response
 from comparisons.scene import BeamSpec, ContactSpec, Scene, SupportSpec
 from comparisons.scene.keys import MATERIAL, unstated
 

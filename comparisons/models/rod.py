@@ -47,7 +47,7 @@ class Rod(Model):
         if self.by_referee(scene):
             from comparisons.models.rods import solve_rods
 
-            return solve_rods(scene, watch)
+            return solve_rods(self.name, scene, watch)
         from comparisons.exact import rod_under_pin
         from comparisons.models.cantilever import local_response, to_rod
 

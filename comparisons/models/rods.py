@@ -10,7 +10,6 @@ import numpy as np
 from comparisons.answer import Array, ContactHistory, FrictionHistory, Response, Sections, SupportHistory
 from comparisons.answer.axis import axis_grid
 from comparisons.models.progress import Watch
-from comparisons.models.rod import ROD
 from comparisons.models.shared import POINTS, Axis, rows
 from comparisons.models.tsm import TSM
 from comparisons.referee import Equilibrium, Verdict, certify
@@ -19,7 +18,7 @@ from comparisons.scene import Scene
 States = Sequence[Equilibrium]
 
 
-def solve_rods(scene: Scene, watch: Watch) -> Response:
+def solve_rods(model: str, scene: Scene, watch: Watch) -> Response:
     """Return the exact equilibria of a scene's rods along the path that exact TSM elements follow.
 
     The referee starts from the TSM answer at every load parameter, solves its own equations, and judges stability, admissibility
@@ -51,7 +50,7 @@ def solve_rods(scene: Scene, watch: Watch) -> Response:
 
     return replace(
         followed,
-        model=ROD.name,
+        model=model,
         status=followed.status if sound else found.verdict.name,
         message=followed.message if sound else found.reason,
         load_parameter=followed.load_parameter[reached],

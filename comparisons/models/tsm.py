@@ -296,21 +296,21 @@ def beams_refusal(scene: Scene) -> str | None:
 
 def _face_slope(scene: Scene, contact: ContactSpec) -> float:
     """Derivative of the radius of the circles whose envelope is the face, ``h'/2 / sqrt(1 + (h'/2)^2)``."""
-    beam = scene.beam(contact.beam)
-    steep = (beam.height_at(1.0) - beam.height_at(0.0)) / (2.0 * beam.length)
-    return steep / hypot(1.0, steep) if contact.surface == "face" else 0.0
+    rise = scene.offset(contact, 1.0) - scene.offset(contact, 0.0)
+    return rise / hypot(scene.beam(contact.beam).length, rise)
 
 
 def _pair(scene: Scene, contact: ContactSpec) -> ContactPair:
     """Contact pair. The face of a beam whose height tapers lies at half the height from the undeformed axis, see `_face_slope`."""
     from tsm import ContactPair
 
-    steep, beam, radius = _face_slope(scene, contact), scene.beam(contact.beam), scene.radius(contact)
-    tapered = radius + beam.height_at(0.0) / 2.0 * sqrt(1.0 - steep**2)
-    offset = tapered if steep else scene.offset(contact)
-    end = offset + steep * beam.length if steep else None
+    slope, radius = _face_slope(scene, contact), scene.radius(contact)
+    inner = 1.0 - sqrt(1.0 - slope**2)
+    start, end = (
+        offset - inner * (offset - radius) for part in (0.0, 1.0) for offset in [scene.offset(contact, part)]
+    )
     own = kept(contact, "node beam side keep friction")
-    return ContactPair(offset=offset, end_offset=end, radius=radius, **own)
+    return ContactPair(offset=start, end_offset=end if slope else None, radius=radius, **own)
 
 
 def _beam(scene: Scene, spec: BeamSpec, elements: int | None, kind: ElementType) -> Beam:

@@ -10,7 +10,7 @@ import numpy as np
 
 from comparisons.answer import ContactHistory, Response
 from comparisons.answer.axis import axis_grid, sampled_axes
-from comparisons.answer.file import SCHEMA, NotFiniteError, contradictions, parsed, restated
+from comparisons.answer.file import NotFiniteError, contradictions, parsed, require, restated
 from comparisons.files import one_line
 from comparisons.models.options import ModelError, Options
 from comparisons.models.outside.adapters.exchange import Histories
@@ -99,15 +99,18 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
     data = _parsed(output)
     if (reason := _reason(data)) is not None:
         raise ModelError(reason)
-    status, given = data.get("status", MISSING), {"message": "as the program reports", "wall_seconds": seconds}
+    status, given = (
+        data.get("status", MISSING),
+        {"message": "as the program reports", "wall_seconds": seconds},
+    )
     reported = status == COMPLETED
     if not reported and "load_parameter" not in data:
         given |= _nothing(scene)
     try:
-        if not isinstance(status, str) or not WORD.fullmatch(status) or status in VERDICTS:
-            # a misspelt success, and the words that only this program says of an answer
-            rule = f"must be {COMPLETED}, in capitals, {REFUSED}, or another word in capitals"
-            raise FieldError("status", status, f"{rule} that is no verdict of this program")
+        # no misspelt success, and no word that only this program says of an answer
+        right = isinstance(status, str) and WORD.fullmatch(status) and status not in VERDICTS
+        rule = f"must be {COMPLETED}, in capitals, {REFUSED}, or another word in capitals"
+        require(right, "status", status, f"{rule} that is no verdict of this program")
         response = restated({"scene": scene.name, **given, **data, "model": model})
         t = np.array(scene.times[: len(response.load_parameter)])
         if "tips" not in data and t.size:

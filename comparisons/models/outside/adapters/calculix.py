@@ -45,7 +45,28 @@ PENALTY = 7e4
 """Contact stiffness, over EI/L^3."""
 THINNESS = 0.01
 """Thickness w of the half slab over the strip's height."""
-_BRICK = "000 200 220 020 002 202 222 022 100 210 120 010 102 212 122 012 001 201 221 021".split()
+_BRICK = [
+    "000",
+    "200",
+    "220",
+    "020",
+    "002",
+    "202",
+    "222",
+    "022",
+    "100",
+    "210",
+    "120",
+    "010",
+    "102",
+    "212",
+    "122",
+    "012",
+    "001",
+    "201",
+    "221",
+    "021",
+]
 """Places of a brick's twenty nodes in CalculiX's order: x, y and z in halves of the brick."""
 _FACE = np.array([[-1.0, 4.0, -1.0], [4.0, 0.0, 4.0], [-1.0, 4.0, -1.0]]) / 12
 """Consistent nodal forces of a unit force that is spread evenly over a face with eight nodes."""
@@ -146,7 +167,7 @@ def pressed(strip: "Strip", start: Point, motion: Point, steps: int, penalty: fl
     if not through.size:
         return found
     *histories, _ = found
-    return Answer(*(values[: through[0]] for values in histories), "lost the pin through the face")
+    return Answer._make([*(one[: through[0]] for one in histories), "lost the pin through the face"])
 
 
 class Slab:
