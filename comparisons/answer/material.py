@@ -82,8 +82,8 @@ def material_forces(response: Response, scene: Scene, *, strains: bool = True) -
         EA, GA = (beam.EA, beam.GA) if strains else (math.inf, math.inf)
         way, at = (-1.0, 0.0) if clamp.end == "start" else (1.0, 1.0)
         turn = math.atan2(*beam.tangent(at)[::-1]) + response.load_parameter * (clamp.motion[2] or 0.0)
-        x, y = way * support.force.T
-        N, Q = x * np.cos(turn) + y * np.sin(turn), y * np.cos(turn) - x * np.sin(turn)
+        force = way * (support.force @ (1.0, 1.0j)) * np.exp(-1.0j * turn)
+        N, Q = force.real, force.imag
         found[name] = support.moment**2 / (2.0 * beam.EI) + N + N**2 / (2.0 * EA) + Q**2 / (2.0 * GA)
         if beam.turn:
             found[name] += beam.curvature * way * support.moment

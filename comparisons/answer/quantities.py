@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -121,18 +121,20 @@ def size(values: Array) -> Array:
 
 def forces(response: Response) -> dict[str, Array]:
     """Return the contact forces, shape (s,) by pair. Without contact, return the support forces, shape (s, 2) by supported end."""
-    if response.contacts:
-        return {pair: contact.force for pair, contact in response.contacts.items()}
-    return {node: support.force for node, support in response.supports.items()}
+    return _each(response.contacts, "force") or _each(response.supports, "force")
 
 
 def moments(response: Response) -> dict[str, Array]:
     """Return the support moments, shape (s,) by supported end."""
-    return {node: support.moment for node, support in response.supports.items()}
+    return _each(response.supports, "moment")
 
 
 def _arcs(response: Response) -> dict[str, Array]:
-    return {pair: contact.arc_position for pair, contact in response.contacts.items()}
+    return _each(response.contacts, "arc_position")
+
+
+def _each(records: Mapping[str, object], field: str) -> dict[str, Any]:
+    return {name: getattr(one, field) for name, one in records.items()}
 
 
 def _gap(pair: Pair) -> Columns:
@@ -233,8 +235,8 @@ def _events(response: Response, last: float) -> dict[tuple[str, str], list[float
     """Load parameters up to the last one, by kind and pair."""
     found: dict[tuple[str, str], list[float]] = {}
     if response.events is None:
-        slips = {("slip-off", pair): item.slip_off for pair, item in response.contacts.items()}
-        return {key: [t] for key, t in slips.items() if t <= last}
+        slips = _each(response.contacts, "slip_off")
+        return {("slip-off", pair): [t] for pair, t in slips.items() if t <= last}
     for event in response.events:
         known = event.pair in response.contacts and event.kind != "pass-through"
         if known and 0.0 < event.load_parameter <= last:

@@ -19,7 +19,6 @@ from comparisons.answer import (
     Response,
     SupportHistory,
 )
-from comparisons.answer.axis import axis_grid
 from comparisons.exact import Outcome, RodPath
 from comparisons.models.options import ModelError
 from comparisons.models.shared import POINTS
@@ -184,7 +183,6 @@ def local_response(model: str, local: RodScene, solve: Callable[[], RodPath], *,
         unknowns=unknowns,
         wall_seconds=seconds,
         axis_line=axis_line,
-        grid=lambda k: axis_grid(scene, axis_line, k),
         **more,
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -46,7 +47,9 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
     ModelError
         If the model cannot state the scene, or an option does not belong to it.
     """
+    from comparisons.answer.axis import axis_grid
     from comparisons.answer.material import material_forces
+    from comparisons.answer.record import not_kept
     from comparisons.models.verify import verified
 
     chosen, given = find(model), options or Options()
@@ -59,6 +62,8 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
     try:
         response = chosen.solve(scene, given, watch)
         more: dict[str, Any] = {"setting": chosen.setting(scene, given), "definition": scene}
+        if response.grid is not_kept:
+            more["grid"] = partial(axis_grid, scene, response.axis_line)
         if not chosen.continuum:
             more["material_force"] = material_forces(response, scene, strains=chosen.rod)
         success = response.completed or response.reported_success

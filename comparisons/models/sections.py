@@ -28,10 +28,10 @@ def section_forces(scene: Scene, result: Any, beam: str, k: int) -> Sections:
         joined = sum(place in (other.start, other.end) for other in scene.beams) > 1
         if turn is None or joined or support.node in taken:
             continue
-        held, (tx, ty) = result.supports[support.node], own.tangent(0.0 if first else 1.0)
-        c, s = tx * np.cos(turn) - ty * np.sin(turn), ty * np.cos(turn) + tx * np.sin(turn)
-        x, y, moment = (1 - 2 * first) * np.array([*held.force[k], held.moment[k]])
-        column = [0.0 if first else own.length, c * x + s * y, c * y - s * x, moment]
+        held, sign = result.supports[support.node], 1 - 2 * first
+        tangent = complex(*own.tangent(1.0 - first)) * np.exp(1.0j * turn)
+        force = sign * complex(*held.force[k]) * tangent.conjugate()
+        column = [(1.0 - first) * own.length, force.real, force.imag, sign * held.moment[k]]
         table = np.insert(table, 0 if first else table.shape[1], column, axis=1)
     return Sections(arc=table[0], N=table[1], V=table[2], M=table[3])
 

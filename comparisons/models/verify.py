@@ -171,13 +171,12 @@ def penetration(response: Response, scene: Scene, spec: ContactSpec, kink: float
     depth, side = np.zeros(len(response.load_parameter)), 1.0 if spec.side == "left" else -1.0
     if scene.offset(spec) == 0.0:
         return depth
-    radius, face = scene.radius(spec), spec.surface == "face"
-    half = beam.height_at(0.5) / 2.0 if face else 0.0
-    steep = (beam.height_at(1.0) - beam.height_at(0.0)) / (2.0 * beam.length) if face else 0.0
+    radius, first = scene.radius(spec), scene.offset(spec, 0.0)
+    steep = (scene.offset(spec, 1.0) - first) / beam.length
     for k in range(len(depth)):
         arc, place = response.axis_line(spec.beam, k)
         # a tapered face is the envelope of circles about the points of the axis
-        offset = radius + (half + steep * (arc - beam.length / 2.0)) / math.hypot(1.0, steep)
+        offset = radius + (first - radius + steep * arc) / math.hypot(1.0, steep)
         away, along = _node(response, scene, spec, k) - place, np.gradient(place, arc, axis=0)
         distance = np.hypot(*away.T)
         if contact.force[k] > 0.0:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.answer import ContactHistory, Response
-from comparisons.answer.axis import axis_grid, sampled_axes
+from comparisons.answer.axis import sampled_axes
 from comparisons.answer.file import NotFiniteError, contradictions, parsed, require, restated
 from comparisons.files import one_line
 from comparisons.models.options import ModelError, Options
@@ -125,12 +125,8 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
         wrong = str(error)
     if wrong:
         raise ProgramError(ProgramStatus.INVALID_RESPONSE, wrong, reported_success=reported)
-    return replace(
-        response,
-        load_parameter=t,
-        contacts={pair: penetrating(item) for pair, item in response.contacts.items()},
-        grid=lambda k: axis_grid(scene, response.axis_line, k),
-    )
+    contacts = {pair: penetrating(item) for pair, item in response.contacts.items()}
+    return replace(response, load_parameter=t, contacts=contacts)
 
 
 def unanswered(scene: Scene, model: str, error: ProgramError) -> Response:
