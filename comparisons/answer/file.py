@@ -277,18 +277,18 @@ def contradictions(response: Response, scene: Scene) -> Iterator[str]:
     if not len(t):
         return
     arcs = sampled_axes(response).arc_length
-    beams, driven = {beam.name for beam in scene.beams}, response.material_force.keys()
-    for what, own, wanted in (
-        ("contacts", response.contacts.keys(), {spec.pair for spec in scene.contacts}),
-        ("supports", response.supports.keys(), {spec.node for spec in scene.all_supports}),
-        ("springs", response.springs.keys(), {spec.node for spec in scene.springs}),
-        ("material_force", driven, driven & clamped(scene).keys()),
-        ("axes", arcs.keys(), beams),
-        ("tips", response.tips.keys(), beams),
-    ):
-        if own != wanted:
+    beams, own = {beam.name for beam in scene.beams}, vars(response) | {"axes": arcs}
+    for what, wanted in {
+        "contacts": {spec.pair for spec in scene.contacts},
+        "supports": {spec.node for spec in scene.all_supports},
+        "springs": {spec.node for spec in scene.springs},
+        "material_force": response.material_force.keys() & clamped(scene).keys(),
+        "axes": beams,
+        "tips": beams,
+    }.items():
+        if own[what].keys() != wanted:
             names = ", ".join(sorted(wanted)) or "none"
-            yield f"{what}: must have {names}, has {', '.join(sorted(own)) or 'none'}"
+            yield f"{what}: must have {names}, has {', '.join(sorted(own[what])) or 'none'}"
     for name, arc in arcs.items():
         length = scene.beam(name).length
         if not np.all(np.abs(arc[[0, -1]] - [0.0, length]) <= SAME_LOAD * length):

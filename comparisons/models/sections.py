@@ -46,19 +46,20 @@ def j_integrals(scene: Scene, result: Any) -> dict[str, Array]:
     """
     import fem_reference
 
-    def mean(beam: BeamSpec, end: str, k: int) -> float:
-        def from_clamp(arcs: Array) -> Array:
-            return arcs if end == "start" else beam.length - arcs
-
+    def mean(beam: BeamSpec, clamp: float, k: int) -> float:
         pairs = [contact.pair for contact in scene.contacts if contact.beam == beam.name]
         arcs = np.array([result.contacts[pair].arc_position[k] for pair in pairs])
-        free = float(np.fmin.reduce(from_clamp(arcs), initial=beam.length))
+        free = float(np.fmin.reduce(np.abs(arcs - clamp), initial=beam.length))
         margin = min(MARGIN * beam.rectangle_height, SHARE * free)
         sections = fem_reference.section_forces(result, beam.name, k)
-        distance = from_clamp(sections.stations)
+        distance = np.abs(sections.stations - clamp)
         inside = (distance > margin) & (distance < free - margin)
         return float(sections.material_force[inside].mean()) if inside.any() else nan
 
-    ends = {name: clamp.end for name, clamp in clamped(scene).items() if not scene.beam(name).turn}
-    steps = range(len(result.load_parameter))
-    return {name: np.array([mean(scene.beam(name), end, k) for k in steps]) for name, end in ends.items()}
+    steps, found = range(len(result.load_parameter)), {}
+    for name, support in clamped(scene).items():
+        beam = scene.beam(name)
+        if not beam.turn:
+            clamp = 0.0 if support.end == "start" else beam.length
+            found[name] = np.array([mean(beam, clamp, k) for k in steps])
+    return found

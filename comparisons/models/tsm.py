@@ -324,16 +324,15 @@ def _beam(scene: Scene, spec: BeamSpec, elements: int | None, kind: ElementType)
     nodes = spec.nodes if kind.meshed and not elements else ()
     count = elements or (spec.divisions if kind.meshed else 1)
     own = [load for _, load in scene.numbered_loads() if load.beam == spec.name]
-    ends = [part for load in own if load.force_per_length is not None for part in load.span]
-    places = [load.at for load in own if load.at is not None]
+    places = [part for load in own for part in (load.span if load.at is None else (load.at,))]
     return Beam(
         **kept(spec, "name start end turn"),
-        section=section(0.0 if spec.tapers else 0.5),
+        section=section(0.0),
         end_section=section(1.0) if spec.tapers else None,
         elements=count,
         element=kind.name,
         nodes=nodes,
-    ).divided(*(part * spec.length for part in (*ends, *places)))
+    ).divided(*(part * spec.length for part in places))
 
 
 TSM = Tsm()
