@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from comparisons.answer import Array, ContactHistory, Response
+    from comparisons.answer import Array, Response
     from comparisons.models.options import Options
     from comparisons.scene import BeamSpec, PinSpec, Scene
 
@@ -69,13 +69,6 @@ def result_of(
         return solver.solve(problem, np.array(scene.times), given, watch=report)
     except solver.SolveError as error:
         return error.result
-
-
-def history(item: Any, **more: Any) -> ContactHistory:
-    """Return the contact history of a solver's result, with what else the model states."""
-    from comparisons.answer import ContactHistory
-
-    return ContactHistory(**kept(item, "force arc_position gap"), **more)
 
 
 def of_result(

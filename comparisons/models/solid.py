@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from comparisons.models.base import Model, Style, refused
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Reached, Watch
-from comparisons.models.shared import history, joints, kept, line_loads, of_result, result_of, ways
+from comparisons.models.shared import joints, kept, line_loads, of_result, result_of, ways
 from comparisons.scene.conditions import COMPONENTS
 from comparisons.scene.keys import STRIPS
 
@@ -54,7 +54,7 @@ class Solid(Model):
         import numpy as np
 
         import fem_reference
-        from comparisons.answer import Deformation, FrictionHistory, Grid
+        from comparisons.answer import ContactHistory, Deformation, FrictionHistory, Grid
         from comparisons.answer.material import Deferred
         from comparisons.models.sections import j_integrals, section_forces
 
@@ -90,9 +90,9 @@ class Solid(Model):
             if spec.friction:
                 forces = {"tangential": item.tangential_force, "normal": item.normal_force}
                 friction = FrictionHistory(slip=item.direction, dissipated=item.dissipated, **forces)
-            soft = 1.0 / problem.penalty(spec) if spec.penetration is None else 0.0
-            more = {"slip_off": item.slip_off, "vector": item.vector, "friction": friction}
-            contacts[spec.name] = history(item, compliance=soft, **more)
+            soft, own = 1.0 / problem.penalty(spec), kept(item, "force arc_position gap slip_off vector")
+            compliance = soft if spec.penetration is None else 0.0
+            contacts[spec.name] = ContactHistory(**own, compliance=compliance, friction=friction)
         turn = 2 * np.max([half_turns(beam.name) for beam in scene.beams], axis=0)
         return of_result(
             self.name,

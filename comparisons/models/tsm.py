@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from comparisons.models.base import Model, Style
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Reached, Watch
-from comparisons.models.shared import history, kept, line_loads, of_result, result_of, rows, ways
+from comparisons.models.shared import kept, line_loads, of_result, result_of, rows, ways
 from comparisons.scene.keys import BEAMS
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ class Tsm(Model):
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked; a tolerance is for elements that integrate."""
         import tsm
-        from comparisons.answer import ContactEvent, Deformation, FrictionHistory, Sections
+        from comparisons.answer import ContactEvent, ContactHistory, Deformation, FrictionHistory, Sections
 
         kind, tolerance = self.kind(scene, options), options.integration_tolerance
         structure = to_structure(scene, elements=options.elements, element=kind.name)
@@ -96,8 +96,8 @@ class Tsm(Model):
         )
         slipped = {one.pair: one.load_parameter for one in reversed(events) if one.kind == "slip-off"}
         contacts = {
-            pair: history(
-                item,
+            pair: ContactHistory(
+                **kept(item, "force arc_position gap"),
                 slip_off=slipped.get(pair, nan),
                 vector=rows([state.system.forces.get(number, (0.0, 0.0)) for state in result.equilibria], 2),
                 friction=None if item.friction is None else FrictionHistory(**vars(item.friction)),
