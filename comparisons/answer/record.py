@@ -25,7 +25,6 @@ class ContactHistory:
     force: Array  #: Magnitude of the contact force, shape (s,).
     arc_position: Array  #: Distance along the undeformed axis from the start (s,); nan where open.
     gap: Array  #: Gap (s,): 0 or minus the penetration of a penalty where closed, positive or nan where open.
-    compliance: float | Array = 0.0  #: Penetration per normal force of a penalty, ``-gap / force``.
     slip_off: float = np.nan  #: Load parameter at which the node left over the free end; nan if it did not.
     vector: Array | None = None  #: The contact force on the beam (s, 2), where the model states it.
     friction: "FrictionHistory | None" = None  #: What friction does; None without friction.

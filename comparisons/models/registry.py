@@ -81,7 +81,6 @@ def _kind(response: Response, model: Model | None) -> dict[str, Any]:
 
 def restored(response: Response, scene: Scene) -> Response:
     """Return a response from a file with the kind that its model is registered with, and checked as when it was solved."""
-    from comparisons.models.outside.exchange import penetrating
     from comparisons.models.outside.programs import ADAPTERS
     from comparisons.models.verify import CHECK_FAILED, verified
 
@@ -89,10 +88,7 @@ def restored(response: Response, scene: Scene) -> Response:
     if response.completed and not response.reported_success:
         contradiction = f"the status is {response.status}, and reported_success is false"
         return replace(response, **kind, status=CHECK_FAILED, message=contradiction)
-    contacts = response.contacts
-    if kind["outside"] or kind["continuum"]:
-        contacts = {pair: penetrating(item) for pair, item in contacts.items()}
-    return verified(replace(response, **kind, contacts=contacts), scene)
+    return verified(replace(response, **kind), scene)
 
 
 def certified(

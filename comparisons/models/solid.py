@@ -90,9 +90,8 @@ class Solid(Model):
             if spec.friction:
                 forces = {"tangential": item.tangential_force, "normal": item.normal_force}
                 friction = FrictionHistory(slip=item.direction, dissipated=item.dissipated, **forces)
-            soft, own = 1.0 / problem.penalty(spec), kept(item, "force arc_position gap slip_off vector")
-            compliance = soft if spec.penetration is None else 0.0
-            contacts[spec.name] = ContactHistory(**own, compliance=compliance, friction=friction)
+            own = kept(item, "force arc_position gap slip_off vector")
+            contacts[spec.name] = ContactHistory(**own, friction=friction)
         turn = 2 * np.max([half_turns(beam.name) for beam in scene.beams], axis=0)
         return of_result(
             self.name,

@@ -116,10 +116,11 @@ def _contacts(
 
 
 def _ajar(contact: ContactHistory, spec: ContactSpec, beam: BeamSpec, response: Response) -> Mask:
-    pressing = contact.force if contact.friction is None else contact.friction.normal
-    allowed = max(CLOSED, spec.penetration or 0.0) if response.continuum else CLOSED
-    apart = np.abs(contact.gap + contact.compliance * pressing) > allowed * beam.length
-    return (contact.force > 0.0) & apart
+    stated = spec.penetration or 0.0 if response.continuum else 0.0
+    # a penalty leaves a negative gap, which "small penetration" bounds
+    penalty = response.outside or (response.continuum and not stated)
+    gap = contact.gap if penalty else np.abs(contact.gap)
+    return (contact.force > 0.0) & (gap > max(CLOSED, stated) * beam.length)
 
 
 def _inside(response: Response, scene: Scene) -> Iterator[str]:

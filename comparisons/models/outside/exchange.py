@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.answer import ContactHistory, Response
+from comparisons.answer import Response
 from comparisons.answer.axis import sampled_axes
 from comparisons.answer.file import NotFiniteError, contradictions, parsed, require, restated
 from comparisons.files import one_line
@@ -125,8 +125,7 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
         wrong = str(error)
     if wrong:
         raise ProgramError(ProgramStatus.INVALID_RESPONSE, wrong, reported_success=reported)
-    contacts = {pair: penetrating(item) for pair, item in response.contacts.items()}
-    return replace(response, load_parameter=t, contacts=contacts)
+    return replace(response, load_parameter=t)
 
 
 def unanswered(scene: Scene, model: str, error: ProgramError) -> Response:
@@ -153,11 +152,3 @@ def _parsed(output: bytes) -> dict[str, Any]:
     if not isinstance(data, dict):
         raise ProgramError(ProgramStatus.INVALID_RESPONSE, "the output must be a table")
     return data
-
-
-def penetrating(contact: ContactHistory) -> ContactHistory:
-    """Return a contact whose negative gaps are the penetration of a penalty."""
-    pressing = contact.force if contact.friction is None else contact.friction.normal
-    deep = (contact.force > 0.0) & (contact.gap < 0.0) & (pressing > 0.0)
-    per_force = np.divide(-contact.gap, pressing, out=np.zeros_like(contact.force), where=deep)
-    return replace(contact, compliance=per_force)
