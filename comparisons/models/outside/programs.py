@@ -189,15 +189,10 @@ def _refusal_of(module: str) -> Refusal:
     return lambda scene: import_module(module).refusal(scene)
 
 
-RUN = (
-    f"import runpy, sys; sys.path.insert(0, {str(Path(__file__).parents[3])!r}); "
-    "runpy.run_module({!r}, run_name='__main__')"
-)
-"""What runs an adapter, which is a module of this package."""
 ADAPTERS: dict[str, Program] = {
     name: Program(
         Command(
-            name=name, label=label, command=(sys.executable, "-c", RUN.format(module)), folder=Path.cwd(),
+            name=name, label=label, command=(sys.executable, "-m", module), folder=Path(__file__).parents[3],
             elements=(10, 20, 40, 80), colour=colour, requires=requires, needs=needs, continuum=continuum,
             refusal=_refusal_of(module),
         )
@@ -210,7 +205,7 @@ ADAPTERS: dict[str, Program] = {
     )
     for module in [f"{__package__}.adapters.{name}"]
 }  # fmt: skip
-"""The adapters of this package by name: label, colour, what it requires, how to install that, and whether it computes a two-dimensional body."""
+"""The adapters by name, modules of this package that run where it lies: label, colour, what it requires, how to install that, and whether it computes a two-dimensional body."""
 _USED: dict[str, Model] = {}
 """The models from outside that this process has used, by name."""
 
