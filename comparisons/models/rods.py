@@ -40,8 +40,6 @@ def solve_rods(model: str, scene: Scene, watch: Watch) -> Response:
     held = {
         node.node: rows([state.reactions[node.node] for state in states], 3) for node in scene.all_supports
     }
-    ends = {beam.name: f"{beam.name}.{scene.tip(beam.name)}" for beam in scene.beams}
-
     reached = slice(len(states))
 
     def axis_line(beam: str, k: int) -> Axis:
@@ -66,7 +64,10 @@ def solve_rods(model: str, scene: Scene, watch: Watch) -> Response:
             node: SupportHistory(force=one.force[reached], moment=one.moment[reached])
             for node, one in followed.springs.items()
         },
-        tips={beam: rows([state.ends[end] for state in states], 2) for beam, end in ends.items()},
+        tips={
+            beam.name: rows([state.ends[f"{beam.name}.{scene.tip(beam.name)}"] for state in states], 2)
+            for beam in scene.beams
+        },
         newton_iterations=np.array([state.iterations for state in states], dtype=np.int64),
         unknowns=max((len(state.z) for state in states), default=0),
         axis_line=axis_line,

@@ -104,9 +104,9 @@ def states(scene: Table, histories: Histories) -> Iterator[float]:
     from fem_reference import Strip
 
     beam, frame = scene["beams"][0], axes(scene["beams"][0])
+    own = {key: beam[key] for key in ("name", "height", "width", "youngs_modulus")}
     slab = Slab(Strip(
-        name=beam["name"], start=(0.0, 0.0), end=(beam["length"], 0.0), height=beam["height"],
-        width=beam["width"], youngs_modulus=beam["youngs_modulus"],
+        **own, start=(0.0, 0.0), end=(beam["length"], 0.0),
         poissons_ratio=beam["youngs_modulus"] / (2.0 * beam["shear_modulus"]) - 1.0,
         mesh=(beam["elements"], ACROSS),
     ))  # fmt: skip
