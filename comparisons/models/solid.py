@@ -25,9 +25,6 @@ REFINED = ((25, 1), (50, 2), (100, 4), (200, 8))
 COARSE = ((8, 1), (12, 1), (16, 1), (25, 2))
 LEAST_RATIO = -0.999
 """Least Poisson's ratio. There the shear modulus is 500 times Young's modulus; a solid that is stiffer in shear locks."""
-CONTACT = "node side surface penalty penetration keep friction"
-STRIP = "name start end turn youngs_modulus material"
-"""What the solid takes of a contact and of a beam as it is."""
 DEFAULT_PENALTY = 25.0
 """Default penalty stiffness of the solid, over E b."""
 SLENDER = 0.125
@@ -226,7 +223,10 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> SolidProbl
             ),
         ),
         pins=tuple(fem.Pin(name=pin.name, radius=pin.radius or 0.0, **ways(pin)) for pin in scene.pins),
-        contacts=tuple(fem.Contact(strip=item.beam, **kept(item, CONTACT)) for item in scene.contacts),
+        contacts=tuple(
+            fem.Contact(strip=item.beam, **kept(item, "node side surface penalty penetration keep friction"))
+            for item in scene.contacts
+        ),
     )
 
 
@@ -337,7 +337,7 @@ def _strip(beam: BeamSpec, clamps: set[str], mesh: tuple[int, int] | None) -> St
     if (mesh or beam.mesh)[0] < 2:
         raise ModelError("the solid model needs at least 2 elements along the beam")
     return Strip(
-        **kept(beam, STRIP),
+        **kept(beam, "name start end turn youngs_modulus material"),
         height=height,
         width=width,
         end_height=beam.height[1] if isinstance(beam.height, tuple) else None,

@@ -22,10 +22,6 @@ from comparisons.scene import BeamSpec, Scene
 from comparisons.scene.keys import PROGRAMS, unstated
 from comparisons.scene.rules import MISSING, FieldError
 
-BEAM = "name start end length direction EA GA EI youngs_modulus width height"
-SUPPORT, LOAD = "node beam end motion", "node beam end force moment"
-CONTACT = "pair node beam side keep friction"
-"""What a program gets of each record of a scene as it is."""
 COMPLETED, REFUSED = "COMPLETED", "REFUSED"
 SHOWN = 60
 """Bytes that are shown of an output that is not JSON."""
@@ -51,8 +47,8 @@ def request(scene: Scene, options: Options, load_parameters: Sequence[float]) ->
         "load_parameters": list(load_parameters),
         "beams": [_beam(scene, beam, options) for beam in scene.beams],
         "joints": joints(scene),
-        "supports": [kept(item, SUPPORT) for item in scene.all_supports],
-        "loads": [kept(item, LOAD) for item in scene.loads],
+        "supports": [kept(item, "node beam end motion") for item in scene.all_supports],
+        "loads": [kept(item, "node beam end force moment") for item in scene.loads],
         "pins": [
             {
                 "name": pin.name,
@@ -63,14 +59,18 @@ def request(scene: Scene, options: Options, load_parameters: Sequence[float]) ->
             }
             for pin in scene.pins
         ],
-        "contacts": [kept(item, CONTACT) | {"offset": scene.offset(item)} for item in scene.contacts],
+        "contacts": [
+            kept(item, "pair node beam side keep friction") | {"offset": scene.offset(item)}
+            for item in scene.contacts
+        ],
     }
     return json.dumps(data, allow_nan=False, indent=1) + "\n"
 
 
 def _beam(scene: Scene, beam: BeamSpec, options: Options) -> dict[str, Any]:
     area, second_moment, shear_area = beam.cross_section
-    return kept(beam, BEAM) | {
+    own = "name start end length direction EA GA EI youngs_modulus width height"
+    return kept(beam, own) | {
         "tip": scene.tip(beam.name),
         "shear_modulus": beam.GA / shear_area,
         "area": area,
