@@ -7,6 +7,7 @@ import numpy as np
 
 from comparisons.answer import Array, Sections
 from comparisons.answer.material import clamped
+from comparisons.models.shared import occupied
 from comparisons.scene import BeamSpec, Scene
 
 MARGIN = 1.5
@@ -20,13 +21,12 @@ def section_forces(scene: Scene, result: Any, beam: str, k: int) -> Sections:
     import fem_reference
 
     found = fem_reference.section_forces(result, beam, k)
-    taken = [load.load.node for load in scene.load_histories] + [spring.node for spring in scene.springs]
+    taken = occupied(scene)
     table, own = np.stack([found.stations, found.N, found.V, found.M]), scene.beam(beam)
     for support in scene.supports_of(beam):
         motion = scene.prescribed_motions[support.node].at(float(result.load_parameter[k]))
-        place, turn, first = scene.place(support.node), motion[2], support.end == "start"
-        joined = sum(place in (other.start, other.end) for other in scene.beams) > 1
-        if turn is None or joined or support.node in taken:
+        turn, first = motion[2], support.end == "start"
+        if turn is None or support.node in taken:
             continue
         held, sign = result.supports[support.node], 1 - 2 * first
         tangent = complex(*own.tangent(1.0 - first)) * np.exp(1.0j * turn)

@@ -28,6 +28,13 @@ def joints(scene: Scene) -> list[list[str]]:
     return [ends for ends in meeting.values() if len(ends) > 1]
 
 
+def occupied(scene: Scene) -> set[str]:
+    """Return the ends of beams at which more than a support may act: those with loads, springs or joints."""
+    loads, springs = scene.numbered_loads(), scene.springs
+    joined = {end for ends in joints(scene) for end in ends}
+    return joined | {load.node for _, load in loads} | {spring.node for spring in springs}
+
+
 def line_loads(scene: Scene) -> Iterator[tuple[BeamSpec, int, tuple[Force, ...], Force]]:
     """Yield the forces per length, then the weights: beam, stage, coefficients along the beam, and the part of its length."""
     for stage, load in scene.numbered_loads():

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from comparisons.models.base import Model, Style, refused
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Reached, Watch
-from comparisons.models.shared import joints, kept, line_loads, of_result, result_of, ways
+from comparisons.models.shared import joints, kept, line_loads, occupied, of_result, result_of, ways
 from comparisons.scene.conditions import COMPONENTS
 from comparisons.scene.keys import STRIPS
 
@@ -293,9 +293,7 @@ def _is_clamp(scene: Scene, spec: SupportSpec, joints: _Joints) -> bool:
     """
     if len(spec.held) < len(COMPONENTS):
         return False
-    acting = [load.node for _, load in scene.numbered_loads()] + [spring.node for spring in scene.springs]
-    joined = spec.node in joints.hinges or len(joints.at(spec.node)) > 1
-    if not (joined or scene.prescribed_motions[spec.node].moves or spec.node in acting):
+    if not (scene.prescribed_motions[spec.node].moves or spec.node in {*joints.hinges, *occupied(scene)}):
         return True
     if scene.beam(spec.beam).solid_clamp == "full":
         raise ModelError(
