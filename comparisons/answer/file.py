@@ -198,7 +198,7 @@ def _numbers(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
     """Return a number or an array of numbers."""
     names = field.get("shape", [])
     shape = tuple(sizes.get(size) if isinstance(size, str) else size for size in names)
-    found = _array(value, len(shape))
+    found = _array(value)
     if found is not None and found.size == 0 and 0 in shape:
         found = np.zeros([size or 0 for size in shape])
     if (
@@ -226,17 +226,14 @@ def _numbers(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
     return found.astype(np.int64)
 
 
-def _array(value: object, depth: int) -> Array | None:
-    """Return a number, or lists of numbers that are so deep at most; None for anything else, as a text or truth value."""
-
-    def plain(value: object, depth: int) -> bool:
-        if isinstance(value, list) and depth:
-            return all(plain(item, depth - 1) for item in value)
-        return value is None or type(value) in (int, float)
-
+def _array(value: object) -> Array | None:
+    """Return a number, or lists of numbers, as an array; None for anything else, as a text or truth value."""
+    cells = np.array(value, dtype=object)
+    if not {*map(type, cells.ravel())} <= {int, float, type(None)}:
+        return None
     try:
-        return np.array(value, dtype=np.float64) if plain(value, depth) else None
-    except (ValueError, OverflowError):
+        return cells.astype(np.float64)
+    except OverflowError:
         return None
 
 
