@@ -16,8 +16,9 @@ give c and the tangential force T, of lever e, without further approximation.
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping
-from functools import cache
+from collections import UserDict
+from collections.abc import Callable
+from functools import cached_property
 
 import numpy as np
 
@@ -32,20 +33,16 @@ ROUNDS = 30
 """Iterations for the length of g; each one reduces its error by a strain."""
 
 
-class Deferred(Mapping[str, Array]):
+class Deferred(UserDict[str, Array]):
     """A table that takes long and is computed once, when it is first asked for."""
 
-    def __init__(self, compute: Callable[[], Mapping[str, Array]]) -> None:
-        self._table = cache(compute)
+    def __init__(self, compute: Callable[[], dict[str, Array]]) -> None:
+        self._compute = compute
 
-    def __getitem__(self, name: str) -> Array:
-        return self._table()[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._table())
-
-    def __len__(self) -> int:
-        return len(self._table())
+    @cached_property
+    def data(self) -> dict[str, Array]:  # type: ignore[override]
+        """What `UserDict` looks up."""
+        return self._compute()
 
 
 def clamped(scene: Scene) -> dict[str, SupportSpec]:
