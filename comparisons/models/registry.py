@@ -61,13 +61,18 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
         raise ModelError(unknown)
     try:
         response = chosen.solve(scene, given, watch)
-        more: dict[str, Any] = {"setting": chosen.setting(scene, given), "definition": scene}
-        if response.grid is not_kept:
-            more["grid"] = partial(axis_grid, scene, response.axis_line)
-        if not chosen.continuum:
-            more["material_force"] = material_forces(response, scene, strains=chosen.rod)
-        success = response.completed or response.reported_success
-        return verified(replace(response, **_kind(response, chosen), reported_success=success, **more), scene)
+        rod, lines = not chosen.continuum, partial(axis_grid, scene, response.axis_line)
+        forces = material_forces(response, scene, strains=chosen.rod) if rod else response.material_force
+        response = replace(
+            response,
+            **_kind(response, chosen),
+            setting=chosen.setting(scene, given),
+            definition=scene,
+            grid=lines if response.grid is not_kept else response.grid,
+            material_force=forces,
+            reported_success=response.completed or response.reported_success,
+        )
+        return verified(response, scene)
     except ValueError as error:
         raise ModelError(f"{chosen.name}: {error}") from error
 
@@ -122,8 +127,9 @@ def certified(
     allowed += 0.0 if allowance is None else allowance - ALLOWED
     if model is not None and model.by_referee(scene):
         reason = f"{model.setting(scene, Options())}, found by the referee itself"
-        unjudged: dict[str, Any] = {"verdict": Verdict.NOT_JUDGED, "judged": (), "path": (), "seconds": 0.0}
-        found = Certificate(reason=reason, allowance=allowed, **unjudged)
+        found = Certificate(
+            verdict=Verdict.NOT_JUDGED, reason=reason, allowance=allowed, judged=(), path=(), seconds=0.0
+        )
     else:
         found = certify(response, scene, at=every, allowance=allowed)
     if not response.completed and found.certified:
