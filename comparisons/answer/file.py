@@ -1,7 +1,8 @@
 """A response as JSON, written and read by one table of fields: ``response.schema.json``.
 
 Beside the keywords of JSON Schema, a field has its ``shape``, with the number of load parameters s and of points m, and ``gaps``: where a
-number may be missing, which is null in the file and nan here. Such a number is needed where the field that ``gaps`` names acts.
+number may be missing, which is null in the file and nan here. Such a number is needed where the field that ``gaps`` names acts. A table
+has the ``record`` of `comparisons.answer.record` that is made of it.
 """
 
 import json
@@ -27,14 +28,6 @@ SCHEMA: dict[str, Any] = json.loads(
     Path(__file__).with_name("response.schema.json").read_text(encoding="utf-8")
 )
 """Every field of a response in JSON."""
-RECORDS: dict[str, Any] = {
-    "contact": record.ContactHistory,
-    "friction": record.FrictionHistory,
-    "support": record.SupportHistory,
-    "event": record.ContactEvent,
-    "critical": record.CriticalPoint,
-}
-"""What is made of the tables that the schema defines by name."""
 LARGEST_WHOLE = 1e15
 """Largest magnitude of a whole number."""
 SAME_LOAD = 1e-6
@@ -43,10 +36,6 @@ Field = dict[str, Any]
 """A schema."""
 Sizes = dict[str, int]
 """Numbers of load parameters and points that are known, by their letters in a shape."""
-
-
-class ResponseError(InputError):
-    """A JSON file that does not hold a response to its scene."""
 
 
 class NotFiniteError(FieldError):
@@ -96,16 +85,16 @@ def read_response(path: str, scene: str | None = None) -> tuple[Response, Scene]
 
     Raises InputError, in one line: file, key, value and rule.
     """
-    text = read_text(path, "no such file", ResponseError)
+    text = read_text(path, "no such file", InputError)
     try:
         response = restated(parsed(text))
     except FieldError as error:
-        raise ResponseError(path, one_line(error)) from None
+        raise InputError(path, one_line(error)) from None
     except (ValueError, RecursionError) as error:
-        raise ResponseError(path, one_line(f"must be valid JSON: {error}")) from None
+        raise InputError(path, one_line(f"must be valid JSON: {error}")) from None
     found = load_scene(scene or response.scene)
     for wrong in contradictions(response, found):
-        raise ResponseError(path, one_line(wrong))
+        raise InputError(path, one_line(wrong))
     return response, found
 
 
@@ -139,9 +128,9 @@ def restated(data: Any) -> Response:
 
 
 def resolved(field: Field) -> Field:
-    """Return a field with what the schema defines for it by name."""
+    """Return a field with what the schema defines for it by name, its ``record`` too."""
     name = field.get("$ref", "").rpartition("/")[2]
-    return {**SCHEMA["$defs"].get(name, {}), "record": name, **field} if name else field
+    return {**SCHEMA["$defs"].get(name, {}), **field}
 
 
 def require(right: object, key: str, value: object, rule: str) -> None:
@@ -191,7 +180,7 @@ def _table(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
             acts = found[one["gaps"]]
             needed = bool(acts) if isinstance(acts, str) else acts != 0.0
             _check_finite(np.asarray(found[name]), prefix + name, needed)
-    return RECORDS.get(field.get("record", ""), dict)(**found)
+    return getattr(record, field["record"])(**found) if "record" in field else found
 
 
 def _numbers(field: Field, value: Any, key: str, sizes: Sizes) -> Any:

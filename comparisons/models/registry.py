@@ -27,7 +27,7 @@ MODELS: dict[str, Model] = {
 def find(name: str) -> Model:
     """Return a model by its name: a key of `MODELS`, a program of others by its name, or a program file ``NAME.toml``.
 
-    A `ModelError` says that there is none, a `ProgramFileError` why the file cannot be read.
+    A `ModelError` says that there is none, an `InputError` why the file cannot be read.
     """
     if name in MODELS:
         return MODELS[name]

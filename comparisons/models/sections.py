@@ -7,11 +7,10 @@ import numpy as np
 
 from comparisons.answer import Array, Sections
 from comparisons.answer.material import clamped
+from comparisons.answer.quantities import AWAY
 from comparisons.models.shared import occupied
 from comparisons.scene import BeamSpec, Scene
 
-MARGIN = 1.5
-"""Distance from clamp and contact, over the height, within which stresses are local; sections there are left out."""
 SHARE = 0.25
 """Largest part of the distance between clamp and contact that is left out at either end."""
 
@@ -50,7 +49,7 @@ def j_integrals(scene: Scene, result: Any) -> dict[str, Array]:
         pairs = [contact.pair for contact in scene.contacts if contact.beam == beam.name]
         arcs = np.array([result.contacts[pair].arc_position[k] for pair in pairs])
         free = float(np.fmin.reduce(np.abs(arcs - clamp), initial=beam.length))
-        margin = min(MARGIN * beam.rectangle_height, SHARE * free)
+        margin = min(AWAY * beam.rectangle_height, SHARE * free)
         sections = fem_reference.section_forces(result, beam.name, k)
         distance = np.abs(sections.stations - clamp)
         inside = (distance > margin) & (distance < free - margin)

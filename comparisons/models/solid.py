@@ -207,15 +207,10 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> SolidProbl
         ),
         loads=(
             *(
-                fem.PointLoad(strip=beam, at=float(end == "end"), stage=stage, **kept(load, "force moment"))
+                fem.PointLoad(strip=beam, at=at, stage=stage, **kept(load, "force moment"))
                 for stage, load in scene.numbered_loads()
-                if load.end is not None
-                for beam, end in [joints.loaded(load).split(".")]
-            ),
-            *(
-                fem.PointLoad(strip=load.beam, stage=stage, **kept(load, "at force moment"))
-                for stage, load in scene.numbered_loads()
-                if load.at is not None
+                if load.force_per_length is None
+                for beam, at in [joints.loaded(load)]
             ),
             *(
                 fem.LineLoad(strip=beam.name, force=force, part=part, stage=stage)
@@ -276,14 +271,17 @@ class _Joints:
         x, y = spec.stiffness
         return x, y, spec.rotation if spec.rotation and self.turn(spec.node, "spring") else 0.0
 
-    def loaded(self, load: LoadSpec) -> str:
-        """Return the end at which a load acts; a moment acts on an end without a hinge."""
+    def loaded(self, load: LoadSpec) -> tuple[str, float]:
+        """Return beam and part of its length at which a load acts; a moment acts on an end without a hinge."""
+        if load.at is not None:
+            return load.beam, load.at
         plain = self.plain(load.node) if load.moment else load.node
         if plain is None:
             raise ModelError(
                 f'the solid model states a moment on a joint with an end without a hinge, "{load.node}" has none'
             )
-        return plain if load.node in self.hinges else load.node
+        beam, end = (plain if load.node in self.hinges else load.node).split(".")
+        return beam, float(end == "end")
 
 
 def _is_clamp(scene: Scene, spec: SupportSpec, joints: _Joints) -> bool:

@@ -213,7 +213,7 @@ _USED: dict[str, Model] = {}
 def outside(name: str, taken: Container[str] = ()) -> Model | None:
     """Return a model that is none of this package; None if there is no such model.
 
-    The name is that of a program file ``NAME.toml``, of one read before, of an adapter, or of an entry point. A `ProgramFileError` is
+    The name is that of a program file ``NAME.toml``, of one read before, of an adapter, or of an entry point. An `InputError` is
     raised if the file cannot be read or states a name in `taken`, a `ModelError` if an entry point yields no model.
     """
     if not known(name):
@@ -221,7 +221,7 @@ def outside(name: str, taken: Container[str] = ()) -> Model | None:
     model = read_program(Path(name)) if name.endswith(SUFFIX) else ADAPTERS.get(name) or _USED.get(name)
     model = model or loaded(offered()[name], Model)
     if model.name in taken or model is not ADAPTERS.get(model.name, model):
-        raise ProgramFileError(name, f'program.name = "{model.name}": must not be the name of a model')
+        raise InputError(name, f'program.name = "{model.name}": must not be the name of a model')
     _USED[model.name] = model
     return model
 
@@ -258,22 +258,18 @@ def loaded(point: EntryPoint, kind: type[Any]) -> Any:
     return found
 
 
-class ProgramFileError(InputError):
-    """A program file that cannot be read."""
-
-
 def read_program(path: Path) -> Program:
     """Return the program that the TOML file `path` states in its table ``[program]`` by the keys of `RULES`; it runs in the file's folder.
 
-    ``docs/how-to/program.md`` has the keys. A `ProgramFileError` has all mistakes in the order of the file.
+    ``docs/how-to/program.md`` has the keys. An `InputError` has all mistakes in the order of the file.
     """
     source = str(path)
-    text = read_text(source, "no such file", ProgramFileError)
-    tables = read_tables(text, source, ProgramFileError)
+    text = read_text(source, "no such file", InputError)
+    tables = read_tables(text, source, InputError)
     given, mistakes = head_values(tables, "program", RULES, required=("name", "command"))
     mistakes += check_keys(tables, ("program",), required=("program",))
     if mistakes:
-        raise ProgramFileError(source, RecordError(in_order(mistakes, tables)))
+        raise InputError(source, RecordError(in_order(mistakes, tables)))
     return Program(Command(folder=path.resolve().parent, **given))
 
 
