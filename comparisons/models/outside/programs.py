@@ -205,7 +205,8 @@ ADAPTERS: dict[str, Program] = {
     )
     for module in [f"{__package__}.adapters.{name}"]
 }  # fmt: skip
-"""The adapters by name, modules of this package that run where it lies: label, colour, what it requires, how to install that, and whether it computes a two-dimensional body."""
+"""The adapters by name: label, colour, what it requires, how to install that, and whether it computes a two-dimensional body. Each is a
+module of this package, which runs in the folder where the package lies."""
 _USED: dict[str, Model] = {}
 """The models from outside that this process has used, by name."""
 

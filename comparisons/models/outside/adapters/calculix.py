@@ -45,28 +45,7 @@ PENALTY = 7e4
 """Contact stiffness, over EI/L^3."""
 THINNESS = 0.01
 """Thickness w of the half slab over the strip's height."""
-_BRICK = [
-    "000",
-    "200",
-    "220",
-    "020",
-    "002",
-    "202",
-    "222",
-    "022",
-    "100",
-    "210",
-    "120",
-    "010",
-    "102",
-    "212",
-    "122",
-    "012",
-    "001",
-    "201",
-    "221",
-    "021",
-]
+_BRICK = "000 200 220 020 002 202 222 022 100 210 120 010 102 212 122 012 001 201 221 021"
 """Places of a brick's twenty nodes in CalculiX's order: x, y and z in halves of the brick."""
 _FACE = np.array([[-1.0, 4.0, -1.0], [4.0, 0.0, 4.0], [-1.0, 4.0, -1.0]]) / 12
 """Consistent nodal forces of a unit force that is spread evenly over a face with eight nodes."""
@@ -243,7 +222,7 @@ class Slab:
         """Nodes, bricks, material, supports and a step; the clamp named ``rod`` holds transverse motion on the edge's middle line only."""
         strip, n, (nx, ny) = self.strip, self.numbers, self.strip.mesh
         modulus = strip.youngs_modulus * strip.width / self.thickness / self.unit
-        x, y, z = np.array([[*map(int, place)] for place in _BRICK]).T
+        x, y, z = np.array([[*map(int, place)] for place in _BRICK.split()]).T
         held = n[0] if strip.clamp == "full" else n[0, ny]
         sets = {"CLAMP": n[0], "HELD": held, "MIDDLE": n[:, :, 0], "TIP": n[-1, :, 0], "AXIS": n[:, ny, 0]}
         places = zip(n[n > 0], self.points[n > 0], strict=True)
