@@ -99,10 +99,8 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
     data = _parsed(output)
     if (reason := _reason(data)) is not None:
         raise ModelError(reason)
-    status, given = (
-        data.get("status", MISSING),
-        {"message": "as the program reports", "wall_seconds": seconds},
-    )
+    given: dict[str, Any] = {"message": "as the program reports", "wall_seconds": seconds}
+    status = data.get("status", MISSING)
     reported = status == COMPLETED
     if not reported and "load_parameter" not in data:
         given |= _nothing(scene)
