@@ -11,10 +11,10 @@ from comparisons.answer.record import (
     Deformation,
     FrictionHistory,
     Grid,
-    Response,
     Sections,
     SupportHistory,
 )
+from comparisons.answer.response import Response
 
 __all__ = [
     "CONTACT_STATES",

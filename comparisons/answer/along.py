@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from comparisons.answer.record import Array, Response, Sections
+from comparisons.answer.record import Answer, Array, Sections
 from comparisons.scene import BeamSpec, Scene
 
 FIRST = 1e-9
@@ -35,12 +35,12 @@ class Extreme(NamedTuple):
     arc_position: Array
 
 
-def extremes_along(response: Response, scene: Scene) -> dict[str, dict[str, Extreme]]:
+def extremes_along(response: Answer, scene: Scene) -> dict[str, dict[str, Extreme]]:
     """Return the extremes by beam and by quantity, a key of `ALONG`; without quantities that the model does not state."""
     return {beam.name: _along(response, beam) for beam in scene.beams}
 
 
-def _along(response: Response, beam: BeamSpec) -> dict[str, Extreme]:
+def _along(response: Answer, beam: BeamSpec) -> dict[str, Extreme]:
     rows: dict[str, list[tuple[float, float]]] = {}
     undeformed = cache(lambda arcs: np.array([beam.place(arc / beam.length) for arc in arcs]))
     section = cache(lambda arcs: _sections(beam, arcs))

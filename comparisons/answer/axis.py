@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from comparisons.answer.record import Array, Grid, Response, not_kept
+from comparisons.answer.record import Array, Grid, not_kept
+from comparisons.answer.response import Response
 from comparisons.scene import Scene
 
 STATIONS = np.linspace(0.0, 1.0, 101)
@@ -59,19 +60,16 @@ def sampled_axes(response: Response) -> SampledAxes:
 
 def axis_grid(scene: Scene, axis_line: Callable[[str, int], tuple[Array, Array]], k: int) -> Grid:
     """Return the axes of all beams at load parameter k as lines, with their displacements."""
-    found = [axis_line(beam.name, k) for beam in scene.beams]
-    counts = [len(arc) for arc, _ in found]
-    points = np.array(
-        [
-            beam.place(part)
-            for beam, (arc, _) in zip(scene.beams, found, strict=True)
-            for part in (arc / beam.length).tolist()
-        ]
-    )
-    deformed, beams = np.concatenate([line for _, line in found]), np.repeat(np.arange(len(found)), counts)
-    first = np.flatnonzero(beams[:-1] == beams[1:])
-    data = {"displacement": deformed - points, "deformed": deformed, "beam": beams}
-    return Grid(points=points, cells={"line": np.stack([first, first + 1], axis=1)}, point_data=data)
+    points, lines, beams = [], [], []
+    for number, beam in enumerate(scene.beams):
+        arc, line = axis_line(beam.name, k)
+        points += [beam.place(part) for part in (arc / beam.length).tolist()]
+        beams += [number] * len(arc)
+        lines.append(line)
+    deformed, first = np.concatenate(lines), np.flatnonzero(np.diff(beams) == 0)
+    data = {"displacement": deformed - points, "deformed": deformed, "beam": np.array(beams)}
+    cells = {"line": np.stack([first, first + 1], axis=1)}
+    return Grid(points=np.array(points), cells=cells, point_data=data)
 
 
 def storable(response: Response, *, axes: bool = True) -> Response:

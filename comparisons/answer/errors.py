@@ -10,6 +10,7 @@ position of a pair that is open in both, every arc position of a scene without c
 """
 
 from collections.abc import Iterable, Mapping
+from operator import itemgetter
 
 import numpy as np
 
@@ -72,13 +73,11 @@ def worst_place(response: Response, reference: Response, scene: Scene, quantity:
     place = QUANTITIES[quantity].place
     if place is not None:
         return place(response, reference)
-    columns = error_columns(response, reference, scene, quantity)
-    worst = {name: largest(values) for name, values in columns.items()}
-    name = max(worst, key=lambda name: np.nan_to_num(worst[name]), default="")
-    if not name or not worst[name] > 0.0:
-        return ""
     shared = np.intersect1d(response.load_parameter, reference.load_parameter)
-    return f"{name} at load parameter {shared[int(np.nanargmax(columns[name]))]:.6g}"
+    columns = error_columns(response, reference, scene, quantity).items()
+    found = [(x, name, t) for name, values in columns for x, t in zip(values, shared, strict=True) if x > 0.0]
+    _, name, t = max(found, key=itemgetter(0), default=(0.0, "", 0.0))
+    return f"{name} at load parameter {t:.6g}" if name else ""
 
 
 def error_histories(

@@ -1,7 +1,8 @@
 """A response as JSON, written and read by one table of fields: ``response.schema.json``.
 
 Beside the keywords of JSON Schema, a field has its ``shape``, with the number of load parameters s and of points m, and ``gaps``: where a
-number may be missing, which is null in the file and nan here. Such a number is needed where the field that ``gaps`` names acts.
+number may be missing, which is null in the file and nan here. Such a number is needed where the field that ``gaps`` names acts. A table
+has the ``record`` of `comparisons.answer.record` that is made of it.
 """
 
 import json
@@ -14,7 +15,8 @@ import numpy as np
 from comparisons.answer import record
 from comparisons.answer.axis import SampledAxes, sampled_axes
 from comparisons.answer.material import clamped
-from comparisons.answer.record import Array, Response
+from comparisons.answer.record import Array
+from comparisons.answer.response import Response
 from comparisons.files import one_line
 from comparisons.output import json_text
 from comparisons.scene import Scene, load_scene
@@ -26,14 +28,6 @@ SCHEMA: dict[str, Any] = json.loads(
     Path(__file__).with_name("response.schema.json").read_text(encoding="utf-8")
 )
 """Every field of a response in JSON."""
-RECORDS: dict[str, Any] = {
-    "contact": record.ContactHistory,
-    "friction": record.FrictionHistory,
-    "support": record.SupportHistory,
-    "event": record.ContactEvent,
-    "critical": record.CriticalPoint,
-}
-"""What is made of the tables that the schema defines by name."""
 LARGEST_WHOLE = 1e15
 """Largest magnitude of a whole number."""
 SAME_LOAD = 1e-6
@@ -42,10 +36,6 @@ Field = dict[str, Any]
 """A schema."""
 Sizes = dict[str, int]
 """Numbers of load parameters and points that are known, by their letters in a shape."""
-
-
-class ResponseError(InputError):
-    """A JSON file that does not hold a response to its scene."""
 
 
 class NotFiniteError(FieldError):
@@ -95,16 +85,16 @@ def read_response(path: str, scene: str | None = None) -> tuple[Response, Scene]
 
     Raises InputError, in one line: file, key, value and rule.
     """
-    text = read_text(path, "no such file", ResponseError)
+    text = read_text(path, "no such file", InputError)
     try:
         response = restated(parsed(text))
     except FieldError as error:
-        raise ResponseError(path, one_line(error)) from None
+        raise InputError(path, one_line(error)) from None
     except (ValueError, RecursionError) as error:
-        raise ResponseError(path, one_line(f"must be valid JSON: {error}")) from None
+        raise InputError(path, one_line(f"must be valid JSON: {error}")) from None
     found = load_scene(scene or response.scene)
     for wrong in contradictions(response, found):
-        raise ResponseError(path, one_line(wrong))
+        raise InputError(path, one_line(wrong))
     return response, found
 
 
@@ -138,12 +128,13 @@ def restated(data: Any) -> Response:
 
 
 def resolved(field: Field) -> Field:
-    """Return a field with what the schema defines for it by name."""
+    """Return a field with what the schema defines for it by name, its ``record`` too."""
     name = field.get("$ref", "").rpartition("/")[2]
-    return {**SCHEMA["$defs"].get(name, {}), "record": name, **field} if name else field
+    return {**SCHEMA["$defs"].get(name, {}), **field}
 
 
-def _require(right: object, key: str, value: object, rule: str) -> None:
+def require(right: object, key: str, value: object, rule: str) -> None:
+    """Raise FieldError unless a value is right."""
     if not right:
         raise FieldError(key, value, rule)
 
@@ -160,12 +151,12 @@ def _read(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
     if "object" in kinds:
         return _table(field, value, key, sizes)
     if "array" in kinds:
-        _require(isinstance(value, list), key, value, "must be a list")
+        require(isinstance(value, list), key, value, "must be a list")
         return tuple(_read(field["items"], item, key, sizes) for item in value)
     if kinds == "integer":
-        _require(type(value) is int and abs(value) <= LARGEST_WHOLE, key, value, "must be a whole number")
+        require(type(value) is int and abs(value) <= LARGEST_WHOLE, key, value, "must be a whole number")
     if kinds == "string":
-        _require(key == "message" or isinstance(value, str), key, value, "must be a name")
+        require(key == "message" or isinstance(value, str), key, value, "must be a name")
         return one_line(value)
     return value is True if kinds == "boolean" else value
 
@@ -173,7 +164,7 @@ def _read(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
 def _table(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
     """Return a table by name, or the record of a table with fields."""
     rule = "must be a table, as `crossval solve --out` writes it"
-    _require(isinstance(value, dict), key or "file", value, rule)
+    require(isinstance(value, dict), key or "file", value, rule)
     prefix = f"{key}." if key else ""
     if "properties" not in field:
         named = field["additionalProperties"]
@@ -189,14 +180,14 @@ def _table(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
             acts = found[one["gaps"]]
             needed = bool(acts) if isinstance(acts, str) else acts != 0.0
             _check_finite(np.asarray(found[name]), prefix + name, needed)
-    return RECORDS.get(field.get("record", ""), dict)(**found)
+    return getattr(record, field["record"])(**found) if "record" in field else found
 
 
 def _numbers(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
     """Return a number or an array of numbers."""
     names = field.get("shape", [])
     shape = tuple(sizes.get(size) if isinstance(size, str) else size for size in names)
-    found = _array(value, len(shape))
+    found = _array(value)
     if found is not None and found.size == 0 and 0 in shape:
         found = np.zeros([size or 0 for size in shape])
     if (
@@ -211,30 +202,27 @@ def _numbers(field: Field, value: Any, key: str, sizes: Sizes) -> Any:
         return float(found)
     if names == ["m"] and sizes["s"]:
         rises = len(found) > 1 and np.all(np.diff(found) > 0.0)
-        _require(rises, key, value, "must be two or more increasing numbers")
+        require(rises, key, value, "must be two or more increasing numbers")
     sizes |= {name: own for name, own in zip(names, found.shape, strict=True) if isinstance(name, str)}
     item = field["items"]
     if "enum" in item:
         rule = f"must be a list of {', '.join(map(str, item['enum']))}"
-        _require(np.isin(found, item["enum"]).all(), key, value, rule)
+        require(np.isin(found, item["enum"]).all(), key, value, rule)
     elif item.get("type") != "integer":
         return found
     whole = np.all(np.abs(found) <= LARGEST_WHOLE) and not np.any(found % 1.0)
-    _require(whole, key, value, "must be a list of whole numbers")
+    require(whole, key, value, "must be a list of whole numbers")
     return found.astype(np.int64)
 
 
-def _array(value: object, depth: int) -> Array | None:
-    """Return a number, or lists of numbers that are so deep at most; None for anything else, as a text or truth value."""
-
-    def plain(value: object, depth: int) -> bool:
-        if isinstance(value, list) and depth:
-            return all(plain(item, depth - 1) for item in value)
-        return value is None or type(value) in (int, float)
-
+def _array(value: object) -> Array | None:
+    """Return a number, or lists of numbers, as an array; None for anything else, as a text or truth value."""
+    cells = np.array(value, dtype=object)
+    if not {*map(type, cells.ravel())} <= {int, float, type(None)}:
+        return None
     try:
-        return np.array(value, dtype=np.float64) if plain(value, depth) else None
-    except (ValueError, OverflowError):
+        return cells.astype(np.float64)
+    except OverflowError:
         return None
 
 
@@ -275,18 +263,18 @@ def contradictions(response: Response, scene: Scene) -> Iterator[str]:
     if not len(t):
         return
     arcs = sampled_axes(response).arc_length
-    beams, driven = {beam.name for beam in scene.beams}, response.material_force.keys()
-    for what, own, wanted in (
-        ("contacts", response.contacts.keys(), {spec.pair for spec in scene.contacts}),
-        ("supports", response.supports.keys(), {spec.node for spec in scene.all_supports}),
-        ("springs", response.springs.keys(), {spec.node for spec in scene.springs}),
-        ("material_force", driven, driven & clamped(scene).keys()),
-        ("axes", arcs.keys(), beams),
-        ("tips", response.tips.keys(), beams),
-    ):
-        if own != wanted:
+    beams, own = {beam.name for beam in scene.beams}, vars(response) | {"axes": arcs}
+    for what, wanted in {
+        "contacts": {spec.pair for spec in scene.contacts},
+        "supports": {spec.node for spec in scene.all_supports},
+        "springs": {spec.node for spec in scene.springs},
+        "material_force": response.material_force.keys() & clamped(scene).keys(),
+        "axes": beams,
+        "tips": beams,
+    }.items():
+        if own[what].keys() != wanted:
             names = ", ".join(sorted(wanted)) or "none"
-            yield f"{what}: must have {names}, has {', '.join(sorted(own)) or 'none'}"
+            yield f"{what}: must have {names}, has {', '.join(sorted(own[what])) or 'none'}"
     for name, arc in arcs.items():
         length = scene.beam(name).length
         if not np.all(np.abs(arc[[0, -1]] - [0.0, length]) <= SAME_LOAD * length):

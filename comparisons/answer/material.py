@@ -16,12 +16,14 @@ give c and the tangential force T, of lever e, without further approximation.
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping
-from functools import cache
+from collections import UserDict
+from collections.abc import Callable
+from functools import cached_property
 
 import numpy as np
 
-from comparisons.answer.record import Array, Response
+from comparisons.answer.record import Array
+from comparisons.answer.response import Response
 from comparisons.scene import BeamSpec, ContactSpec, Scene, SupportSpec
 from comparisons.scene.keys import MATERIAL, unstated
 
@@ -31,20 +33,16 @@ ROUNDS = 30
 """Iterations for the length of g; each one reduces its error by a strain."""
 
 
-class Deferred(Mapping[str, Array]):
+class Deferred(UserDict[str, Array]):
     """A table that takes long and is computed once, when it is first asked for."""
 
-    def __init__(self, compute: Callable[[], Mapping[str, Array]]) -> None:
-        self._table = cache(compute)
+    def __init__(self, compute: Callable[[], dict[str, Array]]) -> None:
+        self._compute = compute
 
-    def __getitem__(self, name: str) -> Array:
-        return self._table()[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._table())
-
-    def __len__(self) -> int:
-        return len(self._table())
+    @cached_property
+    def data(self) -> dict[str, Array]:  # type: ignore[override]
+        """What `UserDict` looks up."""
+        return self._compute()
 
 
 def clamped(scene: Scene) -> dict[str, SupportSpec]:
@@ -81,8 +79,8 @@ def material_forces(response: Response, scene: Scene, *, strains: bool = True) -
         EA, GA = (beam.EA, beam.GA) if strains else (math.inf, math.inf)
         way, at = (-1.0, 0.0) if clamp.end == "start" else (1.0, 1.0)
         turn = math.atan2(*beam.tangent(at)[::-1]) + response.load_parameter * (clamp.motion[2] or 0.0)
-        x, y = way * support.force.T
-        N, Q = x * np.cos(turn) + y * np.sin(turn), y * np.cos(turn) - x * np.sin(turn)
+        force = way * (support.force @ (1.0, 1.0j)) * np.exp(-1.0j * turn)
+        N, Q = force.real, force.imag
         found[name] = support.moment**2 / (2.0 * beam.EI) + N + N**2 / (2.0 * EA) + Q**2 / (2.0 * GA)
         if beam.turn:
             found[name] += beam.curvature * way * support.moment

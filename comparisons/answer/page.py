@@ -5,13 +5,13 @@ Numbers have six significant digits, fewer where the last ones are round-off; a 
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from operator import itemgetter
+from typing import NamedTuple
 
 import numpy as np
 
 from comparisons.answer.along import ALONG, FIRST, extremes_along
-from comparisons.answer.record import ContactEvent, Response
+from comparisons.answer.record import Answer, ContactEvent
 from comparisons.answer.round_off import RoundOff, round_off
 from comparisons.answer.table import unit_names
 from comparisons.output import aligned
@@ -36,37 +36,36 @@ Row = Sequence[str | float]
 """Texts, and numbers whose kind their column states."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Block:
-    """A table of a page: title, names of the columns and rows. The head of the page has neither title nor names."""
+class Block(NamedTuple):
+    """A table of a page: title, names of the columns, none in the head of the page, and rows."""
 
-    title: str = ""
-    columns: Sequence[str] = ()
+    title: str
+    columns: Sequence[str]
     rows: Sequence[Sequence[str]]
 
 
-def text(response: Response, more: Sequence[tuple[str, str]] = (), rule: str = "") -> str:
+def text(response: Answer, more: Sequence[tuple[str, str]] = (), rule: str = "") -> str:
     """Return the page as text; `more` has labels and texts for the head, `rule` says why the setting of the model was chosen.
 
     Without the `definition` of the answer the numbers have no units, and no extremes along the beams are stated.
     """
-    return "\n\n".join(_lines(block, response.scene) for block in _blocks(response, more, rule))
+    return "\n\n".join(map(_lines, _blocks(response, more, rule)))
 
 
-def html(response: Response) -> str:
+def html(response: Answer) -> str:
     """Return the page as HTML."""
-    return "".join(_markup(block, response.scene) for block in _blocks(response))
+    return "".join(map(_markup, _blocks(response)))
 
 
-def _blocks(response: Response, more: Sequence[tuple[str, str]] = (), rule: str = "") -> Iterator[Block]:
-    yield Block(rows=[*_head(response, rule), *more])
+def _blocks(response: Answer, more: Sequence[tuple[str, str]] = (), rule: str = "") -> Iterator[Block]:
+    yield Block(response.scene, (), [*_head(response, rule), *more])
     if len(response.load_parameter):
         page = _Page(response)
         found = (page.reactions(), page.contacts(), page.tips(), page.extremes(), page.events())
         yield from (block for block in found if block.rows)
 
 
-def _head(response: Response, rule: str) -> Iterator[tuple[str, str]]:
+def _head(response: Answer, rule: str) -> Iterator[tuple[str, str]]:
     scene = response.definition
     if scene is not None:
         counts = ((len(scene.beams), "beam"), (len(scene.pins), "pin"), (len(scene.contacts), "contact pair"))
@@ -86,7 +85,7 @@ def _head(response: Response, rule: str) -> Iterator[tuple[str, str]]:
     yield "certificate", "not judged; crossval certify judges it" if judged is None else judged.line()
 
 
-def stability(response: Response) -> str:
+def stability(response: Answer) -> str:
     """Say in a few words where a response is stable."""
     if response.index is None:
         return "not stated by this model"
@@ -107,7 +106,7 @@ def stability(response: Response) -> str:
 class _Page:
     """The tables of an answer that reached a load parameter."""
 
-    def __init__(self, response: Response) -> None:
+    def __init__(self, response: Answer) -> None:
         scene = response.definition
         self.response, self.scene = response, scene
         self.round_off = RoundOff() if scene is None else round_off(response, scene)
@@ -124,11 +123,8 @@ class _Page:
             return value if isinstance(value, str) else self.round_off.text(float(value), kind)
 
         units = {kind: f" [{unit}]" for kind, unit in self.units.items()}
-        return Block(
-            title=title,
-            columns=[name + units.get(kind, "") for name, kind in columns.items()],
-            rows=[[cell(*pair) for pair in zip(row, columns.values(), strict=True)] for row in rows],
-        )
+        names = [name + units.get(kind, "") for name, kind in columns.items()]
+        return Block(title, names, [[*map(cell, row, columns.values())] for row in rows])
 
     def reactions(self) -> Block:
         scene, response = self.scene, self.response
@@ -146,24 +142,18 @@ class _Page:
         return self.block(f"Reactions on the beams {self.now}", columns, rows)
 
     def contacts(self) -> Block:
-        forces = dict.fromkeys(("force", "x", "y"), "force")
+        forces, contacts = dict.fromkeys(("force", "x", "y"), "force"), self.response.contacts
         columns = {"contact": "", "state": "", **forces, "arc position": "length"}
-        if any(contact.friction is not None for contact in self.response.contacts.values()):
+        if any(contact.friction is not None for contact in contacts.values()):
             columns |= {"tangential": "force", "normal": "force", "dissipated": "energy"}
-        rows = []
-        for pair, contact in self.response.contacts.items():
-            x, y = (np.nan, np.nan) if contact.vector is None else contact.vector[-1]
-            row: list[str | float] = [
-                pair,
-                self._state(pair),
-                contact.force[-1],
-                x,
-                y,
-                contact.arc_position[-1],
-            ]
-            if (rubs := contact.friction) is not None:
-                row += [rubs.tangential[-1], rubs.normal[-1], rubs.dissipated[-1]]
-            rows.append(row + [""] * (len(columns) - len(row)))
+        rows: list[Row] = []
+        for pair, contact in contacts.items():
+            vector = (np.nan, np.nan) if contact.vector is None else contact.vector[-1]
+            rubs = contact.friction
+            more = ("",) * 3 if rubs is None else (rubs.tangential[-1], rubs.normal[-1], rubs.dissipated[-1])
+            rows.append(
+                (pair, self._state(pair), contact.force[-1], *vector, contact.arc_position[-1], *more)
+            )
         return self.block(f"Contact forces on the beams {self.now}", columns, rows)
 
     def _state(self, pair: str) -> str:
@@ -253,18 +243,18 @@ class _Page:
         return words + released
 
 
-def _lines(block: Block, scene: str) -> str:
+def _lines(block: Block) -> str:
     """Return a table as lines: columns of numbers, with or without units, and dashes to the right, the others to the left."""
     rows = [block.columns, *block.rows] if block.columns else block.rows
     columns = zip(*block.rows, strict=True)
     right = [all(not cell or cell[0] in "-0123456789" for cell in column) for column in columns]
-    return "\n  ".join([block.title or scene, *aligned(rows, right)])
+    return "\n  ".join([block.title, *aligned(rows, right)])
 
 
-def _markup(block: Block, scene: str) -> str:
+def _markup(block: Block) -> str:
     from html import escape
 
-    heading = f"<h4>{escape(block.title or scene)}</h4>"
+    heading = f"<h4>{escape(block.title)}</h4>"
     head = "".join(f"<th>{escape(name)}</th>" for name in block.columns)
     body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in block.rows)
     names = f"<thead><tr>{head}</tr></thead>" if head else ""

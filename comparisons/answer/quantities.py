@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,7 +45,7 @@ class Quantity:
     words: str  #: Its name in a table.
     #: Its values by pair, support or beam, shape (s,) or (s, 2), nan where there is none. The error is infinite where one response alone
     #: has a value.
-    read: Callable[[Response], Columns] | None = None
+    read: Callable[[Response], Columns] = lambda _: {}
     compare: Callable[[Pair], Columns] | None = None  #: Its errors (n,), if not value by value.
     unit: str = "length"  #: Kind of its unit: ``force``, ``length``, ``moment``, ``stress`` or ``number``.
     #: What its errors are relative to: ``largest`` value, ``length`` of the beam, or what its values are relative to already.
@@ -66,7 +66,7 @@ class Quantity:
         """Return the errors by pair, support or beam, shape (n,)."""
         if self.compare is not None:
             return self.compare(pair)
-        own, true = self.values(pair.response), self.values(pair.reference)
+        own, true = self.read(pair.response), self.read(pair.reference)
         found = {}
         for name in {**true, **own}:
             if name not in own or name not in true:
@@ -77,10 +77,6 @@ class Quantity:
                 length = pair.scene.beam(name.rpartition("->")[2]).length if self.over == "length" else 1.0
                 found[name] = np.where(alike, size(mine - other), np.inf) / pair.scale.get(self.words, length)
         return found
-
-    def values(self, response: Response) -> Columns:
-        """Return its values by pair, support or beam; none of a quantity that is not compared value by value."""
-        return {} if self.read is None else self.read(response)
 
     def called(self, scene: Scene) -> str:
         """Return its name on a page about a scene."""
@@ -97,7 +93,7 @@ def scales(reference: Response, steps: Steps | slice = slice(None)) -> Scales:
     found = {}
     for row in QUANTITIES.values():
         if row.over == "largest":
-            sizes = [float(size(values[steps]).max(initial=0.0)) for values in row.values(reference).values()]
+            sizes = [float(size(values[steps]).max(initial=0.0)) for values in row.read(reference).values()]
             found[row.words] = max(sizes, default=0.0) or 1.0
     return found
 
@@ -121,18 +117,20 @@ def size(values: Array) -> Array:
 
 def forces(response: Response) -> dict[str, Array]:
     """Return the contact forces, shape (s,) by pair. Without contact, return the support forces, shape (s, 2) by supported end."""
-    if response.contacts:
-        return {pair: contact.force for pair, contact in response.contacts.items()}
-    return {node: support.force for node, support in response.supports.items()}
+    return _each(response.contacts, "force") or _each(response.supports, "force")
 
 
 def moments(response: Response) -> dict[str, Array]:
     """Return the support moments, shape (s,) by supported end."""
-    return {node: support.moment for node, support in response.supports.items()}
+    return _each(response.supports, "moment")
 
 
 def _arcs(response: Response) -> dict[str, Array]:
-    return {pair: contact.arc_position for pair, contact in response.contacts.items()}
+    return _each(response.contacts, "arc_position")
+
+
+def _each(records: Mapping[str, object], field: str) -> dict[str, Any]:
+    return {name: getattr(one, field) for name, one in records.items()}
 
 
 def _gap(pair: Pair) -> Columns:
@@ -233,8 +231,8 @@ def _events(response: Response, last: float) -> dict[tuple[str, str], list[float
     """Load parameters up to the last one, by kind and pair."""
     found: dict[tuple[str, str], list[float]] = {}
     if response.events is None:
-        slips = {("slip-off", pair): item.slip_off for pair, item in response.contacts.items()}
-        return {key: [t] for key, t in slips.items() if t <= last}
+        slips = _each(response.contacts, "slip_off")
+        return {("slip-off", pair): [t] for pair, t in slips.items() if t <= last}
     for event in response.events:
         known = event.pair in response.contacts and event.kind != "pass-through"
         if known and 0.0 < event.load_parameter <= last:

@@ -1,14 +1,13 @@
-"""The response of a model to a scene, and the records of contacts, supports, events and meshes in it."""
+"""What a model states about a scene, and the records of contacts, supports, events and meshes in it."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from comparisons.scene import Scene
+from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
 
@@ -26,7 +25,6 @@ class ContactHistory:
     force: Array  #: Magnitude of the contact force, shape (s,).
     arc_position: Array  #: Distance along the undeformed axis from the start (s,); nan where open.
     gap: Array  #: Gap (s,): 0 or minus the penetration of a penalty where closed, positive or nan where open.
-    compliance: float | Array = 0.0  #: Penetration per normal force of a penalty, ``-gap / force``.
     slip_off: float = np.nan  #: Load parameter at which the node left over the free end; nan if it did not.
     vector: Array | None = None  #: The contact force on the beam (s, 2), where the model states it.
     friction: "FrictionHistory | None" = None  #: What friction does; None without friction.
@@ -113,16 +111,13 @@ class Sections:
 
 
 def not_kept(*_: object) -> NoReturn:
-    """Raise: a stored response has no mesh, and one without a load parameter has no axis."""
+    """Raise: a stored answer has no mesh, and one without a load parameter has no axis."""
     raise NotImplementedError("a stored response has no mesh")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Response:
-    """The response of one model to one scene at s load parameters.
-
-    It prints itself in a line, and in a notebook as the page that ``crossval solve`` prints. What a model cannot state is None or empty.
-    """
+class Answer:
+    """What one model states about one scene at s load parameters. What it cannot state is None or empty."""
 
     model: str = ""  #: Name of the model.
     scene: str = ""  #: Name of the scene.
@@ -163,35 +158,12 @@ class Response:
     material_force: Mapping[str, Array] = field(default_factory=dict)
     reported_success: bool = False  #: Whether the model itself reported success, whatever the checks found.
     setting: str = ""  #: Elements or mesh of the model, as ``mixed 20``.
-    definition: "Scene | None" = None  #: The scene itself; None for a response that was read from a file.
+    definition: Scene | None = None  #: The scene itself; None for a response that was read from a file.
 
     @property
     def completed(self) -> bool:
         """Whether the solution is complete, and neither a check nor the referee refused it."""
         return self.status == "COMPLETED"
-
-    def __repr__(self) -> str:
-        reached = len(self.load_parameter)
-        last = f", the last {self.load_parameter[-1]:g}" if reached else ""
-        named = " ".join(filter(None, (self.model, self.setting)))
-        return f"<Response {self.scene} by {named}: {self.status}, {reached} load parameters{last}>"
-
-    def _repr_html_(self) -> str:
-        from comparisons.answer.page import html
-
-        return html(self)
-
-    def page(self) -> str:
-        """Return the page that ``crossval solve`` prints: status, reactions, contacts, extremes and events."""
-        from comparisons.answer.page import text
-
-        return text(self)
-
-    def table(self) -> dict[str, NDArray[Any]]:
-        """Return the histories by name, each of shape (s,): what ``pandas.DataFrame`` takes. See `comparisons.answer.table`."""
-        from comparisons.answer.table import table
-
-        return table(self)
 
     @property
     def false_success(self) -> bool:

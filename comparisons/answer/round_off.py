@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from comparisons.answer.record import Response
+from comparisons.answer.record import Answer
 from comparisons.scene import BeamSpec, Scene
 
 LAST_PLACES, UNRESOLVED = 8 * float(np.finfo(float).eps), 1e-4
@@ -60,7 +60,7 @@ class RoundOff:
         return f"{value:.{resolved}g}"
 
 
-def round_off(response: Response, scene: Scene) -> RoundOff:
+def round_off(response: Answer, scene: Scene) -> RoundOff:
     """Return the round-off of an answer to a scene."""
     forces = [one.force for one in response.contacts.values()]
     forces += [one.force for one in response.supports.values()]

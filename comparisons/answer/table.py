@@ -17,19 +17,19 @@ from typing import Any
 from numpy.typing import NDArray
 
 from comparisons.answer.along import ALONG, extremes_along
-from comparisons.answer.record import Response
+from comparisons.answer.record import Answer
 from comparisons.output import csv_text
 
 RUBBING = {"tangential": "force", "normal": "force", "slip": "number", "dissipated": "energy"}
 """What friction of a contact does, with its kind."""
 
 
-def table(response: Response, units: str | None = None) -> dict[str, NDArray[Any]]:
+def table(response: Answer, units: str | None = None) -> dict[str, NDArray[Any]]:
     """Return the histories by name, each of shape (s,): what ``pandas.DataFrame`` takes.
 
     Parameters
     ----------
-    response : Response
+    response : Answer
         The answer. One that was read from a file states no extremes along its beams.
     units : str, optional
         Units of force and length, as ``"N, m"``; the names then end with their units, as ``strip.start.moment [N m]``.
@@ -45,7 +45,7 @@ def table(response: Response, units: str | None = None) -> dict[str, NDArray[Any
     return found
 
 
-def csv_history(response: Response, units: str) -> str:
+def csv_history(response: Answer, units: str) -> str:
     """Return `table` as CSV, with a row for each load parameter and units in the names."""
     columns = table(response, units)
     rows = zip(*(values.tolist() for values in columns.values()), strict=True)
@@ -60,7 +60,7 @@ def unit_names(units: str) -> dict[str, str]:
     return {"force": force, "length": length, "moment": moment, "energy": moment, "stress": stress}
 
 
-def _histories(response: Response) -> Iterator[tuple[str, str, NDArray[Any] | None]]:
+def _histories(response: Answer) -> Iterator[tuple[str, str, NDArray[Any] | None]]:
     """Yield the histories: name, kind (an attribute of `RoundOff`), and values (s,) or (s, 2), None where the model does not state them."""
     yield "load_parameter", "number", response.load_parameter
     yield "stage", "number", response.stage

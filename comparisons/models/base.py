@@ -129,12 +129,11 @@ class Model(ABC):
         """Return the settings whose accuracy and cost `crossval run trade` measures, each with several numbers of load steps; fewer if quick."""
         return (Options(),)
 
-    def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:
+    def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:  # noqa: ARG002 - as above
         """Return the relative error against Reissner's rod that the model's theory allows, split by cause.
 
         A model that does not define this method is allowed round-off only.
         """
         from comparisons.models.theory import ROUND_OFF
 
-        del scene, options, bent
         return {"round-off": ROUND_OFF}

@@ -19,7 +19,6 @@ from comparisons.answer import (
     Response,
     SupportHistory,
 )
-from comparisons.answer.axis import axis_grid
 from comparisons.exact import Outcome, RodPath
 from comparisons.models.options import ModelError
 from comparisons.models.shared import POINTS
@@ -149,7 +148,7 @@ def local_response(model: str, local: RodScene, solve: Callable[[], RodPath], *,
 
     at = local.hits[:reached]
     force, outcome = path.force[at] @ local.axes.T, [path.outcome[k] for k in at]
-    closed = np.array([one.touches for one in outcome], dtype=bool)
+    arcs = local.arc(path.arc_position[at])
     slipped = np.array([one is Outcome.SLIPPED for one in outcome], dtype=bool)
     more: dict[str, Any] = {}
     friction = None
@@ -163,8 +162,8 @@ def local_response(model: str, local: RodScene, solve: Callable[[], RodPath], *,
         more = {"work": path.work[at], "events": tuple(_events(path, local)), "index": np.full(reached, -1)}
     contact = ContactHistory(
         force=np.hypot(*force.T),
-        arc_position=np.where(closed, local.arc(path.arc_position[at]), np.nan),
-        gap=np.where(closed, 0.0, np.where(slipped, np.nan, -local.path[at, 1] - local.offset)),
+        arc_position=arcs,
+        gap=np.where(np.isfinite(arcs), 0.0, np.where(slipped, np.nan, -local.path[at, 1] - local.offset)),
         slip_off=path.slip_off if reached and path.slip_off <= times[reached - 1] else np.nan,
         vector=force,
         friction=friction,
@@ -184,7 +183,6 @@ def local_response(model: str, local: RodScene, solve: Callable[[], RodPath], *,
         unknowns=unknowns,
         wall_seconds=seconds,
         axis_line=axis_line,
-        grid=lambda k: axis_grid(scene, axis_line, k),
         **more,
     )
 

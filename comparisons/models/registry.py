@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -26,7 +27,7 @@ MODELS: dict[str, Model] = {
 def find(name: str) -> Model:
     """Return a model by its name: a key of `MODELS`, a program of others by its name, or a program file ``NAME.toml``.
 
-    A `ModelError` says that there is none, a `ProgramFileError` why the file cannot be read.
+    A `ModelError` says that there is none, an `InputError` why the file cannot be read.
     """
     if name in MODELS:
         return MODELS[name]
@@ -46,7 +47,9 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
     ModelError
         If the model cannot state the scene, or an option does not belong to it.
     """
+    from comparisons.answer.axis import axis_grid
     from comparisons.answer.material import material_forces
+    from comparisons.answer.record import not_kept
     from comparisons.models.verify import verified
 
     chosen, given = find(model), options or Options()
@@ -58,11 +61,18 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
         raise ModelError(unknown)
     try:
         response = chosen.solve(scene, given, watch)
-        more: dict[str, Any] = {"setting": chosen.setting(scene, given), "definition": scene}
-        if not chosen.continuum:
-            more["material_force"] = material_forces(response, scene, strains=chosen.rod)
-        success = response.completed or response.reported_success
-        return verified(replace(response, **_kind(response, chosen), reported_success=success, **more), scene)
+        rod, lines = not chosen.continuum, partial(axis_grid, scene, response.axis_line)
+        forces = material_forces(response, scene, strains=chosen.rod) if rod else response.material_force
+        response = replace(
+            response,
+            **_kind(response, chosen),
+            setting=chosen.setting(scene, given),
+            definition=scene,
+            grid=lines if response.grid is not_kept else response.grid,
+            material_force=forces,
+            reported_success=response.completed or response.reported_success,
+        )
+        return verified(response, scene)
     except ValueError as error:
         raise ModelError(f"{chosen.name}: {error}") from error
 
@@ -76,7 +86,6 @@ def _kind(response: Response, model: Model | None) -> dict[str, Any]:
 
 def restored(response: Response, scene: Scene) -> Response:
     """Return a response from a file with the kind that its model is registered with, and checked as when it was solved."""
-    from comparisons.models.outside.exchange import penetrating
     from comparisons.models.outside.programs import ADAPTERS
     from comparisons.models.verify import CHECK_FAILED, verified
 
@@ -84,10 +93,7 @@ def restored(response: Response, scene: Scene) -> Response:
     if response.completed and not response.reported_success:
         contradiction = f"the status is {response.status}, and reported_success is false"
         return replace(response, **kind, status=CHECK_FAILED, message=contradiction)
-    contacts = response.contacts
-    if kind["outside"] or kind["continuum"]:
-        contacts = {pair: penetrating(item) for pair, item in contacts.items()}
-    return verified(replace(response, **kind, contacts=contacts), scene)
+    return verified(replace(response, **kind), scene)
 
 
 def certified(
@@ -121,8 +127,9 @@ def certified(
     allowed += 0.0 if allowance is None else allowance - ALLOWED
     if model is not None and model.by_referee(scene):
         reason = f"{model.setting(scene, Options())}, found by the referee itself"
-        unjudged: dict[str, Any] = {"verdict": Verdict.NOT_JUDGED, "judged": (), "path": (), "seconds": 0.0}
-        found = Certificate(reason=reason, allowance=allowed, **unjudged)
+        found = Certificate(
+            verdict=Verdict.NOT_JUDGED, reason=reason, allowance=allowed, judged=(), path=(), seconds=0.0
+        )
     else:
         found = certify(response, scene, at=every, allowance=allowed)
     if not response.completed and found.certified:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.models.base import Model, Style, refused
 from comparisons.models.options import ModelError, Options
+from comparisons.models.shared import kept
 from comparisons.models.tsm import beams_refusal
 from comparisons.scene.keys import ONE_ROD, RODS
 
@@ -47,13 +48,12 @@ class Rod(Model):
         if self.by_referee(scene):
             from comparisons.models.rods import solve_rods
 
-            return solve_rods(scene, watch)
+            return solve_rods(self.name, scene, watch)
         from comparisons.exact import rod_under_pin
         from comparisons.models.cantilever import local_response, to_rod
 
         local = to_rod(scene)
-        beam, radius = local.beam, scene.radius(local.contact)
-        section = {"EA": beam.EA, "GA": beam.GA, "EI": beam.EI, "length": beam.length}
+        section, radius = kept(local.beam, "EA GA EI length"), scene.radius(local.contact)
         pin = {"friction": local.contact.friction, "offset": local.offset - radius, "radius": radius}
         return local_response(
             self.name, local, lambda: rod_under_pin(local.path, **section, **pin), unknowns=4
@@ -85,7 +85,7 @@ class Elastica(Model):
         from comparisons.models.cantilever import local_response
 
         local = _on_axis(scene)
-        sizes = {"EI": local.beam.EI, "length": local.beam.length}
+        sizes = kept(local.beam, "EI length")
         return local_response(self.name, local, lambda: elastica_under_pin(local.path, **sizes), unknowns=1)
 
     def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:  # noqa: ARG002 - as above

@@ -4,13 +4,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import takewhile
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 
 from comparisons.answer import Array, ContactHistory, FrictionHistory, Response, Sections, SupportHistory
-from comparisons.answer.axis import axis_grid
 from comparisons.models.progress import Watch
-from comparisons.models.rod import ROD
 from comparisons.models.shared import POINTS, Axis, rows
 from comparisons.models.tsm import TSM
 from comparisons.referee import Equilibrium, Verdict, certify
@@ -19,7 +18,7 @@ from comparisons.scene import Scene
 States = Sequence[Equilibrium]
 
 
-def solve_rods(scene: Scene, watch: Watch) -> Response:
+def solve_rods(model: str, scene: Scene, watch: Watch) -> Response:
     """Return the exact equilibria of a scene's rods along the path that exact TSM elements follow.
 
     The referee starts from the TSM answer at every load parameter, solves its own equations, and judges stability, admissibility
@@ -41,17 +40,15 @@ def solve_rods(scene: Scene, watch: Watch) -> Response:
     held = {
         node.node: rows([state.reactions[node.node] for state in states], 3) for node in scene.all_supports
     }
-    ends = {beam.name: f"{beam.name}.{scene.tip(beam.name)}" for beam in scene.beams}
-
     reached = slice(len(states))
 
     def axis_line(beam: str, k: int) -> Axis:
         arc = np.linspace(0.0, scene.beam(beam).length, POINTS)
         return arc, states[k].shape(beam, arc).position
 
-    return replace(
-        followed,
-        model=ROD.name,
+    return Response(
+        model=model,
+        scene=scene.name,
         status=followed.status if sound else found.verdict.name,
         message=followed.message if sound else found.reason,
         load_parameter=followed.load_parameter[reached],
@@ -67,15 +64,14 @@ def solve_rods(scene: Scene, watch: Watch) -> Response:
             node: SupportHistory(force=one.force[reached], moment=one.moment[reached])
             for node, one in followed.springs.items()
         },
-        tips={beam: rows([state.ends[end] for state in states], 2) for beam, end in ends.items()},
+        tips={
+            beam.name: rows([state.ends[f"{beam.name}.{scene.tip(beam.name)}"] for state in states], 2)
+            for beam in scene.beams
+        },
         newton_iterations=np.array([state.iterations for state in states], dtype=np.int64),
-        cutbacks=0,
         unknowns=max((len(state.z) for state in states), default=0),
         axis_line=axis_line,
-        grid=lambda k: axis_grid(scene, axis_line, k),
-        events=None,
-        integration_error=0.0,
-        deformation=None,
+        critical=followed.critical,
         sections=lambda beam, k: _sections(scene, beam, states[k]),
         index=np.array([state.index for state in states], dtype=np.int64),
         wall_seconds=perf_counter() - began,
@@ -85,19 +81,21 @@ def solve_rods(scene: Scene, watch: Watch) -> Response:
 def _contact(pair: str, followed: ContactHistory, states: States, spent: Array) -> ContactHistory:
     """Return the contact of the referee's equilibria; the gaps of open ones and the senses of slips are those of TSM."""
     closed, friction = [state.contacts.get(pair) for state in states], followed.friction
-    forces = rows([(0.0, 0.0) if here is None else here.force for here in closed], 2)
+
+    def found(name: str, if_open: Any = 0.0) -> Array:
+        return np.array([if_open if here is None else getattr(here, name) for here in closed])
+
+    forces, arcs = rows(found("force", (0.0, 0.0)), 2), found("arc_position", np.nan)
     if friction is not None:
+        sense = friction.slip[: len(states)]
         friction = FrictionHistory(
-            tangential=np.array([0.0 if here is None else here.drag for here in closed]),
-            normal=np.array([0.0 if here is None else here.push for here in closed]),
-            slip=friction.slip[: len(states)],
-            dissipated=spent,
+            tangential=found("drag"), normal=found("push"), slip=sense, dissipated=spent
         )
     return replace(
         followed,
         force=np.hypot(*forces.T),
-        arc_position=np.array([np.nan if here is None else here.arc_position for here in closed]),
-        gap=np.array([gap if here is None else 0.0 for gap, here in zip(followed.gap, closed, strict=False)]),
+        arc_position=arcs,
+        gap=np.where(np.isnan(arcs), followed.gap[: len(states)], 0.0),
         vector=forces,
         friction=friction,
     )

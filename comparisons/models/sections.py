@@ -7,10 +7,10 @@ import numpy as np
 
 from comparisons.answer import Array, Sections
 from comparisons.answer.material import clamped
+from comparisons.answer.quantities import AWAY
+from comparisons.models.shared import occupied
 from comparisons.scene import BeamSpec, Scene
 
-MARGIN = 1.5
-"""Distance from clamp and contact, over the height, within which stresses are local; sections there are left out."""
 SHARE = 0.25
 """Largest part of the distance between clamp and contact that is left out at either end."""
 
@@ -20,18 +20,17 @@ def section_forces(scene: Scene, result: Any, beam: str, k: int) -> Sections:
     import fem_reference
 
     found = fem_reference.section_forces(result, beam, k)
-    taken = [load.load.node for load in scene.load_histories] + [spring.node for spring in scene.springs]
+    taken = occupied(scene)
     table, own = np.stack([found.stations, found.N, found.V, found.M]), scene.beam(beam)
     for support in scene.supports_of(beam):
         motion = scene.prescribed_motions[support.node].at(float(result.load_parameter[k]))
-        place, turn, first = scene.place(support.node), motion[2], support.end == "start"
-        joined = sum(place in (other.start, other.end) for other in scene.beams) > 1
-        if turn is None or joined or support.node in taken:
+        turn, first = motion[2], support.end == "start"
+        if turn is None or support.node in taken:
             continue
-        held, (tx, ty) = result.supports[support.node], own.tangent(0.0 if first else 1.0)
-        c, s = tx * np.cos(turn) - ty * np.sin(turn), ty * np.cos(turn) + tx * np.sin(turn)
-        x, y, moment = (1 - 2 * first) * np.array([*held.force[k], held.moment[k]])
-        column = [0.0 if first else own.length, c * x + s * y, c * y - s * x, moment]
+        held, sign = result.supports[support.node], 1 - 2 * first
+        tangent = complex(*own.tangent(1.0 - first)) * np.exp(1.0j * turn)
+        force = sign * complex(*held.force[k]) * tangent.conjugate()
+        column = [(1.0 - first) * own.length, force.real, force.imag, sign * held.moment[k]]
         table = np.insert(table, 0 if first else table.shape[1], column, axis=1)
     return Sections(arc=table[0], N=table[1], V=table[2], M=table[3])
 
@@ -46,19 +45,20 @@ def j_integrals(scene: Scene, result: Any) -> dict[str, Array]:
     """
     import fem_reference
 
-    def mean(beam: BeamSpec, end: str, k: int) -> float:
-        def from_clamp(arcs: Array) -> Array:
-            return arcs if end == "start" else beam.length - arcs
-
+    def mean(beam: BeamSpec, clamp: float, k: int) -> float:
         pairs = [contact.pair for contact in scene.contacts if contact.beam == beam.name]
         arcs = np.array([result.contacts[pair].arc_position[k] for pair in pairs])
-        free = float(np.fmin.reduce(from_clamp(arcs), initial=beam.length))
-        margin = min(MARGIN * beam.rectangle_height, SHARE * free)
+        free = float(np.fmin.reduce(np.abs(arcs - clamp), initial=beam.length))
+        margin = min(AWAY * beam.rectangle_height, SHARE * free)
         sections = fem_reference.section_forces(result, beam.name, k)
-        distance = from_clamp(sections.stations)
+        distance = np.abs(sections.stations - clamp)
         inside = (distance > margin) & (distance < free - margin)
         return float(sections.material_force[inside].mean()) if inside.any() else nan
 
-    ends = {name: clamp.end for name, clamp in clamped(scene).items() if not scene.beam(name).turn}
-    steps = range(len(result.load_parameter))
-    return {name: np.array([mean(scene.beam(name), end, k) for k in steps]) for name, end in ends.items()}
+    steps, found = range(len(result.load_parameter)), {}
+    for name, support in clamped(scene).items():
+        beam = scene.beam(name)
+        if not beam.turn:
+            clamp = 0.0 if support.end == "start" else beam.length
+            found[name] = np.array([mean(beam, clamp, k) for k in steps])
+    return found

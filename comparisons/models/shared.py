@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from comparisons.answer import Array, ContactHistory, Response
+    from comparisons.answer import Array, Response
     from comparisons.models.options import Options
     from comparisons.scene import BeamSpec, PinSpec, Scene
 
@@ -26,6 +26,13 @@ def joints(scene: Scene) -> list[list[str]]:
         for end in ("start", "end"):
             meeting[scene.place(f"{beam.name}.{end}")].append(f"{beam.name}.{end}")
     return [ends for ends in meeting.values() if len(ends) > 1]
+
+
+def occupied(scene: Scene) -> set[str]:
+    """Return the ends of beams at which more than a support may act: those with loads, springs or joints."""
+    loads, springs = scene.numbered_loads(), scene.springs
+    joined = {end for ends in joints(scene) for end in ends}
+    return joined | {load.node for _, load in loads} | {spring.node for spring in springs}
 
 
 def line_loads(scene: Scene) -> Iterator[tuple[BeamSpec, int, tuple[Force, ...], Force]]:
@@ -69,13 +76,6 @@ def result_of(
         return solver.solve(problem, np.array(scene.times), given, watch=report)
     except solver.SolveError as error:
         return error.result
-
-
-def history(item: Any, **more: Any) -> ContactHistory:
-    """Return the contact history of a solver's result, with what else the model states."""
-    from comparisons.answer import ContactHistory
-
-    return ContactHistory(**kept(item, "force arc_position gap"), **more)
 
 
 def of_result(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from comparisons.models.base import Model, Style, refused
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Reached, Watch
-from comparisons.models.shared import history, joints, kept, line_loads, of_result, result_of, ways
+from comparisons.models.shared import joints, kept, line_loads, occupied, of_result, result_of, ways
 from comparisons.scene.conditions import COMPONENTS
 from comparisons.scene.keys import STRIPS
 
@@ -25,9 +25,6 @@ REFINED = ((25, 1), (50, 2), (100, 4), (200, 8))
 COARSE = ((8, 1), (12, 1), (16, 1), (25, 2))
 LEAST_RATIO = -0.999
 """Least Poisson's ratio. There the shear modulus is 500 times Young's modulus; a solid that is stiffer in shear locks."""
-CONTACT = "node side surface penalty penetration keep friction"
-STRIP = "name start end turn youngs_modulus material"
-"""What the solid takes of a contact and of a beam as it is."""
 DEFAULT_PENALTY = 25.0
 """Default penalty stiffness of the solid, over E b."""
 SLENDER = 0.125
@@ -54,7 +51,7 @@ class Solid(Model):
         import numpy as np
 
         import fem_reference
-        from comparisons.answer import Deformation, FrictionHistory, Grid
+        from comparisons.answer import ContactHistory, Deformation, FrictionHistory, Grid
         from comparisons.answer.material import Deferred
         from comparisons.models.sections import j_integrals, section_forces
 
@@ -90,9 +87,8 @@ class Solid(Model):
             if spec.friction:
                 forces = {"tangential": item.tangential_force, "normal": item.normal_force}
                 friction = FrictionHistory(slip=item.direction, dissipated=item.dissipated, **forces)
-            soft = 1.0 / problem.penalty(spec) if spec.penetration is None else 0.0
-            more = {"slip_off": item.slip_off, "vector": item.vector, "friction": friction}
-            contacts[spec.name] = history(item, compliance=soft, **more)
+            own = kept(item, "force arc_position gap slip_off vector")
+            contacts[spec.name] = ContactHistory(**own, friction=friction)
         turn = 2 * np.max([half_turns(beam.name) for beam in scene.beams], axis=0)
         return of_result(
             self.name,
@@ -211,15 +207,10 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> SolidProbl
         ),
         loads=(
             *(
-                fem.PointLoad(strip=beam, at=float(end == "end"), stage=stage, **kept(load, "force moment"))
+                fem.PointLoad(strip=beam, at=at, stage=stage, **kept(load, "force moment"))
                 for stage, load in scene.numbered_loads()
-                if load.end is not None
-                for beam, end in [joints.loaded(load).split(".")]
-            ),
-            *(
-                fem.PointLoad(strip=load.beam, stage=stage, **kept(load, "at force moment"))
-                for stage, load in scene.numbered_loads()
-                if load.at is not None
+                if load.force_per_length is None
+                for beam, at in [joints.loaded(load)]
             ),
             *(
                 fem.LineLoad(strip=beam.name, force=force, part=part, stage=stage)
@@ -227,7 +218,10 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> SolidProbl
             ),
         ),
         pins=tuple(fem.Pin(name=pin.name, radius=pin.radius or 0.0, **ways(pin)) for pin in scene.pins),
-        contacts=tuple(fem.Contact(strip=item.beam, **kept(item, CONTACT)) for item in scene.contacts),
+        contacts=tuple(
+            fem.Contact(strip=item.beam, **kept(item, "node side surface penalty penetration keep friction"))
+            for item in scene.contacts
+        ),
     )
 
 
@@ -277,14 +271,17 @@ class _Joints:
         x, y = spec.stiffness
         return x, y, spec.rotation if spec.rotation and self.turn(spec.node, "spring") else 0.0
 
-    def loaded(self, load: LoadSpec) -> str:
-        """Return the end at which a load acts; a moment acts on an end without a hinge."""
+    def loaded(self, load: LoadSpec) -> tuple[str, float]:
+        """Return beam and part of its length at which a load acts; a moment acts on an end without a hinge."""
+        if load.at is not None:
+            return load.beam, load.at
         plain = self.plain(load.node) if load.moment else load.node
         if plain is None:
             raise ModelError(
                 f'the solid model states a moment on a joint with an end without a hinge, "{load.node}" has none'
             )
-        return plain if load.node in self.hinges else load.node
+        beam, end = (plain if load.node in self.hinges else load.node).split(".")
+        return beam, float(end == "end")
 
 
 def _is_clamp(scene: Scene, spec: SupportSpec, joints: _Joints) -> bool:
@@ -294,9 +291,7 @@ def _is_clamp(scene: Scene, spec: SupportSpec, joints: _Joints) -> bool:
     """
     if len(spec.held) < len(COMPONENTS):
         return False
-    acting = [load.node for _, load in scene.numbered_loads()] + [spring.node for spring in scene.springs]
-    joined = spec.node in joints.hinges or len(joints.at(spec.node)) > 1
-    if not (joined or scene.prescribed_motions[spec.node].moves or spec.node in acting):
+    if not (scene.prescribed_motions[spec.node].moves or spec.node in {*joints.hinges, *occupied(scene)}):
         return True
     if scene.beam(spec.beam).solid_clamp == "full":
         raise ModelError(
@@ -338,7 +333,7 @@ def _strip(beam: BeamSpec, clamps: set[str], mesh: tuple[int, int] | None) -> St
     if (mesh or beam.mesh)[0] < 2:
         raise ModelError("the solid model needs at least 2 elements along the beam")
     return Strip(
-        **kept(beam, STRIP),
+        **kept(beam, "name start end turn youngs_modulus material"),
         height=height,
         width=width,
         end_height=beam.height[1] if isinstance(beam.height, tuple) else None,

@@ -57,18 +57,17 @@ def bending(beam: BeamSpec, exact: Response) -> Bending:
     if not len(exact.load_parameter):
         return Bending()
     clamp = exact.supports[f"{beam.name}.start"]
-    force, moment = -clamp.force, np.abs(clamp.moment)
-    loaded = np.hypot(*force.T) > 0.0
+    x, y = -clamp.force.T
+    force = np.hypot(x, y)
+    turn = np.where(force > 0.0, np.abs(np.arctan2(-x, y)), 0.0)
     # beyond a right angle the moment is largest where the axis points along the force, and there m^2 = 2 F EI
-    turn = np.abs(np.arctan2(-force[loaded, 0], force[loaded, 1]))
-    inner = np.where(turn > np.pi / 2, np.sqrt(2 * np.hypot(*force[loaded].T) * beam.EI), 0.0)
-    largest_moment = max(float(moment.max(initial=0.0)), float(inner.max(initial=0.0)))
-    arcs = [np.fmin.reduce(contact.arc_position, initial=beam.length) for contact in exact.contacts.values()]
+    inner = np.where(turn > np.pi / 2, np.sqrt(2 * force * beam.EI), 0.0)
+    arcs = [contact.arc_position for contact in exact.contacts.values()]
     return Bending(
-        force=float(np.hypot(*force.T).max(initial=0.0)) * beam.length**2 / beam.EI,
-        curvature=largest_moment * beam.length / beam.EI,
-        turn=float(turn.max(initial=0.0)),
-        nearest=float(min(arcs, default=beam.length)) / beam.length,
+        force=float(force.max()) * beam.length**2 / beam.EI,
+        curvature=float(np.maximum(np.abs(clamp.moment), inner).max()) * beam.length / beam.EI,
+        turn=float(turn.max()),
+        nearest=float(np.fmin.reduce(np.ravel(arcs), initial=beam.length)) / beam.length,
     )
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from comparisons.models.base import Model, Style
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Reached, Watch
-from comparisons.models.shared import history, kept, line_loads, of_result, result_of, rows, ways
+from comparisons.models.shared import kept, line_loads, of_result, result_of, rows, ways
 from comparisons.scene.keys import BEAMS
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ class Tsm(Model):
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked; a tolerance is for elements that integrate."""
         import tsm
-        from comparisons.answer import ContactEvent, Deformation, FrictionHistory, Sections
+        from comparisons.answer import ContactEvent, ContactHistory, Deformation, FrictionHistory, Sections
 
         kind, tolerance = self.kind(scene, options), options.integration_tolerance
         structure = to_structure(scene, elements=options.elements, element=kind.name)
@@ -96,8 +96,8 @@ class Tsm(Model):
         )
         slipped = {one.pair: one.load_parameter for one in reversed(events) if one.kind == "slip-off"}
         contacts = {
-            pair: history(
-                item,
+            pair: ContactHistory(
+                **kept(item, "force arc_position gap"),
                 slip_off=slipped.get(pair, nan),
                 vector=rows([state.system.forces.get(number, (0.0, 0.0)) for state in result.equilibria], 2),
                 friction=None if item.friction is None else FrictionHistory(**vars(item.friction)),
@@ -296,21 +296,21 @@ def beams_refusal(scene: Scene) -> str | None:
 
 def _face_slope(scene: Scene, contact: ContactSpec) -> float:
     """Derivative of the radius of the circles whose envelope is the face, ``h'/2 / sqrt(1 + (h'/2)^2)``."""
-    beam = scene.beam(contact.beam)
-    steep = (beam.height_at(1.0) - beam.height_at(0.0)) / (2.0 * beam.length)
-    return steep / hypot(1.0, steep) if contact.surface == "face" else 0.0
+    rise = scene.offset(contact, 1.0) - scene.offset(contact, 0.0)
+    return rise / hypot(scene.beam(contact.beam).length, rise)
 
 
 def _pair(scene: Scene, contact: ContactSpec) -> ContactPair:
     """Contact pair. The face of a beam whose height tapers lies at half the height from the undeformed axis, see `_face_slope`."""
     from tsm import ContactPair
 
-    steep, beam, radius = _face_slope(scene, contact), scene.beam(contact.beam), scene.radius(contact)
-    tapered = radius + beam.height_at(0.0) / 2.0 * sqrt(1.0 - steep**2)
-    offset = tapered if steep else scene.offset(contact)
-    end = offset + steep * beam.length if steep else None
+    slope, radius = _face_slope(scene, contact), scene.radius(contact)
+    inner = 1.0 - sqrt(1.0 - slope**2)
+    start, end = (
+        offset - inner * (offset - radius) for part in (0.0, 1.0) for offset in [scene.offset(contact, part)]
+    )
     own = kept(contact, "node beam side keep friction")
-    return ContactPair(offset=offset, end_offset=end, radius=radius, **own)
+    return ContactPair(offset=start, end_offset=end if slope else None, radius=radius, **own)
 
 
 def _beam(scene: Scene, spec: BeamSpec, elements: int | None, kind: ElementType) -> Beam:
@@ -324,16 +324,15 @@ def _beam(scene: Scene, spec: BeamSpec, elements: int | None, kind: ElementType)
     nodes = spec.nodes if kind.meshed and not elements else ()
     count = elements or (spec.divisions if kind.meshed else 1)
     own = [load for _, load in scene.numbered_loads() if load.beam == spec.name]
-    ends = [part for load in own if load.force_per_length is not None for part in load.span]
-    places = [load.at for load in own if load.at is not None]
+    places = [part for load in own for part in (load.span if load.at is None else (load.at,))]
     return Beam(
         **kept(spec, "name start end turn"),
-        section=section(0.0 if spec.tapers else 0.5),
+        section=section(0.0),
         end_section=section(1.0) if spec.tapers else None,
         elements=count,
         element=kind.name,
         nodes=nodes,
-    ).divided(*(part * spec.length for part in (*ends, *places)))
+    ).divided(*(part * spec.length for part in places))
 
 
 TSM = Tsm()

@@ -116,10 +116,11 @@ def _contacts(
 
 
 def _ajar(contact: ContactHistory, spec: ContactSpec, beam: BeamSpec, response: Response) -> Mask:
-    pressing = contact.force if contact.friction is None else contact.friction.normal
-    allowed = max(CLOSED, spec.penetration or 0.0) if response.continuum else CLOSED
-    apart = np.abs(contact.gap + contact.compliance * pressing) > allowed * beam.length
-    return (contact.force > 0.0) & apart
+    stated = spec.penetration or 0.0 if response.continuum else 0.0
+    # a penalty leaves a negative gap, which "small penetration" bounds
+    penalty = response.outside or (response.continuum and not stated)
+    gap = contact.gap if penalty else np.abs(contact.gap)
+    return (contact.force > 0.0) & (gap > max(CLOSED, stated) * beam.length)
 
 
 def _inside(response: Response, scene: Scene) -> Iterator[str]:
@@ -171,13 +172,12 @@ def penetration(response: Response, scene: Scene, spec: ContactSpec, kink: float
     depth, side = np.zeros(len(response.load_parameter)), 1.0 if spec.side == "left" else -1.0
     if scene.offset(spec) == 0.0:
         return depth
-    radius, face = scene.radius(spec), spec.surface == "face"
-    half = beam.height_at(0.5) / 2.0 if face else 0.0
-    steep = (beam.height_at(1.0) - beam.height_at(0.0)) / (2.0 * beam.length) if face else 0.0
+    radius, first = scene.radius(spec), scene.offset(spec, 0.0)
+    steep = (scene.offset(spec, 1.0) - first) / beam.length
     for k in range(len(depth)):
         arc, place = response.axis_line(spec.beam, k)
         # a tapered face is the envelope of circles about the points of the axis
-        offset = radius + (half + steep * (arc - beam.length / 2.0)) / math.hypot(1.0, steep)
+        offset = radius + (first - radius + steep * arc) / math.hypot(1.0, steep)
         away, along = _node(response, scene, spec, k) - place, np.gradient(place, arc, axis=0)
         distance = np.hypot(*away.T)
         if contact.force[k] > 0.0:

@@ -4,14 +4,14 @@ import os
 import shutil
 import signal
 import sys
-import tempfile
 from collections.abc import Container, Iterable, Sequence
 from contextlib import suppress
 from enum import Enum
 from os import getpid, kill, waitpid
 from pathlib import Path
+from tempfile import TemporaryFile
 from time import perf_counter, sleep
-from typing import Any
+from typing import IO, Any
 
 from comparisons.files import one_line, printable
 
@@ -61,11 +61,6 @@ def found(program: str, folder: Path) -> str | None:
     return shutil.which(program if own.name == program else str(own))
 
 
-def environment(more: Iterable[str] = ()) -> dict[str, str]:
-    """Return the environment of a program: the variables of `ENVIRONMENT` and `more`, as far as they are set."""
-    return {name: os.environ[name] for name in (*ENVIRONMENT, *more) if name in os.environ}
-
-
 def run(
     command: Sequence[str],
     folder: Path,
@@ -83,29 +78,27 @@ def run(
     program = found(command[0], folder)
     if program is None:
         raise ProgramError(ProgramStatus.NOT_STARTED, f"there is no program {command[0]}")
-    with tempfile.TemporaryDirectory(prefix="crossval-") as place:
-        given, out, err = (Path(place) / name for name in ("stdin", "stdout", "stderr"))
-        given.write_text(text, encoding="utf-8")
-        with given.open("rb") as stdin, out.open("wb") as stdout, err.open("wb") as stderr:
-            streams = {"stdin": stdin, "stdout": stdout, "stderr": stderr}
-            how = {"cwd": folder, "env": environment(more) | set_to, **streams}
-            code = _finished([program, *command[1:]], how, (out, err), seconds, memory)
+    env = {name: os.environ[name] for name in (*ENVIRONMENT, *more) if name in os.environ} | set_to
+    with TemporaryFile() as given, TemporaryFile() as out, TemporaryFile() as err:
+        given.write(text.encode())
+        given.seek(0)
+        how = {"cwd": folder, "env": env, "stdin": given, "stdout": out, "stderr": err}
+        code = _finished([program, *command[1:]], how, seconds, memory)
         if code:
             ended = f"ended with exit status {code}"
             if code < 0 and os.name != "nt":
                 ended = f"was ended by {signal.Signals(-code).name}"
             words = _tail(err) or _tail(out) or "no message"
             raise ProgramError(ProgramStatus.CRASHED, f"{ended}: {words}")
-        return out.read_bytes()
+        out.seek(0)
+        return out.read()
 
 
-def _finished(
-    command: list[str], how: dict[str, Any], written: tuple[Path, ...], seconds: float, memory: float
-) -> int:
+def _finished(command: list[str], how: dict[str, Any], seconds: float, memory: float) -> int:
     """Return the exit status of a command that keeps its limits."""
     import subprocess
 
-    others = set(_family())
+    others, written = set(_family()), (how["stdout"], how["stderr"])
     _adopt(1)
     try:
         process = subprocess.Popen(command, start_new_session=True, **how)  # noqa: S603 the program that the user names
@@ -120,7 +113,7 @@ def _finished(
                 return int(process.wait(timeout=look))
             look = min(2.0 * look, LAST_LOOK)
             taken = sum(_family(others).values()) / MB
-            size = sum(path.stat().st_size for path in written) / MB
+            size = sum(os.fstat(file.fileno()).st_size for file in written) / MB
             for status, used, most, words in (
                 (ProgramStatus.TIMED_OUT, perf_counter() - began, seconds, "ran longer than {:g} s"),
                 (ProgramStatus.OUT_OF_MEMORY, taken, memory, "took more than {:g} MB of memory"),
@@ -187,9 +180,8 @@ def _end(process: Any, others: Container[int]) -> None:
     process.wait()
 
 
-def _tail(path: Path) -> str:
+def _tail(file: IO[bytes]) -> str:
     """Return the last words of a file in one line."""
-    with path.open("rb") as file:
-        file.seek(max(path.stat().st_size - 4 * TAIL, 0))
-        words = " ".join(file.read().decode("utf-8", errors="replace").split())
+    file.seek(max(file.seek(0, os.SEEK_END) - 4 * TAIL, 0))
+    words = " ".join(file.read().decode("utf-8", errors="replace").split())
     return printable(words[-TAIL:])

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.answer import ContactHistory, Response
-from comparisons.answer.axis import axis_grid, sampled_axes
-from comparisons.answer.file import SCHEMA, NotFiniteError, contradictions, parsed, restated
+from comparisons.answer import Response
+from comparisons.answer.axis import sampled_axes
+from comparisons.answer.file import NotFiniteError, contradictions, parsed, require, restated
 from comparisons.files import one_line
 from comparisons.models.options import ModelError, Options
 from comparisons.models.outside.adapters.exchange import Histories
@@ -20,13 +20,8 @@ from comparisons.models.verify import CHECK_FAILED
 from comparisons.referee.certificate import Verdict
 from comparisons.scene import BeamSpec, Scene
 from comparisons.scene.keys import PROGRAMS, unstated
-from comparisons.scene.rules import FieldError
-from comparisons.scene.tables import check_keys
+from comparisons.scene.rules import MISSING, FieldError
 
-BEAM = "name start end length direction EA GA EI youngs_modulus width height"
-SUPPORT, LOAD = "node beam end motion", "node beam end force moment"
-CONTACT = "pair node beam side keep friction"
-"""What a program gets of each record of a scene as it is."""
 COMPLETED, REFUSED = "COMPLETED", "REFUSED"
 SHOWN = 60
 """Bytes that are shown of an output that is not JSON."""
@@ -52,8 +47,8 @@ def request(scene: Scene, options: Options, load_parameters: Sequence[float]) ->
         "load_parameters": list(load_parameters),
         "beams": [_beam(scene, beam, options) for beam in scene.beams],
         "joints": joints(scene),
-        "supports": [kept(item, SUPPORT) for item in scene.all_supports],
-        "loads": [kept(item, LOAD) for item in scene.loads],
+        "supports": [kept(item, "node beam end motion") for item in scene.all_supports],
+        "loads": [kept(item, "node beam end force moment") for item in scene.loads],
         "pins": [
             {
                 "name": pin.name,
@@ -64,14 +59,18 @@ def request(scene: Scene, options: Options, load_parameters: Sequence[float]) ->
             }
             for pin in scene.pins
         ],
-        "contacts": [kept(item, CONTACT) | {"offset": scene.offset(item)} for item in scene.contacts],
+        "contacts": [
+            kept(item, "pair node beam side keep friction") | {"offset": scene.offset(item)}
+            for item in scene.contacts
+        ],
     }
     return json.dumps(data, allow_nan=False, indent=1) + "\n"
 
 
 def _beam(scene: Scene, beam: BeamSpec, options: Options) -> dict[str, Any]:
     area, second_moment, shear_area = beam.section()
-    return kept(beam, BEAM) | {
+    own = "name start end length direction EA GA EI youngs_modulus width height"
+    return kept(beam, own) | {
         "tip": scene.tip(beam.name),
         "shear_modulus": beam.GA / shear_area,
         "area": area,
@@ -82,16 +81,12 @@ def _beam(scene: Scene, beam: BeamSpec, options: Options) -> dict[str, Any]:
 
 
 def refusal(output: bytes) -> str | None:
-    """Return why the program cannot state the scene; None if it can, or gave no answer."""
-    try:
-        data = _parsed(output)
-    except ProgramError:
-        return None
-    return _reason(data) if data.get("status") == REFUSED else None
+    """Return why the program cannot state the scene, None if it can; raise `ProgramError` if it gave no answer."""
+    return _reason(_parsed(output))
 
 
-def _reason(data: dict[str, Any]) -> str:
-    return one_line(data.get("message") or "no reason given")
+def _reason(data: dict[str, Any]) -> str | None:
+    return one_line(data.get("message") or "no reason given") if data.get("status") == REFUSED else None
 
 
 def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
@@ -102,22 +97,25 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
     an output that is no response to the scene a `ProgramError`.
     """
     data = _parsed(output)
-    status = data.get("status")
-    if status == REFUSED:
-        raise ModelError(_reason(data))
+    if (reason := _reason(data)) is not None:
+        raise ModelError(reason)
+    given: dict[str, Any] = {"message": "as the program reports", "wall_seconds": seconds}
+    status = data.get("status", MISSING)
     reported = status == COMPLETED
-    mistakes = [*check_keys(data, SCHEMA["properties"], required=("status",))]
-    if not isinstance(status, str) or not WORD.fullmatch(status) or status in VERDICTS:
-        # a misspelt success, and the words that only this program says of an answer
-        rule = f"must be {COMPLETED}, in capitals, {REFUSED}, or another word in capitals"
-        mistakes.append(FieldError("status", status, f"{rule} that is no verdict of this program"))
+    if not reported and "load_parameter" not in data:
+        given |= _nothing(scene)
     try:
-        for mistake in mistakes:
-            raise mistake
-        known = {"message": "as the program reports", "wall_seconds": seconds}
-        if not reported and "load_parameter" not in data:
-            return silent(scene, model, str(status), data.get("message", known["message"]))
-        response = _read(scene, model, {**known, **data})
+        # no misspelt success, and no word that only this program says of an answer
+        right = isinstance(status, str) and WORD.fullmatch(status) and status not in VERDICTS
+        rule = f"must be {COMPLETED}, in capitals, {REFUSED}, or another word in capitals"
+        require(right, "status", status, f"{rule} that is no verdict of this program")
+        response = restated({"scene": scene.name, **given, **data, "model": model})
+        t = np.array(scene.times[: len(response.load_parameter)])
+        if "tips" not in data and t.size:
+            ends = {beam.name: -1 if scene.tip(beam.name) == "end" else 0 for beam in scene.beams}
+            lines = sampled_axes(response).position
+            tips = {name: lines[name][:, end] for name, end in ends.items() if name in lines}
+            response = replace(response, tips=tips)
         wrong = next(contradictions(response, scene), "")
     except NotFiniteError as error:
         raise ProgramError(ProgramStatus.NOT_FINITE, str(error), reported_success=reported) from None
@@ -125,30 +123,19 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
         wrong = str(error)
     if wrong:
         raise ProgramError(ProgramStatus.INVALID_RESPONSE, wrong, reported_success=reported)
-    return replace(
-        response,
-        load_parameter=np.array(scene.times[: len(response.load_parameter)]),
-        contacts={pair: penetrating(item) for pair, item in response.contacts.items()},
-        grid=lambda k: axis_grid(scene, response.axis_line, k),
-    )
+    return replace(response, load_parameter=t)
 
 
-def silent(scene: Scene, model: str, status: str, message: object, *, success: bool = False) -> Response:
-    """Return a response without any load parameter, which states why there is none."""
-    none = vars(Histories(json.loads(request(scene, Options(), ()))))
-    said = {"status": status, "message": message, "reported_success": success, "wall_seconds": 0.0}
-    return _read(scene, model, {**none, **said})
+def unanswered(scene: Scene, model: str, error: ProgramError) -> Response:
+    """Return the response without any load parameter which says why there is none."""
+    said = {"status": error.status.name, "message": error, "reported_success": error.reported_success}
+    return restated({**_nothing(scene), **said, "scene": scene.name, "model": model, "wall_seconds": 0.0})
 
 
-def _read(scene: Scene, model: str, data: dict[str, Any]) -> Response:
-    """Return the response that tables state, with the tips at the ends of the axes if they state none."""
-    response = restated({"scene": scene.name, **data, "model": model})
-    if "tips" in data:
-        return response
-    ends = {beam.name: -1 if scene.tip(beam.name) == "end" else 0 for beam in scene.beams}
-    lines = {name: line for name, line in sampled_axes(response).position.items() if name in ends}
-    tips = {name: line[:, ends[name]] if line.size else np.empty((0, 2)) for name, line in lines.items()}
-    return replace(response, tips=tips)
+def _nothing(scene: Scene) -> dict[str, Any]:
+    """Return the histories of an answer without any load parameter."""
+    histories = Histories(json.loads(request(scene, Options(), ())))
+    return {**vars(histories), "tips": {beam.name: [] for beam in scene.beams}}
 
 
 def _parsed(output: bytes) -> dict[str, Any]:
@@ -163,11 +150,3 @@ def _parsed(output: bytes) -> dict[str, Any]:
     if not isinstance(data, dict):
         raise ProgramError(ProgramStatus.INVALID_RESPONSE, "the output must be a table")
     return data
-
-
-def penetrating(contact: ContactHistory) -> ContactHistory:
-    """Return a contact whose negative gaps are the penetration of a penalty."""
-    pressing = contact.force if contact.friction is None else contact.friction.normal
-    deep = (contact.force > 0.0) & (contact.gap < 0.0) & (pressing > 0.0)
-    per_force = np.divide(-contact.gap, pressing, out=np.zeros_like(contact.force), where=deep)
-    return replace(contact, compliance=per_force)

@@ -149,17 +149,16 @@ class Program(Model):
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:  # noqa: ARG002 - a program states no steps
         """Return the response to `scene`, not yet checked. Its status names what failed if there is none."""
-        from comparisons.models.outside.exchange import answer, request, silent
+        from comparisons.models.outside.exchange import answer, request, unanswered
 
         missing = self.missing()
         if missing is not None:
             raise ModelError(missing)
         given, began = request(scene, options, scene.times), perf_counter()
         try:
-            output = self.source.ask(given)
-            return answer(output, scene, self.name, perf_counter() - began)
+            return answer(self.source.ask(given), scene, self.name, perf_counter() - began)
         except ProgramError as error:
-            return silent(scene, self.name, error.status.name, error, success=error.reported_success)
+            return unanswered(scene, self.name, error)
 
     def setting(self, scene: Scene, options: Options) -> str:
         """Return the numbers of elements; empty if the program chooses its resolution itself."""
@@ -190,15 +189,10 @@ def _refusal_of(module: str) -> Refusal:
     return lambda scene: import_module(module).refusal(scene)
 
 
-RUN = (
-    f"import runpy, sys; sys.path.insert(0, {str(Path(__file__).parents[3])!r}); "
-    "runpy.run_module({!r}, run_name='__main__')"
-)
-"""What runs an adapter, which is a module of this package."""
 ADAPTERS: dict[str, Program] = {
     name: Program(
         Command(
-            name=name, label=label, command=(sys.executable, "-c", RUN.format(module)), folder=Path.cwd(),
+            name=name, label=label, command=(sys.executable, "-m", module), folder=Path(__file__).parents[3],
             elements=(10, 20, 40, 80), colour=colour, requires=requires, needs=needs, continuum=continuum,
             refusal=_refusal_of(module),
         )
@@ -211,7 +205,8 @@ ADAPTERS: dict[str, Program] = {
     )
     for module in [f"{__package__}.adapters.{name}"]
 }  # fmt: skip
-"""The adapters of this package by name: label, colour, what it requires, how to install that, and whether it computes a two-dimensional body."""
+"""The adapters by name: label, colour, what it requires, how to install that, and whether it computes a two-dimensional body. Each is a
+module of this package, which runs in the folder where the package lies."""
 _USED: dict[str, Model] = {}
 """The models from outside that this process has used, by name."""
 
@@ -219,7 +214,7 @@ _USED: dict[str, Model] = {}
 def outside(name: str, taken: Container[str] = ()) -> Model | None:
     """Return a model that is none of this package; None if there is no such model.
 
-    The name is that of a program file ``NAME.toml``, of one read before, of an adapter, or of an entry point. A `ProgramFileError` is
+    The name is that of a program file ``NAME.toml``, of one read before, of an adapter, or of an entry point. An `InputError` is
     raised if the file cannot be read or states a name in `taken`, a `ModelError` if an entry point yields no model.
     """
     if not known(name):
@@ -227,7 +222,7 @@ def outside(name: str, taken: Container[str] = ()) -> Model | None:
     model = read_program(Path(name)) if name.endswith(SUFFIX) else ADAPTERS.get(name) or _USED.get(name)
     model = model or loaded(offered()[name], Model)
     if model.name in taken or model is not ADAPTERS.get(model.name, model):
-        raise ProgramFileError(name, f'program.name = "{model.name}": must not be the name of a model')
+        raise InputError(name, f'program.name = "{model.name}": must not be the name of a model')
     _USED[model.name] = model
     return model
 
@@ -264,22 +259,18 @@ def loaded(point: EntryPoint, kind: type[Any]) -> Any:
     return found
 
 
-class ProgramFileError(InputError):
-    """A program file that cannot be read."""
-
-
 def read_program(path: Path) -> Program:
     """Return the program that the TOML file `path` states in its table ``[program]`` by the keys of `RULES`; it runs in the file's folder.
 
-    ``docs/how-to/program.md`` has the keys. A `ProgramFileError` has all mistakes in the order of the file.
+    ``docs/how-to/program.md`` has the keys. An `InputError` has all mistakes in the order of the file.
     """
     source = str(path)
-    text = read_text(source, "no such file", ProgramFileError)
-    tables = read_tables(text, source, ProgramFileError)
+    text = read_text(source, "no such file", InputError)
+    tables = read_tables(text, source, InputError)
     given, mistakes = head_values(tables, "program", RULES, required=("name", "command"))
     mistakes += check_keys(tables, ("program",), required=("program",))
     if mistakes:
-        raise ProgramFileError(source, RecordError(in_order(mistakes, tables)))
+        raise InputError(source, RecordError(in_order(mistakes, tables)))
     return Program(Command(folder=path.resolve().parent, **given))
 
 

@@ -79,7 +79,7 @@ def _size(response: Response, scene: Scene, quantity: str) -> float:
     unit = {"force": stiffest, "moment": stiffest * longest}.get(row.unit)
     if row.over != "largest" or unit is None:
         return 1.0
-    sizes = [float(size(values).max(initial=0.0)) for values in row.values(response).values()]
+    sizes = [float(size(values).max(initial=0.0)) for values in row.read(response).values()]
     return min(1.0, max(sizes, default=0.0) / unit)
 
 

@@ -122,7 +122,7 @@ def ajar(gap: float) -> Response:
 def pressed(most: float) -> Response:
     """Contacts of a penalty, which lie inside the beam in proportion to their forces."""
     force = answer(KS).contacts[PAIR].force
-    return contact(answer(KS), gap=-most * force / force.max(), compliance=most / force.max())
+    return replace(contact(answer(KS), gap=-most * force / force.max()), continuum=True)
 
 
 def pressed_in(size: float) -> tuple[Response, Scene]:

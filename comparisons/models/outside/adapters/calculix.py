@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.integrate import simpson
 
 from comparisons.models.outside import child
 from comparisons.models.outside.adapters.exchange import Histories, StoppedError, Table, refined, serve
@@ -44,12 +45,10 @@ PENALTY = 7e4
 """Contact stiffness, over EI/L^3."""
 THINNESS = 0.01
 """Thickness w of the half slab over the strip's height."""
-_CORNERS = ((0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2))
-_BARS = ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7))
+_BRICK = "000 200 220 020 002 202 222 022 100 210 120 010 102 212 122 012 001 201 221 021"
+"""Places of a brick's twenty nodes in CalculiX's order: x, y and z in halves of the brick."""
 _FACE = np.array([[-1.0, 4.0, -1.0], [4.0, 0.0, 4.0], [-1.0, 4.0, -1.0]]) / 12
 """Consistent nodal forces of a unit force that is spread evenly over a face with eight nodes."""
-_EDGE = np.array([1.0, 4.0, 1.0]) / 6
-"""Simpson's weights of the edge of a quadratic element."""
 _PRINT = (
     "*NODE PRINT, NSET=TIP", "U", "*NODE PRINT, NSET=AXIS", "U", "*NODE PRINT, NSET=CLAMP", "U,RF", "*END STEP", "",
 )  # fmt: skip
@@ -84,9 +83,9 @@ def states(scene: Table, histories: Histories) -> Iterator[float]:
     from fem_reference import Strip
 
     beam, frame = scene["beams"][0], axes(scene["beams"][0])
+    own = {key: beam[key] for key in ("name", "height", "width", "youngs_modulus")}
     slab = Slab(Strip(
-        name=beam["name"], start=(0.0, 0.0), end=(beam["length"], 0.0), height=beam["height"],
-        width=beam["width"], youngs_modulus=beam["youngs_modulus"],
+        **own, start=(0.0, 0.0), end=(beam["length"], 0.0),
         poissons_ratio=beam["youngs_modulus"] / (2.0 * beam["shear_modulus"]) - 1.0,
         mesh=(beam["elements"], ACROSS),
     ))  # fmt: skip
@@ -146,8 +145,8 @@ def pressed(strip: "Strip", start: Point, motion: Point, steps: int, penalty: fl
     through = np.flatnonzero(np.hypot(*found.force.T) < slab.unit)
     if not through.size:
         return found
-    kept = {name: values[: through[0]] for name, values in found._asdict().items() if name != "stopped"}
-    return Answer(**kept, stopped="lost the pin through the face")
+    *histories, _ = found
+    return Answer._make([*(one[: through[0]] for one in histories), "lost the pin through the face"])
 
 
 class Slab:
@@ -203,8 +202,8 @@ class Slab:
     def answer(self, deck: str, seconds: float = 300.0) -> Answer:
         """Return the answer to a deck, up to the last increment that was printed completely; raise `ProgramError` if there is none."""
         times, tables, stopped = run(deck, seconds)
-        edge, held = 2 * self.strip.mesh[1] + 1, len(self.clamp)
-        sizes = {"TIP": edge, "AXIS": len(self.axis), "CLAMP": held}
+        ny, held = self.strip.mesh[1], len(self.clamp)
+        sizes = {"TIP": 2 * ny + 1, "AXIS": len(self.axis), "CLAMP": held}
         wanted = {("displacements", name): size for name, size in sizes.items()} | {("forces", "CLAMP"): held}
         whole = [
             [rows for rows in tables.get(name, []) if len(rows) == size] for name, size in wanted.items()
@@ -215,29 +214,23 @@ class Slab:
         tip, bent, moved, forces = (np.array(table[:count])[:, :, :2] for table in whole)
         forces = forces * self.unit
         x, y = (self.clamp + moved).transpose(2, 0, 1)
-        mean = np.zeros(edge)
-        for first in range(0, edge - 1, 2):
-            mean[first : first + 3] += _EDGE / self.strip.mesh[1]
         moment = (x * forces[..., 1] - y * forces[..., 0]).sum(axis=1)
-        return Answer(
-            np.array(times[:count]), mean @ tip, forces.sum(axis=1), moment, self.axis + bent, stopped
-        )
+        mean = simpson(tip, dx=0.5 / ny, axis=1)
+        return Answer(np.array(times[:count]), mean, forces.sum(axis=1), moment, self.axis + bent, stopped)
 
     def _deck(self, contact: list[str], steps: int, action: list[str]) -> str:
         """Nodes, bricks, material, supports and a step; the clamp named ``rod`` holds transverse motion on the edge's middle line only."""
         strip, n, (nx, ny) = self.strip, self.numbers, self.strip.mesh
         modulus = strip.youngs_modulus * strip.width / self.thickness / self.unit
-        corners = np.array(_CORNERS)
-        offsets = np.concatenate([corners, [(corners[a] + corners[b]) // 2 for a, b in _BARS]])
-        columns, rows = np.divmod(np.arange(nx * ny), ny)
-        x, y, z = np.moveaxis(np.stack([2 * columns, 2 * rows, 0 * rows], axis=-1)[:, None] + offsets, -1, 0)
+        x, y, z = np.array([[*map(int, place)] for place in _BRICK.split()]).T
         held = n[0] if strip.clamp == "full" else n[0, ny]
         sets = {"CLAMP": n[0], "HELD": held, "MIDDLE": n[:, :, 0], "TIP": n[-1, :, 0], "AXIS": n[:, ny, 0]}
         places = zip(n[n > 0], self.points[n > 0], strict=True)
         lines = ["*NODE", *(f"{number},{a:.12e},{b:.12e},{c:.12e}" for number, (a, b, c) in places)]
         lines.append("*ELEMENT, TYPE=C3D20R, ELSET=STRIP")
-        for number, brick in enumerate(n[x, y, z].tolist(), start=1):
-            lines += [f"{number},{','.join(map(str, brick[:10]))},", ",".join(map(str, brick[10:]))]
+        for number, (column, row) in enumerate(np.ndindex(nx, ny), start=1):
+            brick = n[x + 2 * column, y + 2 * row, z].astype(str)
+            lines += [f"{number},{','.join(brick[:10])},", ",".join(brick[10:])]
         for name, numbers in sets.items():
             lines += [f"*NSET, NSET={name}", *(f"{number}," for number in numbers[numbers > 0])]
         material = f"{modulus:.12e},{strip.poissons_ratio:.12e}"

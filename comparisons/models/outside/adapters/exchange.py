@@ -86,6 +86,12 @@ def answered(scene: Table, refusal: Refusal | None, states: States) -> Table:
     return {"status": status, "message": message, "wall_seconds": seconds, **vars(histories)}
 
 
+def named(scene: Table, kind: str, name: str) -> Table:
+    """Return the record of a kind, as ``beams``, by its name."""
+    found: Table = next(item for item in scene[kind] if item["name"] == name)
+    return found
+
+
 def rough(scene: Table) -> str | None:
     """Return why a program whose contacts are frictionless cannot state a scene; None if the scene has no friction."""
     pairs = [item["pair"] for item in scene["contacts"] if item["friction"]]

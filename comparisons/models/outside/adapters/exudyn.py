@@ -10,7 +10,15 @@ from typing import Any
 
 from numpy import interp, zeros
 
-from comparisons.models.outside.adapters.exchange import Histories, StoppedError, Table, refined, rough, serve
+from comparisons.models.outside.adapters.exchange import (
+    Histories,
+    StoppedError,
+    Table,
+    named,
+    refined,
+    rough,
+    serve,
+)
 from comparisons.models.outside.adapters.frame import Frame, frame, projection
 
 STEPS, SHORTER, NEAR = 400, (1, 2, 4), 1e-6
@@ -84,7 +92,7 @@ def _stated(ex: Any, system: Any, mesh: Frame) -> tuple[list[int], Held, dict[st
     held: Held = {}
     for support in mesh.scene["supports"]:
         node = mesh.node(support)
-        c, s = next(beam["direction"] for beam in mesh.scene["beams"] if beam["name"] == support["beam"])
+        c, s = named(mesh.scene, "beams", support["beam"])["direction"]
         for component, value in enumerate(support["motion"]):
             # a rotation is held by the slope across the beam
             coordinate, arm = (component, 1.0) if component < 2 else (3, c) if c else (2, -s)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.models.outside.adapters.exchange import Histories, StoppedError, Table, refined, serve
+from comparisons.models.outside.adapters.exchange import Histories, StoppedError, Table, named, refined, serve
 from comparisons.models.outside.adapters.strip import Foot, axes, foot, foot_on, one_strip, way
 
 STEPS = 50
@@ -69,7 +69,7 @@ class _Contact:
     """Item of FElupe: a penalty between a pin and a line of nodes along the strip."""
 
     def __init__(self, field: Any, scene: Table, item: Table) -> None:
-        beam, pin = scene["beams"][0], next(one for one in scene["pins"] if one["name"] == item["node"])
+        beam, pin = scene["beams"][0], named(scene, "pins", item["node"])
         self.side, self.radius = 1.0 if item["side"] == "left" else -1.0, pin["radius"]
         self.pair = item["pair"]
         self.field, self.points = field, field.region.mesh.points

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, NamedTuple
 
-from comparisons.models.outside.adapters.exchange import Histories, Table, points_along
+from comparisons.models.outside.adapters.exchange import Histories, Table, named, points_along
 
 
 class Element(NamedTuple):
@@ -32,8 +32,7 @@ class Frame:
 
     def pair(self, contact: Table) -> tuple[Table, Table]:
         """Return the beam and the pin of a contact."""
-        beams, pins = ({item["name"]: item for item in self.scene[kind]} for kind in ("beams", "pins"))
-        return beams[contact["beam"]], pins[contact["node"]]
+        return named(self.scene, "beams", contact["beam"]), named(self.scene, "pins", contact["node"])
 
     def way(self, pin: Table) -> tuple[list[float], list[list[float]]]:
         """Return the load parameters of the corners of a pin's path, and the displacements x and y of the pin there."""
