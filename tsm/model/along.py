@@ -81,14 +81,14 @@ class Along:
         )  # fmt: skip
 
 
-def kind_of(beam: Beam, *, varies: bool) -> ElementType:
-    """Type of a beam's elements.
+def kind_of(beam: Beam, *, varies: bool, rubbed: bool) -> ElementType:
+    """Type of a beam's elements; of one with friction the integrated one, if there is one.
 
     Raises ValueError if the beam has what its elements cannot state.
     """
     kind = ELEMENTS[beam.element]
     if not varies:
-        return kind
+        return kind.on_varying or kind if rubbed else kind
     able = ", ".join(name for name, other in ELEMENTS.items() if other.on_varying)
     rule = f"such elements are straight and uniform, without loads along them; use {able}"
     check(kind.on_varying is not None, f"Beam({beam.name})", "element", beam.element, rule)
@@ -102,7 +102,7 @@ def gauss_nodes(beams: Sequence[tuple[Beam, ElementType]]) -> int | None:
     """
     counts = {kind.nodes: beam for beam, kind in beams if isinstance(kind, Integrated)}
     fixed = next((beam for nodes, beam in counts.items() if nodes), beams[0][0])
-    rule = f'must be "{EXACT.name}" as of other beams here, since the beam is curved or tapered or has a load along it'
+    rule = f'must be "{EXACT.name}" as of other beams here, since the beam is curved or tapered, has a load along it, or friction'
     check(len(counts) < 2, f"Beam({fixed.name})", "element", fixed.element, rule)
     return next(iter(counts), None)
 

@@ -131,8 +131,7 @@ class ContactBlock:
     def _share(self, p: Any, first: tuple[PairModel, Touch], second: tuple[PairModel, Touch]) -> None:
         """Couple two contacts on one element: each force deflects the element at the other contact."""
         pairs, (a, b) = (first[0], second[0]), (first[1], second[1])
-        one, two = (_slip(pair, touch) for pair, touch in (first, second))
-        gradient, block = crossing(pairs[0].cross(p, a.xi, b.xi), p.l0, (a.force, b.force), (one, two))
+        gradient, block = crossing(pairs[0].law, p, (a.xi, b.xi), (a.force, b.force))
         parts = (slice(0, 3), slice(3, 6))
         for pair_i, part_i in zip(pairs, parts, strict=True):
             self.residual[pair_i.slots] += gradient[part_i]
@@ -143,10 +142,3 @@ class ContactBlock:
         """Rows and columns of a pair's unknowns in the border."""
         start = pair.slot + self.model.border_dofs
         return slice(start, start + pair.element_type.contact_unknowns)
-
-
-def _slip(pair: PairModel, touch: Touch) -> tuple[float, float]:
-    """Sign of the last row, and the lean of the force, see `crossing`."""
-    if touch.grip is None:
-        return -1.0, 0.0
-    return float(touch.grip.held is None), pair.lean(touch.grip)

@@ -86,6 +86,7 @@ class Model:
         ends: dict[tuple[float, float], int] = {}
         hinged = {(hinge.beam, hinge.end) for hinge in self.structure.hinges}
         behind: dict[int, tuple[float, float]] = {}
+        rubbed = {pair.beam for pair in self.structure.contacts if pair.friction}
         elements = 0
         for beam in beams:
             nodes = []
@@ -107,7 +108,7 @@ class Model:
                 nodes=np.array(nodes),
                 lengths=_lengths(beam, arcs),
                 arcs=arcs,
-                kind=kind_of(beam, varies=bool(self.along.varies[elements])),
+                kind=kind_of(beam, varies=bool(self.along.varies[elements]), rubbed=beam.name in rubbed),
             )
             elements += beam.elements
         self._place_joints(behind, ends, coordinates)
@@ -234,9 +235,10 @@ class Model:
             element_type = target.kind
             pin = pins.get(pair.node)
             of_pair = checks(f"ContactPair({pair.name})", pair)
-            rubs = element_type.rubs or not pair.friction
-            of_pair("friction", rubs, f'elements "{target.beam.element}" have contacts without friction only')
-            envelope = pair.end_offset is None or isinstance(element_type, Integrated)
+            integrated = isinstance(element_type, Integrated)
+            rule = f'elements "{target.beam.element}" have contacts without friction only'
+            of_pair("friction", integrated or not pair.friction, rule)
+            envelope = integrated or pair.end_offset is None
             of_pair("end_offset", envelope, f'belongs to a beam that tapers or has elements "{EXACT.name}"')
             self.pairs.append(
                 PairModel(

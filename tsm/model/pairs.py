@@ -19,17 +19,29 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tsm.elements import ClosedForm, ContactLaw, ElementType
-from tsm.elements.contact_law import Friction, Here, Vector
-from tsm.elements.properties import Array, Properties, unwind
+from tsm.elements.contact_law import Vector
+from tsm.elements.properties import Array, unwind
 from tsm.model.projection import arc_position
 from tsm.model.state import Grip, Place, Touch, Traction
 from tsm.statement.structure import Beam, ContactPair, Pin
 
 if TYPE_CHECKING:
     from tsm.model.groups import ElementGroup
+
+
+class Here(NamedTuple):
+    """What a contact sees of its beam, in numbers or in arrays with complex steps."""
+
+    arc: Any  # arc position on the beam
+    tangent: Vector  # mean tangent T, per undeformed length
+    # shear, direction: psi, the angle from the section's normal to T; phi, the angle of T; both, as the mean
+    # theta', matter with friction only
+    shear: Any
+    direction: Any
+    turn: Any  # mean theta', per undeformed length
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,17 +86,6 @@ class PairModel:
         """Contact law of a touched element in closed form."""
         assert isinstance(self.element_type, ClosedForm), "an exact element is cut instead"
         return self.element_type.contact
-
-    def cross(self, p: Properties, xi: float, eta: float) -> tuple[Any, ...]:
-        """Deflection of an element at xi by a unit force at eta, see `ContactLaw.cross`."""
-        assert self.law.cross is not None, "the law has unknowns"
-        return self.law.cross(p, xi, eta)
-
-    @property
-    def friction(self) -> Friction:
-        """Friction of the contact law."""
-        assert self.law.friction is not None, "the law has friction, see `Model`"
-        return self.law.friction
 
     @property
     def reach(self) -> float:

@@ -318,7 +318,7 @@ def _friction(model: Model, steps: list[Step], k: int) -> FrictionHistory:
     for step in steps:
         state, system = step.equilibrium.state, step.equilibrium.system
         grip = dict(grips(state)).get(k)
-        here = traction(model, state, system, k) if grip else None
+        here = traction(model, system, k) if grip else None
         force = (here.tangential, here.normal) if here else (0.0, 0.0)
         rows.append((*force, grip.slip if grip else 0, step.spent[1 + k] if len(step.spent) else np.nan))
     tangential, normal, slip, dissipated = np.array(rows).reshape(-1, 4).T

@@ -13,13 +13,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tsm.elements import rod
-from tsm.elements.contact_law import Here
 from tsm.elements.properties import Array, cosine, sine
 from tsm.elements.rod import Course
 from tsm.elements.varied import derivatives, varied
 from tsm.model.contact_block import ContactBlock
 from tsm.model.groups.layout import CUT, OWN, chain
-from tsm.model.pairs import PairModel
+from tsm.model.pairs import Here, PairModel
 from tsm.model.state import Touch
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ eliminated (`tsm.elements.rod`) and kept in the state.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -20,7 +20,7 @@ from tsm.elements.properties import Array
 from tsm.elements.rod import Arrival, Course, Field, Flexibility, Segments
 from tsm.elements.varied import STEP
 from tsm.model.contact_block import ContactBlock
-from tsm.model.groups.base import Change, ElementGroup
+from tsm.model.groups.base import Change, ElementGroup, GroupForces, GroupTangent
 from tsm.model.groups.cut import Cut, CutElement, Section, cut_element, enter, seen
 from tsm.model.groups.layout import COLUMNS, FIXED, OWN, ROWS, Layout, layout
 from tsm.model.groups.shape import (
@@ -54,28 +54,18 @@ class Entry(NamedTuple):
     cuts: dict[int, Cut]  # the contacts, by pair; without friction, once forces are asked for
 
 
-class RodBalance(NamedTuple):
-    """Residual of the exact elements."""
+@dataclass(kw_only=True)
+class RodBalance(GroupForces):
+    """Residual of the exact elements: forces on node i, arrival at node j, forces on node j."""
 
     entry: Entry  # the segments
     arrival: Arrival  # their residuals
-    nodal: Array  # forces on node i, arrival at node j, forces on node j; shape (9, r)
-    inside: float  # largest residual inside [rad]
-
-    @property
-    def ends(self) -> Array:
-        """Forces and moments at both ends of the elements, shape (6, r)."""
-        ends: Array = self.nodal[[0, 1, 2, 6, 7, 8]]
-        return ends
 
 
-class RodTangent(NamedTuple):
+@dataclass(kw_only=True)
+class RodTangent(GroupTangent):
     """Tangent of the exact elements."""
 
-    # contribution of the inner residual to the residual after the inner unknowns are eliminated; shape (9, r)
-    condensed_residual: Array
-    tangent: Array  # derivative of the residual, row by row; shape (81, r)
-    by_load: Array  # derivative of the residual in the load parameter; shape (9, r)
     cut: tuple[CutElement, ...]  # elements with contacts, whose first nine rows and columns are above too
     inner: Array  # derivatives of the angles inside by the inputs of the segments; shape (s, p, i)
     transfer: Array  # derivatives of their outputs, see `rod.Condensed`; shape (s, 4, i)
@@ -236,7 +226,8 @@ class Rods(ElementGroup):
                     k, cut.pair, cut.touch.force, (x - cx + px, y - cy + py, row, arrival.end_residual[cut.s])
                 )
                 residual[3:5, element] += entry.vector[:, cut.s + 1]
-        return RodBalance(entry, arrival, residual, float(np.abs(arrival.inside).max()))
+        inside = float(np.abs(arrival.inside).max())
+        return RodBalance(nodal=residual, inside=inside, entry=entry, arrival=arrival)
 
     def tangent(self, state: State, forces: RodBalance, contacts: ContactBlock) -> RodTangent:
         """Tangent of the elements and of the contacts that cut them."""
@@ -260,8 +251,10 @@ class Rods(ElementGroup):
             cut.append(part)
         if self.varies:
             by_load[6:8] = -self._resultant(state, rate=True)
-        flat = tangent.reshape(len(first), -1).T
-        return RodTangent(condensed_residual, flat, by_load, tuple(cut), condensed.inner, condensed.transfer)
+        return RodTangent(
+            tangent=tangent.reshape(len(first), -1).T, condensed_residual=condensed_residual, by_load=by_load,
+            cut=tuple(cut), inner=condensed.inner, transfer=condensed.transfer,
+        )  # fmt: skip
 
     def inside(self, tangent: RodTangent, state: State, change: Change) -> Array:
         """Change (s, p) of the inner angles with all other unknowns; `residual` is 1 to remove the residual inside."""
@@ -276,16 +269,16 @@ class Rods(ElementGroup):
         inside: Array = (tangent.inner @ inputs[:, :, None])[:, :, 0]
         return inside
 
-    def turning(self, state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> Array:
+    def turning(self, state: State, tangent: Any, dofs: Array, contacts: Array) -> Array:
         """Rates of the angles at the Gauss nodes."""
         return self.inside(tangent, state, Change(dofs, contacts, 0.0, 1.0, 1.0)).ravel()
 
-    def traction(self, k: int, _state: State, forces: RodBalance) -> Traction:
+    def traction(self, k: int, forces: Any) -> Traction:
         """Force and place of a contact with friction."""
-        cut = forces.entry.cuts[k]
+        cut: Cut = forces.entry.cuts[k]
         return cut.pair.traction(cut.touch.force, cut.here)
 
-    def slip_rate(self, k: int, _state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> float:
+    def slip_rate(self, k: int, tangent: Any, dofs: Array, contacts: Array) -> float:
         """Slip rate of a contact."""
         part = next(part for part in tangent.cut if k in part.pairs)
         own = (dofs[self.dofs[:, part.element]], contacts[part.slots], [1.0, 0.0])
