@@ -10,7 +10,7 @@ from numpy.polynomial import Polynomial
 
 from tsm.elements import ELEMENTS, EXACT, ElementType, Integrated
 from tsm.elements.properties import Array
-from tsm.elements.rod import Course, Flexibility
+from tsm.elements.rod import Course
 from tsm.statement.beam import Beam, LineLoad, check
 from tsm.statement.stages import Increments
 
@@ -74,8 +74,8 @@ class Along:
         powers = part ** np.arange(resultant.shape[1] + 1)[:, None, None]
         risen = np.arange(1, resultant.shape[1] + 1)[:, None, None] * powers[:-1] / length
         return Course(
-            Flexibility(stretch, stretch / ratio, bend),
-            Flexibility(stretch_slope, stretch_slope / ratio, bend_slope),
+            np.array([stretch, stretch / ratio, bend]),
+            np.array([stretch_slope, stretch_slope / ratio, bend_slope]),
             *(np.einsum("cds,dsp->csp", coefficients, on) for coefficients, on in (
                 (resultant, powers[1:]), (resultant, risen), (resultant_rate, powers[1:]))),
         )  # fmt: skip

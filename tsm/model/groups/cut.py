@@ -101,7 +101,7 @@ def seen(pair: PairModel, section: Section, at: Any, held: tuple[Any, ...]) -> t
     if course is not None:
         on, later = arc - held[5], load - held[7]
         stretch, shear, bend = (
-            value + slope[0, 0] * on for value, slope in zip(section[:3], course.slope, strict=True)
+            value + slope * on for value, slope in zip(section[:3], course.slope[:, 0, 0], strict=True)
         )
         nx, ny = (
             n - (P + q * on + rate * later)

@@ -17,7 +17,7 @@ import numpy as np
 from tsm.elements import rod
 from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array
-from tsm.elements.rod import Arrival, Course, Field, Flexibility, Segments
+from tsm.elements.rod import Arrival, Course, Field, Segments
 from tsm.elements.varied import STEP
 from tsm.model.contact_block import ContactBlock
 from tsm.model.groups.base import Change, ElementGroup, GroupForces, GroupTangent
@@ -29,13 +29,11 @@ from tsm.model.groups.shape import (
     touch_of,
 )
 from tsm.model.projection import Projection
-from tsm.model.state import Cuts, Profile, State, Traction
+from tsm.model.state import Profile, State, Traction
 
 if TYPE_CHECKING:
     from tsm.model.model import Model
 
-_KEPT = 16
-"""Divisions into segments whose constants are kept."""
 _UNDEFORMED_ORDER = 24
 """Gauss nodes of an undeformed element."""
 
@@ -71,17 +69,6 @@ class RodTangent(GroupTangent):
     transfer: Array  # derivatives of their outputs, see `rod.Condensed`; shape (s, 4, i)
 
 
-class _Owned(NamedTuple):
-    """Constants of the elements, one for every segment."""
-
-    place: Layout  # the segments
-    dofs: Array  # degrees of freedom of the elements; shape (9, s)
-    angles: Array  # angles of the undeformed elements at both ends; shape (2, s)
-    length: Array  # their length; shape (s,)
-    flexibility: Flexibility
-    curvature: Array  # shape (s, 1)
-
-
 class Rods(ElementGroup):
     """Equations of the exact elements of a model, r of them. ``dofs`` (9, r) are node i, force and moment, node j."""
 
@@ -93,11 +80,10 @@ class Rods(ElementGroup):
         along = model.along
         self.varies, self.nodes = bool(along.varies[elements].any()), model.gauss_nodes
         self.near, self.far = model.coordinates[model.element_nodes[elements].T].transpose(0, 2, 1)
-        self.angles, self.length = np.stack([along.start, along.end])[:, elements], along.length[elements]
-        self.natural = along.curvature[elements]
-        unloaded = np.zeros((2, 2, 0, len(elements)))
-        self.flexibility = along.course(elements, 0 * self.length[:, None], *unloaded).flexibility
-        self._constants: dict[Cuts, _Owned] = {}
+        course = along.course(elements, np.zeros((len(elements), 1)), *np.zeros((2, 2, 0, len(elements))))
+        own = (along.start, along.end, along.length, along.curvature)
+        self.constants = np.array([*(value[elements] for value in own), *course.flexibility[:, :, 0]])
+        self.angles, self.length, self.natural = self.constants[:2], self.constants[2], self.constants[3]
         self.memo: tuple[State, RodShape, dict[int, Projection]] | None = None
 
     def course(self, owner: Array, arc: Array, load_parameter: Any) -> Course:
@@ -116,29 +102,18 @@ class Rods(ElementGroup):
         """Section of an element at an arc position within it."""
         place = np.array([element]), np.array([[arc]])
         course = self.course(*place, load_parameter) if self.varies else None
-        own = course.flexibility if course else (value[element] for value in self.flexibility)
-        stretch, shear, bend = (value.item() for value in own)
+        flexibility = course.flexibility[:, 0, 0] if course else self.constants[4:, element]
+        stretch, shear, bend = flexibility.tolist()
         return Section(stretch, shear, bend, float(self.natural[element]), course)
-
-    def _owned(self, cuts: Cuts) -> _Owned:
-        if cuts not in self._constants:
-            if len(self._constants) == _KEPT:
-                self._constants.clear()
-            place = layout(len(self.length), cuts)
-            own = place.owner
-            self._constants[cuts] = _Owned(
-                place, self.dofs[:, own], self.angles[:, own], self.length[own],
-                Flexibility(*(value[own] for value in self.flexibility)), self.natural[own, None],
-            )  # fmt: skip
-        return self._constants[cuts]
 
     def enter(self, state: State) -> Entry:
         """Cut the elements at their contacts and evaluate the rod's equations inside."""
         profile = profile_of(state)
-        place, dofs, (angle0, angle1), length, flexibility, curvature = self._owned(profile.cuts)
-        q = state.q[dofs]
-        length, begin = length.astype(q.dtype), np.zeros(len(length), q.dtype)
-        force, start, end, moment = q[3:5, :, None], q[2] + angle0, q[8] + angle1, q[5]
+        place = layout(len(self.length), profile.cuts)
+        own = place.owner
+        q, constants = state.q[self.dofs[:, own]], self.constants[:, own]
+        length, begin = constants[2].astype(q.dtype), np.zeros(len(own), q.dtype)
+        force, start, end, moment = q[3:5, :, None], q[2] + constants[0], q[8] + constants[1], q[5]
         for element, pairs in profile.cuts:
             s = int(place.first[element])
             for k in pairs:
@@ -150,19 +125,19 @@ class Rods(ElementGroup):
                 force[0, s, 0] = force[0, s - 1, 0] - touch.force[0]
                 force[1, s, 0] = force[1, s - 1, 0] - touch.force[1]
             length[s] = self.length[element] - begin[s]
-        whole = (
-            flexibility,
-            force,
-            length[:, None],
-            profile.angle,
-            force,
-            place.owner,
-            begin[:, None],
-            curvature,
+        segments = Segments(
+            flexibility=constants[4:, :, None],
+            force=force,
+            length=length[:, None],
+            angle=profile.angle,
+            constant=force,
+            owner=own,
+            begin=begin[:, None],
+            curvature=constants[3, :, None],
         )
-        segments = self.placed(Segments(*whole), state.load_parameter)
+        segments = self.placed(segments, state.load_parameter)
         field = rod.field(segments)
-        gain, *vector = field.sums[:, :, 0] * length
+        gain, *vector = field.sums * length
         cuts: dict[int, Cut] = {}
         for element, pairs in profile.cuts:
             for s, k in enumerate(pairs, int(place.first[element])):
@@ -232,7 +207,7 @@ class Rods(ElementGroup):
     def tangent(self, state: State, forces: RodBalance, contacts: ContactBlock) -> RodTangent:
         """Tangent of the elements and of the contacts that cut them."""
         entry = forces.entry
-        condensed = rod.condense(entry.segments, entry.field, forces.arrival, entry.moment)
+        condensed = rod.condense(entry.segments, entry.field, forces.arrival)
         first = entry.place.first
         tangent = np.empty((len(first), OWN, OWN), dtype=state.q.dtype)
         tangent[:] = FIXED

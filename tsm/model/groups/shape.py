@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -75,28 +75,17 @@ class RodShape(NamedTuple):
     def at(self, element: int, arc: Array) -> Station:
         """Stations of an element, counted over the exact ones, at arc positions (m,) within it."""
         first, last = int(self.first[element]), int(self.last[element])
-        within = np.searchsorted(self.arc[first + 1 : last + 1], arc, side="right")
-        if (within == within[0]).all():
-            segment = first + int(within[0])
-            length = self.length[segment]
-            sigma = (arc - self.arc[segment]) / length if length else np.zeros(len(arc))
-            return self.within(segment, sigma)
-        numbers = sorted(set(within.tolist()))  # `np.unique` imports numpy.ma
-        parts = [self.at(element, arc[within == n]) for n in numbers]
-        stations = Station(*(np.empty((len(arc), *value.shape[1:])) for value in parts[0]))
-        for n, part in zip(numbers, parts, strict=True):
-            for whole, value in zip(stations, part, strict=True):
-                whole[within == n] = value
-        return stations
+        segment = first + np.searchsorted(self.arc[first + 1 : last + 1], arc, side="right")
+        length = self.length[segment]
+        return self.within(segment, (arc - self.arc[segment]) / np.where(length, length, 1.0))
 
-    def within(self, segment: int, sigma: Array) -> Station:
-        """Stations at parts sigma (m,) of a segment."""
-        x, y, angle, moment, *varying = (
-            self.values[:, segment] @ interpolation(self.values.shape[2] - 1, sigma).T
-        )
-        force = np.empty((len(sigma), 2))
-        force[:] = np.array(varying).T if varying else self.force[:, segment]
-        return Station(np.array([x, y]).T, angle, moment, force)
+    def within(self, segment: Any, sigma: Array) -> Station:
+        """Stations at parts sigma (m,) of segments (m,), or of one segment."""
+        segment = np.atleast_1d(segment)
+        weights = interpolation(self.values.shape[2] - 1, sigma)
+        x, y, angle, moment, *varying = (self.values[:, segment] * weights).sum(axis=-1)
+        force = np.array(varying) if varying else self.force[:, segment]
+        return Station(np.array([x, y]).T, angle, moment, np.broadcast_to(force.T, (len(sigma), 2)))
 
 
 def plain_shape(group: Rods, state: State, entry: Entry | None = None) -> RodShape:
@@ -122,8 +111,8 @@ def plain_shape(group: Rods, state: State, entry: Entry | None = None) -> RodSha
 def turning(entry: Entry) -> Array:
     """Derivatives (s, p) of the angles at the Gauss nodes in the arc position."""
     segments = entry.segments
-    bent = segments.flexibility.bend * rod.moments(segments, entry.field, entry.moment)
-    turn: Array = bent + segments.curvature
+    moments = rod.moments(segments, entry.field, entry.moment)
+    turn: Array = segments.flexibility[2] * moments + segments.curvature
     return turn
 
 
@@ -220,7 +209,7 @@ def truncation(group: Rods, entry: Entry) -> float:
     last = collocation(order).legendre[-2:].T
     tail = np.abs(values @ last).max(axis=2)
     length = np.abs(segments.length[:, 0])
-    turn = tail[0] * length**2 * segments.flexibility.bend.max(axis=1)
+    turn = tail[0] * length**2 * segments.flexibility[2].max(axis=1)
     if segments.course is not None:
         turn = np.maximum(turn, np.abs(turning(entry) @ last).max(axis=1) * length)
     largest = np.maximum(turn, tail[1:].max(axis=0) * length / group.model.length).max()
@@ -249,7 +238,7 @@ def _finer_inside(group: Rods, state: State) -> Entry:
         arrival = rod.arrival(entry.segments, entry.field, entry.start, entry.moment, entry.end)
         if np.abs(arrival.inside).max() < _SMOOTH:
             break
-        inner = rod.condense(entry.segments, entry.field, arrival, entry.moment).inner
+        inner = rod.condense(entry.segments, entry.field, arrival).inner
         profile = profile_of(finer)
         finer = replace(finer, profile=replace(profile, angle=profile.angle + inner[:, :, 6]))
         entry = group.enter(finer)
