@@ -61,24 +61,18 @@ class Along:
 
     def course(self, elements: Array, part: Array, resultant: Array, resultant_rate: Array) -> Course:
         """What varies at parts (s, p) of the lengths of elements (s,), from resultants (2, d, s) and their rates."""
-        length = self.length[elements, None]
-        gauge, gyration = self.gauge[:, elements, None], self.gyration[:, elements, None]
-        wide, high = gauge[0] + (gauge[1] - gauge[0]) * part, gyration[0] + (gyration[1] - gyration[0]) * part
-        EA = wide * high
-        EA_slope = ((gauge[1] - gauge[0]) * high + wide * (gyration[1] - gyration[0])) / length
-        high_slope = (gyration[1] - gyration[0]) / length
-        stretch, bend = 1 / EA, 1 / (EA * high * high)
-        stretch_slope = -stretch * EA_slope / EA
-        bend_slope = -bend * (EA_slope / EA + 2 * high_slope / high)
-        ratio = self.ratio[elements, None]
-        powers = part ** np.arange(resultant.shape[1] + 1)[:, None, None]
-        risen = np.arange(1, resultant.shape[1] + 1)[:, None, None] * powers[:-1] / length
-        return Course(
-            np.array([stretch, stretch / ratio, bend]),
-            np.array([stretch_slope, stretch_slope / ratio, bend_slope]),
-            *(np.einsum("cds,dsp->csp", coefficients, on) for coefficients, on in (
-                (resultant, powers[1:]), (resultant, risen), (resultant_rate, powers[1:]))),
-        )  # fmt: skip
+        length, own = self.length[elements, None], (self.gauge, self.gyration)
+        (wide, wider), (high, higher) = (
+            (a + (b - a) * part, b - a) for a, b in (x[:, elements, None] for x in own)
+        )
+        stretch = 1 / (wide * high)
+        flexibility = np.array([stretch, stretch / self.ratio[elements, None], stretch / high**2])
+        rise = (wider / wide + np.array([1, 1, 3])[:, None, None] * higher / high) / length
+        degrees = np.arange(1, resultant.shape[1] + 1)[:, None, None]
+        powers, risen = part**degrees, degrees * part ** (degrees - 1) / length
+        pairs = (resultant, powers), (resultant, risen), (resultant_rate, powers)
+        P, q, rate = (np.einsum("cds,dsp->csp", coefficients, on) for coefficients, on in pairs)
+        return Course(flexibility, -flexibility * rise, P, q, rate)
 
 
 def kind_of(beam: Beam, *, varies: bool, rubbed: bool) -> ElementType:

@@ -6,6 +6,7 @@ from copy import copy
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from tsm.elements.contact_law import crossing
 from tsm.elements.properties import Array
@@ -42,10 +43,8 @@ class Units:
     def __init__(self, model: Model, k: int) -> None:
         self.columns, self.rows = model.units, 1 / model.row_units
         banded, last = model.banded, model.equations
-        column, entry = np.indices((banded, 3 * k + 1))
-        row = column + entry - 2 * k
-        inside = (row >= 0) & (row < banded)
-        self.band = np.where(inside, self.columns[column] * self.rows[np.where(inside, row, 0)], 0.0)
+        rows = np.pad(self.rows[:banded], (2 * k, k))
+        self.band = self.columns[:banded, None] * sliding_window_view(rows, 3 * k + 1)
         self.right = np.append(self.rows[:last], 0.0)[:, None] * self.columns[banded:]
         self.below = self.rows[banded:, None] * np.append(self.columns[:last], 0.0)
         self.corner = self.rows[banded:, None] * self.columns[banded:]

@@ -283,16 +283,17 @@ class Newton:
             return replace(state, q=q)
         dofs = np.zeros(model.dof_count)
         dofs[model.free], dofs[model.fixed] = dq, model.motions.change(begin, end)
-        change = Change(dofs, dz, float(residual), factor, end - begin)
+        profile, rods = None, model.rods
+        if rods:
+            change = Change(dofs, dz, float(residual), factor, end - begin)
+            profile = rods.changed(state, system.tangent.groups[rods.number], change)
         moved = State(
             load_parameter=state.load_parameter,
             q=q,
             touches=state.touches,
             armed=state.armed,
-            profile=state.profile,
+            profile=profile,
         )
-        if model.rods:
-            moved = model.rods.with_change(state, moved, system.tangent.groups[model.rods.number], change)
         if not state.touches:
             return moved
         dz_taken = (factor * dz).tolist()

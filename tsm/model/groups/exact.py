@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -40,11 +39,11 @@ _POINTS, _LINES = 100, 60
 class ExactGroup(Rods):
     """The exact elements of a model."""
 
-    def with_change(self, before: State, after: State, tangent: Any, change: Change) -> State:
-        """State with its angles inside changed."""
-        profile = profile_of(before)
-        angle = profile.angle + change.factor * self.inside(tangent, before, change)
-        return replace(after, profile=Profile(cuts=profile.cuts, angle=angle))
+    def changed(self, state: State, tangent: Any, change: Change) -> Profile:
+        """Angles inside a state after a change."""
+        profile = profile_of(state)
+        angle = profile.angle + change.factor * self.inside(tangent, state, change)
+        return Profile(cuts=profile.cuts, angle=angle)
 
     def turned(self, one: State, other: State, like: State) -> Array:
         """Differences of the angles at the Gauss nodes."""
