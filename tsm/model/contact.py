@@ -32,7 +32,7 @@ def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...], p
     for n, (pair, touch) in enumerate(zip(model.pairs, touches, strict=True)):
         if touch is not None:
             first = pair.target.first
-            past_node = max(past, pair.group.past_node)
+            past_node = max(past, model.group_of(pair.target).past_node)
             k, xi = slide(pair.target.lengths, touch.element - first, touch.xi, past_node)
             if touch.element != first + k:
                 owned[n] = replace(touch, element=first + k, xi=xi)

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from copy import copy
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from tsm.elements.contact_law import crossing
 from tsm.elements.properties import Array
+from tsm.model.numbering import Numbering
+from tsm.model.pairs import PairModel
 from tsm.model.state import Touch
-
-if TYPE_CHECKING:
-    from tsm.model.model import Model
-    from tsm.model.pairs import PairModel
 
 
 class Bordered(NamedTuple):
@@ -40,7 +38,7 @@ class Units:
     ``model``: model whose longest beam and largest ``EI/L^2`` are the units. ``k``: bandwidth.
     """
 
-    def __init__(self, model: Model, k: int) -> None:
+    def __init__(self, model: Numbering, k: int) -> None:
         self.columns, self.rows = model.units, 1 / model.row_units
         banded, last = model.banded, model.equations
         rows = np.pad(self.rows[:banded], (2 * k, k))
@@ -74,7 +72,7 @@ class ContactBlock:
     ``crowded``: whether two nodes touch one element whose matrix knows a single contact.
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: Numbering) -> None:
         self.model = model
         self.right = np.zeros((model.equations + 1, model.border))
         self.below = np.zeros((model.border, model.equations + 1))

@@ -19,17 +19,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
-from tsm.elements import ClosedForm, ContactLaw, ElementType
+from tsm.elements import ClosedForm, ContactLaw, ElementType, Integrated
 from tsm.elements.contact_law import Vector
-from tsm.elements.properties import Array, unwind
+from tsm.elements.properties import unwind
+from tsm.model.mesh import BeamModel
 from tsm.model.projection import arc_position
 from tsm.model.state import Grip, Place, Touch, Traction
-from tsm.statement.structure import Beam, ContactPair, Pin
-
-if TYPE_CHECKING:
-    from tsm.model.groups import ElementGroup
+from tsm.statement.structure import ContactPair, Pin
 
 
 class Here(NamedTuple):
@@ -45,30 +43,12 @@ class Here(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class BeamModel:
-    """A beam's place in the model."""
-
-    beam: Beam  # what the user stated
-    first: int  # global number of its first element; its elements follow one another
-    nodes: Array  # global node numbers from start to end; shape (elements + 1,)
-    lengths: list[float]  # undeformed lengths of its elements
-    arcs: list[float]  # arc positions of its nodes
-    kind: ElementType  # type of its elements
-
-    @property
-    def last(self) -> int:
-        """Global number of its last element."""
-        return self.first + self.beam.elements - 1
-
-
-@dataclass(frozen=True, kw_only=True)
 class PairModel:
     """A contact pair's place in the model."""
 
     pair: ContactPair  # what the user stated
     target: BeamModel  # the touched beam
     element_type: ElementType  # its element type
-    group: ElementGroup  # group of its elements
     side: float  # +1 where the node comes from the right, -1 from the left
     pin: Pin | None  # the control node that touches, or None where a beam's end does
     node: int  # global number of the beam's end that touches, -1 for a pin
@@ -79,7 +59,7 @@ class PairModel:
     @property
     def cuts(self) -> bool:
         """Whether the contact cuts the touched element."""
-        return self.group.internal
+        return isinstance(self.element_type, Integrated)
 
     @property
     def law(self) -> ContactLaw:

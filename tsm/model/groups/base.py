@@ -6,20 +6,18 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from tsm.elements.contact_law import Vector
 from tsm.elements.properties import Array
 from tsm.model.contact_block import ContactBlock
+from tsm.model.mesh import BeamModel
+from tsm.model.numbering import Numbering
+from tsm.model.pairs import PairModel
 from tsm.model.projection import Projection, arc_position, overshoot, slide
 from tsm.model.state import State, Touch
-
-if TYPE_CHECKING:
-    from tsm.model.groups.shape import Stations
-    from tsm.model.model import Model
-    from tsm.model.pairs import BeamModel, PairModel
 
 _STEPS, _PROJECTED = 30, 1e-14
 """Newton steps of a projection at most, and the step, in lengths of an element, at which the closest point is found."""
@@ -63,6 +61,15 @@ class Change(NamedTuple):
     load: float  # change of the load parameter
 
 
+class Stations(NamedTuple):
+    """Short lines along a beam. Neighbours share no point: section forces may jump between them."""
+
+    arc: Array  # distance along the undeformed axis; shape (c, 2)
+    position: Array  # deformed position; shape (c, 2, 2)
+    rotation: Array  # rotation from the undeformed state; shape (c, 2)
+    forces: Array  # axial force, shear force and moment; shape (c, 2, 3)
+
+
 class ElementGroup(ABC):
     """Elements of a model with the same kind of equations.
 
@@ -78,9 +85,10 @@ class ElementGroup(ABC):
     internal: ClassVar[bool]
     past_node: ClassVar[float]
 
-    def __init__(self, model: Model, number: int, elements: Array, dofs: Array) -> None:
-        self.model, self.number, self.elements, self.dofs = model, number, elements, dofs
-        self.pairs: list[tuple[int, PairModel]] = []
+    def __init__(self, model: Numbering, number: int, elements: Array) -> None:
+        self.model, self.number, self.elements = model, number, elements
+        self.dofs = model.dofs[:, elements]
+        self.pairs = [(k, pair) for k, pair in enumerate(model.pairs) if pair.cuts == self.internal]
 
     @abstractmethod
     def forces(self, state: State, contacts: ContactBlock) -> GroupForces:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,13 +16,11 @@ from tsm.elements.contact_law import Vector
 from tsm.elements.curve import Curve
 from tsm.elements.properties import Array, Properties
 from tsm.model.contact_block import ContactBlock
-from tsm.model.groups.base import ElementGroup, GroupForces, GroupTangent
-from tsm.model.groups.shape import Stations
+from tsm.model.groups.base import ElementGroup, GroupForces, GroupTangent, Stations
+from tsm.model.mesh import BeamModel
+from tsm.model.pairs import PairModel
 from tsm.model.projection import AT_NODE, Projection, nearest_chord
 from tsm.model.state import State, Touch
-
-if TYPE_CHECKING:
-    from tsm.model.pairs import BeamModel, PairModel
 
 _POINTS = 10
 """Intervals in which an element is drawn."""

@@ -8,7 +8,7 @@ which is the tangent vector under the force ``n - F/2``, and the mean turn, whic
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,12 +17,10 @@ from tsm.elements.properties import Array, cosine, sine
 from tsm.elements.rod import Course
 from tsm.elements.varied import derivatives, varied
 from tsm.model.contact_block import ContactBlock
+from tsm.model.groups.base import ElementGroup
 from tsm.model.groups.layout import CUT, OWN, chain
 from tsm.model.pairs import Here, PairModel
 from tsm.model.state import Touch
-
-if TYPE_CHECKING:
-    from tsm.model.groups.rods import Rods
 
 _NODAL = [0, 1, 2, 6, 7, 8]
 """Unknowns of an element that are its nodes'."""
@@ -140,7 +138,7 @@ def cut_element(element: int, cuts: dict[int, Cut], transfer: Array, unit: float
     return CutElement(element, tuple(cuts), slots, tangent, inputs, slip)
 
 
-def enter(part: CutElement, group: Rods, contacts: ContactBlock) -> None:
+def enter(part: CutElement, group: ElementGroup, contacts: ContactBlock) -> None:
     """Enter the tangent of the contacts that cut an element."""
     model, dofs, tangent = group.model, group.dofs[:, part.element], part.tangent
     eq = model.equation[dofs]

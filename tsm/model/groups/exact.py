@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -11,15 +11,14 @@ from tsm.elements import rod
 from tsm.elements.contact_law import Vector
 from tsm.elements.properties import Array
 from tsm.elements.varied import STEP
-from tsm.model.groups.base import Change
+from tsm.model.groups.base import Change, Stations
 from tsm.model.groups.layout import layout
 from tsm.model.groups.rods import RodBalance, Rods
-from tsm.model.groups.shape import Stations, deflected, pieces, profile_of, resampled, truncation
+from tsm.model.groups.shape import deflected, pieces, resampled, truncation
+from tsm.model.mesh import BeamModel
+from tsm.model.pairs import PairModel
 from tsm.model.projection import Projection
-from tsm.model.state import Profile, State, Touch
-
-if TYPE_CHECKING:
-    from tsm.model.pairs import BeamModel, PairModel
+from tsm.model.state import Profile, State, Touch, profile_of
 
 MOST_NODES = 256
 """Largest number of Gauss nodes of a segment."""

@@ -10,7 +10,7 @@ eliminated (`tsm.elements.rod`) and kept in the state.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -23,16 +23,9 @@ from tsm.model.contact_block import ContactBlock
 from tsm.model.groups.base import Change, ElementGroup, GroupForces, GroupTangent
 from tsm.model.groups.cut import Cut, CutElement, Section, cut_element, enter, seen
 from tsm.model.groups.layout import COLUMNS, FIXED, OWN, ROWS, Layout, layout
-from tsm.model.groups.shape import (
-    RodShape,
-    profile_of,
-    touch_of,
-)
+from tsm.model.numbering import Numbering
 from tsm.model.projection import Projection
-from tsm.model.state import Profile, State, Traction
-
-if TYPE_CHECKING:
-    from tsm.model.model import Model
+from tsm.model.state import Profile, State, Traction, profile_of, touch_of
 
 _UNDEFORMED_ORDER = 24
 """Gauss nodes of an undeformed element."""
@@ -75,8 +68,10 @@ class Rods(ElementGroup):
     internal = True
     past_node = 0.0
 
-    def __init__(self, model: Model, number: int, elements: Array, dofs: Array) -> None:
-        super().__init__(model, number, elements, dofs)
+    def __init__(self, model: Numbering, number: int, elements: Array) -> None:
+        super().__init__(model, number, elements)
+        inside = 3 * model.block[elements] + np.arange(3)[:, None]
+        self.dofs = np.concatenate([self.dofs[:3], inside, self.dofs[3:]])
         along = model.along
         self.varies, self.nodes = bool(along.varies[elements].any()), model.gauss_nodes
         self.near, self.far = model.coordinates[model.element_nodes[elements].T].transpose(0, 2, 1)
@@ -84,7 +79,9 @@ class Rods(ElementGroup):
         own = (along.start, along.end, along.length, along.curvature)
         self.constants = np.array([*(value[elements] for value in own), *course.flexibility[:, :, 0]])
         self.angles, self.length, self.natural = self.constants[:2], self.constants[2], self.constants[3]
-        self.memo: tuple[State, RodShape, dict[int, Projection]] | None = None
+        self.memo: tuple[State, Any, dict[int, Projection]] | None = (
+            None  # the shape of a state, and points found on it
+        )
 
     def course(self, owner: Array, arc: Array, load_parameter: Any) -> Course:
         """What varies at arc positions (s, p) within elements (s,), counted over the exact ones."""

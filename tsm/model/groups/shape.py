@@ -9,37 +9,23 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tsm.elements import rod
 from tsm.elements.collocation import collocation, interpolation
 from tsm.elements.properties import Array
+from tsm.model.groups.base import Stations
 from tsm.model.groups.layout import layout
+from tsm.model.groups.rods import Entry, Rods
 from tsm.model.projection import Projection
-from tsm.model.state import Cuts, Profile, State, Touch
-
-if TYPE_CHECKING:
-    from tsm.model.groups.rods import Entry, Rods
+from tsm.model.state import Cuts, Profile, State, profile_of, touch_of
 
 START_ORDER = 14
 """Gauss nodes of an undeformed element whose accuracy decides on their number."""
 _SMOOTH = 1e-13
 """Error of an inner polynomial that counts as round-off."""
-
-
-def profile_of(state: State) -> Profile:
-    """Angles inside the exact elements of a model that has some."""
-    assert state.profile is not None, "a model with exact elements has their profile"
-    return state.profile
-
-
-def touch_of(state: State, k: int) -> Touch:
-    """Closed contact of pair k."""
-    touch = state.touches[k]
-    assert touch is not None, "a cut is a closed contact"
-    return touch
 
 
 class Station(NamedTuple):
@@ -49,15 +35,6 @@ class Station(NamedTuple):
     angle: Array  # angle of the section from the x axis; shape (m,)
     moment: Array  # bending moment; shape (m,)
     force: Array  # internal force; shape (m, 2)
-
-
-class Stations(NamedTuple):
-    """Short lines along a beam. Neighbours share no point: section forces may jump between them."""
-
-    arc: Array  # distance along the undeformed axis; shape (c, 2)
-    position: Array  # deformed position; shape (c, 2, 2)
-    rotation: Array  # rotation from the undeformed state; shape (c, 2)
-    forces: Array  # axial force, shear force and moment; shape (c, 2, 3)
 
 
 class RodShape(NamedTuple):

@@ -27,8 +27,8 @@ from tsm.elements.varied import STEP
 from tsm.model.groups.cut import Cut
 from tsm.model.groups.layout import COLUMNS, CUT, OWN, chain
 from tsm.model.groups.rods import Entry, RodBalance, Rods
-from tsm.model.groups.shape import plain_shape, profile_of
-from tsm.model.state import State
+from tsm.model.groups.shape import plain_shape
+from tsm.model.state import State, profile_of
 
 _LONGEST = 7.0
 """Largest ``- f_phi h^2/EI`` of a segment that is not divided; its first mode lies at ``pi^2``."""
