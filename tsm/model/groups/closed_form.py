@@ -74,12 +74,15 @@ class ClosedFormGroup(ElementGroup):
 
     def _contact(self, pair: PairModel, touch: Touch, state: State) -> tuple[Any, ...]:
         """Arguments of the functions of a closed contact, see `ContactLaw`."""
-        model = self.model
-        cx, cy = model.node_position(pair, state.q, state.load_parameter)
-        x = state.q[model.dofs[:, touch.element]].tolist()
-        start_x, start_y = model.element_start[touch.element]
-        lever = (start_x + x[0] - cx, start_y + x[1] - cy)
-        return model.element[touch.element], x, lever, touch.xi, touch.force, pair.side, pair.pair.offset
+        p, x, (start_x, start_y) = self._at(touch.element, state)
+        cx, cy = self.model.node_position(pair, state.q, state.load_parameter)
+        return p, x, (start_x - cx, start_y - cy), touch.xi, touch.force, pair.side, pair.pair.offset
+
+    def _at(self, element: int, state: State) -> tuple[Properties, list[float], tuple[float, float]]:
+        """Constants and displacements of an element, and the position of its end i."""
+        x = state.q[self.model.dofs[:, element]].tolist()
+        start_x, start_y = self.model.element_start[element]
+        return self.model.element[element], x, (start_x + x[0], start_y + x[1])
 
     def _dent(self, pair: PairModel, touches: Sequence[Touch | None], element: int, xi: float) -> Array:
         """Deflection (2,) of an element at xi by the forces of contacts on it."""
@@ -91,11 +94,10 @@ class ClosedFormGroup(ElementGroup):
 
     def point(self, element: int, arc: float, state: State) -> tuple[Vector, Vector, Vector]:
         """Point of the curve, its tangent, and the tangent's derivative."""
-        model, p = self.model, self.model.element[element]
-        x = state.q[model.dofs[:, element]].tolist()
-        curve, xi, (start_x, start_y) = Curve(p, x), arc / p.l0, model.element_start[element]
+        p, x, (start_x, start_y) = self._at(element, state)
+        curve, xi = Curve(p, x), arc / p.l0
         (w, dw, ddw), dx, dy = curve.deflection(xi), curve.dx, curve.dy
-        position = start_x + x[0] + xi * dx - w * dy, start_y + x[1] + xi * dy + w * dx
+        position = start_x + xi * dx - w * dy, start_y + xi * dy + w * dx
         tangent, bend = ((dx - dw * dy) / p.l0, (dy + dw * dx) / p.l0), ddw / p.l0**2
         return position, tangent, (-bend * dy, bend * dx)
 
@@ -118,18 +120,14 @@ class ClosedFormGroup(ElementGroup):
         self, k: int, touch: Touch, state: State, forces: ClosedFormForces, push: tuple[float, float]
     ) -> float:
         """Curvature from the moment and stretch that the forces at end i and the lever of the contact give."""
-        model, pair, p = self.model, self.model.pairs[k], self.model.element[touch.element]
-        x = state.q[model.dofs[:, touch.element]].tolist()
+        model, pair, (p, x, start) = self.model, self.model.pairs[k], self._at(touch.element, state)
         fx, fy, moment = forces.nodal[:3, model.place[touch.element]].tolist()
         dx, dy = p.dx0 + x[3] - x[0], p.dy0 + x[4] - x[1]
-        chord = math.hypot(dx, dy)
-        size = math.hypot(*push)
+        chord, size = math.hypot(dx, dy), math.hypot(*push)
         normal = -pair.side * dy / chord, pair.side * dx / chord
         away = (push[0] / size, push[1] / size) if size > 0 else normal
-        cx, cy = model.node_position(pair, state.q, state.load_parameter)
-        start_x, start_y = model.element_start[touch.element]
-        rx = cx + pair.pair.offset * away[0] - start_x - x[0]
-        ry = cy + pair.pair.offset * away[1] - start_y - x[1]
+        node = model.node_position(pair, state.q, state.load_parameter)
+        rx, ry = (c + pair.pair.offset * n - s for c, n, s in zip(node, away, start, strict=True))
         stretch = -(fx * dx + fy * dy) / (chord * p.EA)
         return float((-moment + rx * fy - ry * fx) / p.EI / (1 + stretch))
 

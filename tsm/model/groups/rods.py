@@ -163,7 +163,7 @@ class Rods(ElementGroup):
         at = (
             touch.angle, *segments.constant[:, s, 0].tolist(), *touch.force, pair.arc_position(touch), moment, t
         )  # fmt: skip
-        return Cut(s, pair, touch, section, at, *seen(pair, section, at, at))
+        return Cut(s, pair, touch, section, at, *seen(pair, section, at, at), self.model.stick_stiffness)
 
     def forces(self, state: State, contacts: ContactBlock) -> RodBalance:
         """Residual of the elements and of the contacts that cut them."""
@@ -191,9 +191,7 @@ class Rods(ElementGroup):
                 dx, dy = entry.vector[:, cut.s].tolist()
                 x, y = x + dx, y + dy
                 cx, cy = self.model.node_position(cut.pair, state.q, state.load_parameter)
-                px, py, row = cut.pair.rows(
-                    cut.touch.grip, cut.touch.force, cut.here, self.model.stick_stiffness
-                )
+                px, py, row = cut.pair.rows(cut.touch.grip, cut.touch.force, cut.here, cut.unit)
                 contacts.enter(
                     k, cut.pair, cut.touch.force, (x - cx + px, y - cy + py, row, arrival.end_residual[cut.s])
                 )
@@ -214,9 +212,9 @@ class Rods(ElementGroup):
         condensed_residual[ROWS] = transfer[:, :, 6].T
         if self.varies:
             by_load[ROWS] = transfer[:, :, rod.LOAD].T
-        cut, unit = [], self.model.stick_stiffness
+        cut = []
         for e, pairs in profile_of(state).cuts:
-            part = cut_element(e, {k: entry.cuts[k] for k in pairs}, condensed.transfer[first[e] :], unit)
+            part = cut_element(e, {k: entry.cuts[k] for k in pairs}, condensed.transfer[first[e] :])
             own = part.tangent[:OWN]
             tangent[e], by_load[:, e], condensed_residual[:, e] = own[:, :OWN], own[:, -2], own[:, -1]
             enter(part, self, contacts)

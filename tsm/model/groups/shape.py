@@ -17,7 +17,7 @@ from tsm.elements import rod
 from tsm.elements.collocation import collocation, interpolation
 from tsm.elements.properties import Array
 from tsm.model.groups.base import Stations
-from tsm.model.groups.layout import layout
+from tsm.model.groups.layout import Layout, layout
 from tsm.model.groups.rods import Entry, Rods
 from tsm.model.projection import Projection
 from tsm.model.state import Cuts, Profile, State, profile_of, touch_of
@@ -40,8 +40,7 @@ class Station(NamedTuple):
 class RodShape(NamedTuple):
     """Polynomials of angle, moment and position in every segment."""
 
-    first: Array  # first, last: first and last segment of every element; shape (r,)
-    last: Array
+    place: Layout  # elements of the segments
     arc: Array  # arc position of the start of every segment within the element; shape (s,)
     length: Array  # undeformed length of every segment; shape (s,)
     force: Array  # internal force at the start of every segment; shape (2, s)
@@ -51,7 +50,7 @@ class RodShape(NamedTuple):
 
     def at(self, element: int, arc: Array) -> Station:
         """Stations of an element, counted over the exact ones, at arc positions (m,) within it."""
-        first, last = int(self.first[element]), int(self.last[element])
+        first, last = int(self.place.first[element]), int(self.place.last[element])
         segment = first + np.searchsorted(self.arc[first + 1 : last + 1], arc, side="right")
         length = self.length[segment]
         return self.within(segment, (arc - self.arc[segment]) / np.where(length, length, 1.0))
@@ -82,7 +81,7 @@ def plain_shape(group: Rods, state: State, entry: Entry | None = None) -> RodSha
     arc, length = segments.begin[:, 0], segments.length[:, 0]
     risen = start[:, :, None] + rates @ collocation(rates.shape[2]).once.T * length[:, None]
     values = np.concatenate([start[:, :, None], risen], axis=2)
-    return RodShape(place.first, place.last, arc, length, force, values)
+    return RodShape(place, arc, length, force, values)
 
 
 def turning(entry: Entry) -> Array:
@@ -96,7 +95,7 @@ def turning(entry: Entry) -> Array:
 def pieces(group: Rods, shape: RodShape, element: int, count: int) -> Stations:
     """Lines along an element, `count` for every segment."""
     lines = []
-    for s in range(shape.first[element], shape.last[element] + 1):
+    for s in range(shape.place.first[element], shape.place.last[element] + 1):
         sigma = np.linspace(0, 1, count + 1)
         at = shape.within(s, sigma)
         c, sn = np.cos(at.angle), np.sin(at.angle)

@@ -293,7 +293,7 @@ def _surface(cut: Cut, selectors: Array) -> Array:
     pair, force, reach = cut.pair, np.array(cut.touch.force), cut.pair.reach_at(cut.here.arc)
     normal, along = np.array(pair.face(cut.here))
     along /= np.hypot(*along)
-    turn = along @ cut.derivatives(1.0, selectors)[:2] / reach
+    turn = along @ cut.derivatives[:2] @ selectors / reach
     both = reach * np.outer(along @ selectors[3:5], turn)
     both += pair.steep * np.outer(normal @ selectors[3:5], selectors[5])
     envelope: Array = reach * (normal @ force) * np.outer(turn, turn) - both - both.T
