@@ -34,16 +34,16 @@ from tsm.elements.properties import Array, Properties
 from tsm.elements.varied import derivatives, plain, varied
 
 # element displacements (6), node (2), force (2), xi  ->  dx, dy, theta_i, theta_j, F_x, F_y, xi
-REDUCE = np.zeros((7, 11))
-REDUCE[0, [0, 3]] = REDUCE[1, [1, 4]] = -1, 1
-REDUCE[[2, 3, 4, 5, 6], [2, 5, 8, 9, 10]] = 1
+_REDUCE = np.zeros((7, 11))
+_REDUCE[0, [0, 3]] = _REDUCE[1, [1, 4]] = -1, 1
+_REDUCE[[2, 3, 4, 5, 6], [2, 5, 8, 9, 10]] = 1
 """The seven quantities of a contact from the eleven unknowns."""
 # the upper triangle of a matrix over them, row by row, spread over the eleven
-_PRODUCTS = np.einsum("ai,bj->abij", REDUCE, REDUCE).reshape(7, 7, 121)
+_PRODUCTS = np.einsum("ai,bj->abij", _REDUCE, _REDUCE).reshape(7, 7, 121)
 _SPREAD = np.array([_PRODUCTS[a, b] + (a != b) * _PRODUCTS[b, a] for a in range(7) for b in range(a, 7)])
-LEVER = np.zeros((11, 11))
-LEVER[[0, 8, 1, 9], [8, 0, 9, 1]] = 1
-LEVER[[6, 8, 7, 9], [8, 6, 9, 7]] = -1
+_LEVER = np.zeros((11, 11))
+_LEVER[[0, 8, 1, 9], [8, 0, 9, 1]] = 1
+_LEVER[[6, 8, 7, 9], [8, 6, 9, 7]] = -1
 """Second derivatives of ``F . (x_i - x_c)``."""
 
 
@@ -52,14 +52,14 @@ def response(
 ) -> tuple[Array, Array]:
     """Gradient (11,) of the Lagrangian by element, node, force and arc position, and its Hessian, see `ContactLaw`."""
     gradient, hessian = _sharp(p, x, xi, force)
-    tangent = -(hessian @ _SPREAD).reshape(11, 11) - LEVER
+    tangent = -(hessian @ _SPREAD).reshape(11, 11) - _LEVER
     if offset:
         dx, dy, theta_i, theta_j, *loads, place = varied((x[3] - x[0], x[4] - x[1], x[2], x[5], *force, xi))
         surface = _surface(p, (0.0, 0.0, theta_i, dx, dy, theta_j), place, loads)
         gradient = gradient - side * offset * plain(surface)
-        tangent = tangent + REDUCE.T @ (side * offset * derivatives(surface)) @ REDUCE
+        tangent = tangent + _REDUCE.T @ (side * offset * derivatives(surface)) @ _REDUCE
     Fx, Fy = force
-    full = -(gradient @ REDUCE) + np.array([-Fx, -Fy, 0, 0, 0, 0, Fx, Fy, -lever[0], -lever[1], 0])
+    full = -(gradient @ _REDUCE) + np.array([-Fx, -Fy, 0, 0, 0, 0, Fx, Fy, -lever[0], -lever[1], 0])
     full[10] /= p.l0
     tangent[10] /= p.l0
     tangent[:, 10] /= p.l0

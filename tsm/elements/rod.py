@@ -27,7 +27,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tsm.elements.collocation import collocation
+from tsm.elements.collocation import Collocation, collocation
 from tsm.elements.properties import Array, cosine, sine
 from tsm.elements.varied import STEP
 
@@ -60,6 +60,11 @@ class Segments(NamedTuple):
     begin: Array  # arc position of the start within the element; shape (s, 1)
     curvature: Any = 0.0  # natural curvature; shape (s, 1)
     course: Course | None = None  # what varies at the Gauss nodes; None if nothing does
+
+    @property
+    def table(self) -> Collocation:
+        """Tables of its number of Gauss nodes."""
+        return collocation(self.angle.shape[1])
 
 
 class Field(NamedTuple):
@@ -109,19 +114,19 @@ def field(segments: Segments) -> Field:
     values[0] = q * turn
     values[1] = c + stretch * nx - gq * s
     values[2] = s + stretch * ny + gq * c
-    return Field(values, values @ collocation(c.shape[1]).w, c, s, N, q, turn, gq)
+    return Field(values, values @ segments.table.w, c, s, N, q, turn, gq)
 
 
 def moments(segments: Segments, at: Field, moment: Array) -> Array:
     """Moments (s, p) at the Gauss nodes."""
-    once = collocation(segments.angle.shape[1]).once
+    once = segments.table.once
     at_nodes: Array = moment + segments.length * (at.values[0] @ once.T)
     return at_nodes
 
 
 def arrival(segments: Segments, at: Field, start: Array, moment: Array, end: Array) -> Arrival:
     """Residuals with given angle and moment at the start and angle at the end, each of shape (s, 1)."""
-    table, h = collocation(segments.angle.shape[1]), segments.length
+    table, h = segments.table, segments.length
     bent = segments.flexibility[2] * moments(segments, at, moment) + segments.curvature
     inside = segments.angle - start - table.c * ((end - start) / 2) - h * (bent @ table.half.T)
     return Arrival((start - end)[:, 0] + h[:, 0] * (bent @ table.w), inside, bent)
@@ -129,7 +134,7 @@ def arrival(segments: Segments, at: Field, start: Array, moment: Array, end: Arr
 
 def condense(segments: Segments, at: Field, arrived: Arrival) -> Condensed:
     """Eliminate the angles inside."""
-    table, h, course = collocation(segments.angle.shape[1]), segments.length, segments.course
+    table, h, course = segments.table, segments.length, segments.course
     stretch, shear, bend = segments.flexibility
     # derivatives of ``h f`` and ``h r'`` at the nodes by the angles, and by the inputs; f falls with n as r' does with the angle
     turned = h * np.array([at.slope, -at.gq * at.c - at.turn * at.s, at.turn * at.c - at.gq * at.s])

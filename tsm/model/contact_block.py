@@ -96,7 +96,7 @@ class ContactBlock:
         """Decouple the unknowns of an open pair: 1 on the diagonal, zeros elsewhere."""
         if pair.slot >= 0:
             slots = self.slots(pair)
-            self.corner[slots, slots] = np.eye(pair.element_type.contact_unknowns)
+            self.corner[slots, slots] = np.eye(pair.target.kind.contact_unknowns)
 
     def enter(self, k: int, pair: PairModel, force: tuple[float, float], rows: Any) -> None:
         """Enter force and residuals of a closed pair."""
@@ -138,4 +138,4 @@ class ContactBlock:
     def slots(self, pair: PairModel) -> slice:
         """Rows and columns of a pair's unknowns in the border."""
         start = pair.slot + self.model.border_dofs
-        return slice(start, start + pair.element_type.contact_unknowns)
+        return slice(start, start + pair.target.kind.contact_unknowns)

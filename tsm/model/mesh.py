@@ -79,9 +79,7 @@ class Mesh:
                 at_end = k in {0, beam.elements}
                 if at_end and (beam.name, "end" if k else "start") in hinged:
                     at_end, behind[len(coordinates)] = False, (x, y)
-                node = ends.get((x, y), len(coordinates)) if at_end else len(coordinates)
-                if at_end:
-                    ends[x, y] = node
+                node = ends.setdefault((x, y), len(coordinates)) if at_end else len(coordinates)
                 if node == len(coordinates):
                     coordinates.append((x, y))
                 nodes.append(node)
@@ -115,25 +113,21 @@ class Mesh:
         coordinates: list[tuple[float, float]],
     ) -> None:
         """Number the joints of the ends behind hinges; a joint that has no other beam is a node of its own."""
-        self.joints: dict[int, int] = {}
-        for node, place in behind.items():
-            if place not in ends:
-                ends[place] = len(coordinates)
+        for place in behind.values():
+            if ends.setdefault(place, len(coordinates)) == len(coordinates):
                 coordinates.append(place)
-            self.joints[node] = ends[place]
+        self.joints = {node: ends[place] for node, place in behind.items()}
         pairs = np.array(list(self.joints.items()), dtype=int).reshape(-1, 2)
         self.slaves, self.masters = (3 * pairs[:, :, None] + np.arange(2)).transpose(1, 0, 2).reshape(2, -1)
 
     def _sort_elements(self) -> None:
         counts = [beam.beam.elements for beam in self.beams.values()]
         cut = np.repeat([isinstance(beam.kind, Integrated) for beam in self.beams.values()], counts)
-        own, nodes = np.flatnonzero(cut), len(self.coordinates)
-        self.closed = np.flatnonzero(~cut)
+        own, self.closed = np.flatnonzero(cut), np.flatnonzero(~cut)
         self.members: dict[type[ElementType], Array] = {ClosedForm: self.closed, Integrated: own}
-        self.place, self.block = np.zeros(len(cut), dtype=int), np.full(len(cut), -1)
-        self.place[own], self.place[self.closed] = np.arange(len(own)), np.arange(len(self.closed))
-        self.block[own] = nodes + np.arange(len(own))
-        self.dof_count = 3 * (nodes + len(own))
+        self.place = np.where(cut, cut.cumsum(), (~cut).cumsum()) - 1
+        self.block = np.where(cut, len(self.coordinates) + self.place, -1)
+        self.dof_count = 3 * (len(self.coordinates) + len(own))
 
     def _sizes(self, lengths: Array, EI: Array) -> Sizes:
         """Sizes from lengths and bending stiffnesses (beams,) of the beams."""

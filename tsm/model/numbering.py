@@ -119,10 +119,9 @@ class Numbering(Mesh):
         slots = 0
         for pair in structure.contacts:
             target = self.beams[pair.beam]
-            element_type = target.kind
             pin = pins.get(pair.node)
             of_pair = checks(f"ContactPair({pair.name})", pair)
-            integrated = isinstance(element_type, Integrated)
+            integrated = isinstance(target.kind, Integrated)
             rule = f'elements "{target.beam.element}" have contacts without friction only'
             of_pair("friction", integrated or not pair.friction, rule)
             envelope = integrated or pair.end_offset is None
@@ -131,14 +130,13 @@ class Numbering(Mesh):
                 PairModel(
                     pair=pair,
                     target=target,
-                    element_type=element_type,
                     side=1.0 if pair.side == "right" else -1.0,
                     pin=pin,
                     node=-1 if pin else self.end_node(pair.node),
-                    slot=slots if element_type.contact_unknowns else -1,
+                    slot=slots if target.kind.contact_unknowns else -1,
                 )
             )
-            slots += element_type.contact_unknowns
+            slots += target.kind.contact_unknowns
         self.contact_unknowns = slots
 
     def _number_equations(self) -> None:
@@ -172,7 +170,7 @@ class Numbering(Mesh):
         of a contact (9).
         """
         nodal = self.free % 3 + 3 * (self.free >= 3 * len(self.coordinates))
-        contacts = [_CONTACT_KINDS[: pair.element_type.contact_unknowns] for pair in self.pairs]
+        contacts = [_CONTACT_KINDS[: pair.target.kind.contact_unknowns] for pair in self.pairs]
         kind: Array = np.concatenate([nodal, *contacts])
         return kind
 

@@ -21,7 +21,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-from tsm.elements import ClosedForm, ContactLaw, ElementType, Integrated
+from tsm.elements import ClosedForm, ContactLaw, Integrated
 from tsm.elements.contact_law import Vector
 from tsm.elements.properties import unwind
 from tsm.model.mesh import BeamModel
@@ -48,7 +48,6 @@ class PairModel:
 
     pair: ContactPair  # what the user stated
     target: BeamModel  # the touched beam
-    element_type: ElementType  # its element type
     side: float  # +1 where the node comes from the right, -1 from the left
     pin: Pin | None  # the control node that touches, or None where a beam's end does
     node: int  # global number of the beam's end that touches, -1 for a pin
@@ -59,13 +58,13 @@ class PairModel:
     @property
     def cuts(self) -> bool:
         """Whether the contact cuts the touched element."""
-        return isinstance(self.element_type, Integrated)
+        return isinstance(self.target.kind, Integrated)
 
     @property
     def law(self) -> ContactLaw:
         """Contact law of a touched element in closed form."""
-        assert isinstance(self.element_type, ClosedForm), "an exact element is cut instead"
-        return self.element_type.contact
+        assert isinstance(self.target.kind, ClosedForm), "an exact element is cut instead"
+        return self.target.kind.contact
 
     @property
     def reach(self) -> float:
@@ -165,4 +164,4 @@ class PairModel:
     @property
     def slots(self) -> slice:
         """Positions of its unknowns among the contacts' unknowns."""
-        return slice(self.slot, self.slot + self.element_type.contact_unknowns)
+        return slice(self.slot, self.slot + self.target.kind.contact_unknowns)

@@ -149,7 +149,7 @@ class Rods(ElementGroup):
         """Segments with what varies along them, from those with the constant part of their forces."""
         if not self.varies:
             return segments
-        nodes = collocation(segments.angle.shape[1]).c
+        nodes = segments.table.c
         course = self.course(segments.owner, segments.begin + segments.length * nodes, load_parameter)
         return segments._replace(
             flexibility=course.flexibility, force=segments.constant - course.resultant, course=course
@@ -260,7 +260,7 @@ class Rods(ElementGroup):
         segments, field, (stretch, shear, bend) = entry.segments, entry.field, entry.segments.flexibility
         moment = rod.moments(segments, field, entry.moment)
         density = bend * moment**2 + stretch * field.N**2 + shear * field.q**2
-        return float((segments.length * density @ collocation(segments.angle.shape[1]).w).sum()) / 2
+        return float((segments.length * density @ segments.table.w).sum()) / 2
 
     def _resultant(self, state: State, *, rate: bool = False) -> Array:
         """Resultants (2, r) of the loads along the elements, or their derivatives in the load parameter."""
@@ -272,9 +272,9 @@ class Rods(ElementGroup):
         """Work of the loads of a state on the displacements to it: ``[P . u] - int P . (r' - r_0') ds`` with ``P' = q``."""
         entry, own, t = self.enter(state), np.arange(len(self.length)), state.load_parameter.real
         segments, table = entry.segments, collocation(_UNDEFORMED_ORDER)
-        arc = segments.begin + segments.length * collocation(segments.angle.shape[1]).c
+        arc = segments.begin + segments.length * segments.table.c
         density = (self.course(segments.owner, arc, t).resultant * entry.field.values[1:]).sum(axis=0)
-        along = (density @ collocation(segments.angle.shape[1]).w) @ segments.length[:, 0]
+        along = (density @ segments.table.w) @ segments.length[:, 0]
         arc = self.length[:, None] * table.c
         angle = self.undeformed_angle(own[:, None], arc)
         straight = (self.course(own, arc, t).resultant * np.stack([np.cos(angle), np.sin(angle)])).sum(axis=0)

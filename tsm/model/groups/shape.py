@@ -79,7 +79,7 @@ def plain_shape(group: Rods, state: State, entry: Entry | None = None) -> RodSha
         force = force - group.course(segments.owner, segments.begin, state.load_parameter).resultant[:, :, 0]
         start, rates = np.concatenate([start, force]), np.concatenate([rates, -segments.course.load])
     arc, length = segments.begin[:, 0], segments.length[:, 0]
-    risen = start[:, :, None] + rates @ collocation(rates.shape[2]).once.T * length[:, None]
+    risen = start[:, :, None] + rates @ segments.table.once.T * length[:, None]
     values = np.concatenate([start[:, :, None], risen], axis=2)
     return RodShape(place, arc, length, force, values)
 
@@ -182,7 +182,7 @@ def truncation(group: Rods, entry: Entry) -> float:
     """
     segments, values = entry.segments, entry.field.values
     order = values.shape[2]
-    last = collocation(order).legendre[-2:].T
+    last = segments.table.legendre[-2:].T
     tail = np.abs(values @ last).max(axis=2)
     length = np.abs(segments.length[:, 0])
     turn = tail[0] * length**2 * segments.flexibility[2].max(axis=1)

@@ -20,7 +20,6 @@ from typing import NamedTuple
 import numpy as np
 
 from tsm.elements import rod
-from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array
 from tsm.elements.rod import Segments
 from tsm.elements.varied import STEP
@@ -100,7 +99,7 @@ def _square(segments: Segments) -> Array:
     length, bend = segments.length, segments.flexibility[2]
     square: Array = length * length * bend
     if bend.shape[1] > 1:
-        square *= ((bend @ collocation(bend.shape[1]).w)[:, None] / bend) ** 2
+        square *= ((bend @ segments.table.w)[:, None] / bend) ** 2
     return square
 
 
@@ -163,7 +162,7 @@ def _pieces(group: Rods, state: State, balance: RodBalance, transfer: Array | No
 def _divided(group: Rods, state: State, entry: Entry, count: Array) -> tuple[Segments, Array, Array, Array]:
     """Equal pieces of the segments, with their angles and moments at the ends."""
     whole, own = entry.segments, np.repeat(np.arange(len(count)), count)
-    shape, nodes = plain_shape(group, state, entry), collocation(whole.angle.shape[1]).c
+    shape, nodes = plain_shape(group, state, entry), whole.table.c
     inside, ends = [], []
     for s, parts in enumerate(count.tolist()):
         sigma = (np.arange(parts)[:, None] + nodes) / parts
