@@ -73,10 +73,8 @@ def keys(found: Scene) -> set[str]:
 def states(model: str, found: Scene) -> bool:
     """Whether a model states a scene."""
     if model in ELEMENTS:
-        kind = tsm.ELEMENTS[model]
-        varies = VARYING & keys(found)
-        rubs = any(item.friction for item in found.contacts)
-        return (kind.rubs or not rubs) and (kind.on_varying is not None or not varies)
+        integrated = VARYING & keys(found) or any(item.friction for item in found.contacts)
+        return tsm.ELEMENTS[model].on_varying is not None or not integrated
     if model == REFEREE:
         return True
     chosen = MODELS[model]

@@ -26,7 +26,7 @@ QUICK = [
     ("mixed", "special-58"),
     ("timoshenko", "held-8"),
     ("mixed", "held-8"),
-    ("mixed-no-bow", "friction-10"),
+    ("mixed", "friction-10"),
 ]
 
 

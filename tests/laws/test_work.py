@@ -27,7 +27,7 @@ def with_work(found: Scene) -> Scene:
 
 
 def rubs(model: str) -> bool:
-    return model not in tsm.ELEMENTS or tsm.ELEMENTS[model].rubs
+    return model not in tsm.ELEMENTS or tsm.ELEMENTS[model].on_varying is not None
 
 
 @pytest.mark.parametrize(("model", "name"), cases(models=tuple(filter(rubs, (*ELEMENTS, "rod")))))

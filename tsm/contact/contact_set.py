@@ -36,7 +36,7 @@ def rearm(model: Model, state: State) -> State:
     armed = list(state.armed)
     for k, pair in enumerate(model.pairs):
         if state.touches[k] is None and not armed[k]:
-            seen = pair.group.project(pair, state)
+            seen = model.project(pair, state)
             armed[k] = seen.overshoot > ROUND_OFF * model.length or seen.gap > ROUND_OFF * model.length
     return replace(state, armed=tuple(armed))
 
@@ -54,7 +54,7 @@ def initial_state(model: Model) -> State:
         start = undeformed(model.rods, start)
     touches: list[Touch | None] = []
     for pair in model.pairs:
-        seen = pair.group.project(pair, start)
+        seen = model.project(pair, start)
         small = ROUND_OFF * model.length
         over = seen.overshoot <= small
         if over and seen.gap < -small:

@@ -43,7 +43,7 @@ def clearance(model: Model, state: State, k: int) -> Clearance:
     reach, radius, steep = abs(pair.reach_at(arc)), pair.pair.radius, way * pair.side * pair.steep
     if away > 2.0 * reach and (touch is not None or state.armed[k]):
         return Clearance(away - reach, beyond=False, arc=arc)
-    (px, py), (tx, ty) = pair.group.end(pair, state, last=last)
+    (px, py), (tx, ty) = model.group_of(pair.target).end(pair, state, last=last)
     size = math.hypot(tx, ty)
     ahead, aside = -way * (px * tx + py * ty) / size, abs(px * ty - py * tx) / size
     beyond = ahead + steep * away > 0.0
@@ -53,7 +53,7 @@ def clearance(model: Model, state: State, k: int) -> Clearance:
         ahead, half = ahead + steep * (reach - radius), (reach - radius) * math.sqrt(1.0 - steep**2)
         distance = ahead if aside < half else math.hypot(ahead, aside - half)
         return Clearance(distance - radius, beyond=True, arc=arc)
-    seen = pair.group.project(pair, state)
+    seen = model.project(pair, state)
     here = pair.target.arcs[seen.element - pair.target.first] + seen.xi * model.properties.l0[seen.element]
     offset, free = abs(pair.reach_at(here)), state.armed[k] and seen.gap >= -_TOUCHES * model.length
     return Clearance(reach if free else abs(seen.gap + offset) - offset, beyond=False, arc=here)

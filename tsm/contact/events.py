@@ -93,10 +93,10 @@ def normal_force(model: Model, equilibrium: Equilibrium, k: int) -> float:
     touch = equilibrium.state.touches[k]
     assert touch is not None, "a closed pair has a touch"
     pair, state = model.pairs[k], equilibrium.state
-    if touch.grip is not None:
-        push = pair.group.traction(k, state, equilibrium.system.groups[pair.group.number]).normal
+    if touch.grip is not None and model.rods:
+        push = model.rods.traction(k, equilibrium.system.groups[model.rods.number]).normal
         return math.copysign(math.hypot(fx, fy), push)
-    dx, dy = pair.group.direction(touch, state.q)
+    dx, dy = model.direction(pair, touch, state)
     size = float((fx * fx + fy * fy) ** 0.5)
     return size if pair.side * (fy * dx - fx * dy) >= 0 else -size
 

@@ -17,12 +17,7 @@ class Collocation(NamedTuple):
     c: Array  # c, w: Gauss nodes and weights; shape (p,)
     w: Array
     once: Array  # ``once @ f``: integral of the polynomial through f, from 0 to every node; shape (p, p)
-    # ``f @ ends``: integral over the interval, and its integral: ``int f`` and ``int (1 - x) f``; shape
-    # (p, 2)
-    ends: Array
-    # half, twice: ``once`` and ``once @ once``, less half of what they are at the far end: see `rod`; shape (p, p)
-    half: Array
-    twice: Array
+    half: Array  # ``once``, less half of what it is at the far end: see `rod`; shape (p, p)
     # ``legendre @ f``: coefficients of the polynomial over the Legendre polynomials; shape (p, p)
     legendre: Array
     # stations, barycentric: 0 and the Gauss nodes, with their barycentric weights
@@ -40,8 +35,8 @@ def collocation(order: int) -> Collocation:
     """Tables with `order` Gauss nodes.
 
     >>> t = collocation(3)
-    >>> [round(float(x), 12) for x in (t.c**3 @ t.ends)]
-    [0.25, 0.05]
+    >>> round(float(t.c**3 @ t.w), 12)
+    0.25
     """
     x, weights = legendre.leggauss(order)
     w = weights / 2
@@ -53,7 +48,6 @@ def collocation(order: int) -> Collocation:
     integrals[:, 0] = c
     integrals[:, 1:] = (P[:, 2:] - P[:, :-2]) / (4 * degrees[1:] + 2)
     once = integrals @ to_legendre
-    far = w * (1 - c)
     stations = np.append(0.0, c)
     apart = 4 * (stations[:, None] - stations)
     np.fill_diagonal(apart, 1.0)
@@ -62,9 +56,7 @@ def collocation(order: int) -> Collocation:
         c=c,
         w=w,
         once=once,
-        ends=np.stack([w, far], axis=1),
         half=once - np.outer(c, w) / 2,
-        twice=once @ once - np.outer(c, far) / 2,
         legendre=to_legendre,
         stations=stations,
         barycentric=barycentric / np.abs(barycentric).max(),

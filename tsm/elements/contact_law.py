@@ -4,25 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from tsm.elements.properties import Array, Properties
+from tsm.elements.varied import derivatives, plain, varied
 
 Vector = tuple[Any, Any]
-
-
-class Here(NamedTuple):
-    """What a contact sees of its beam, in numbers or in arrays with complex steps."""
-
-    arc: Any  # arc position on the beam
-    tangent: Vector  # mean tangent T, per undeformed length
-    shear: (
-        Any  # psi, the angle from the section's normal to T; this and what follows matter with friction only
-    )
-    direction: Any  # phi, the angle of T
-    turn: Any  # mean theta', per undeformed length
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,10 +31,9 @@ class ContactLaw:
     # ``(p, x, lever, xi, force, side, offset) -> float``: contribution of the contact to the strain energy
     # in equilibrium
     energy: Callable[[Properties, Any, Any, Any, Any, float, float], float]
-    # ``(p, xi, eta) -> (6,)``: deflection of the element at xi by a unit force at eta, and its derivatives as `crossing` takes
-    # them, of a law whose force and arc position are unknowns; None if the force follows from the displacements
-    cross: Callable[[Properties, Any, Any], tuple[Any, ...]] | None = None
-    friction: Friction | None = None  # the same law with friction; None if the law has none
+    # ``(p, xi, eta) -> (3,)``: deflection of the element at xi by a unit force at eta, and its derivatives in both, of a law
+    # whose force and arc position are unknowns; None if the force follows from the displacements
+    cross: Callable[[Properties, Any, Any], tuple[Any, Any, Any]] | None = None
 
     @property
     def unknowns(self) -> int:
@@ -53,50 +41,15 @@ class ContactLaw:
         return 3 if self.cross else 0
 
 
-@dataclass(frozen=True, kw_only=True)
-class Friction:
-    """Coulomb friction in a contact law whose force and arc position are unknowns."""
-
-    # ``(p, x, xi, force, lever, start) -> loaded``: the element, whose end i has the arc position `start`, under a force on its
-    # face; `loaded` has ``here``, ``force`` and ``energy``, all with complex steps
-    load: Callable[[Properties, Any, Any, Vector, float, float], Any]
-    # ``(loaded, lever, rows, l0) -> (residual, tangent)`` as `ContactLaw.response`, without a symmetric tangent
-    response: Callable[[Any, Vector, tuple[Any, Any, Any], float], tuple[Array, Array]]
-    # ``(value, l0) -> (7,)``: derivatives of what has complex steps by chord (2), end rotations (2), force (2) and arc position
-    slip: Callable[[Any, float], Array]
-
-
 def crossing(
-    cross: tuple[Any, ...],
-    l0: float,
-    forces: tuple[Any, Any],
-    slips: tuple[tuple[float, float], tuple[float, float]],
+    law: ContactLaw, p: Properties, places: tuple[float, float], forces: tuple[Vector, Vector]
 ) -> tuple[Array, Array]:
-    """Coupling of two contacts on one element, over force (2) and arc position of both: each dents it at the other.
-
-    ``cross``: deflection at the first by a unit force at the second, derivatives in both positions, and the
-    second ones. ``slips``: sign of the third row and lean c of the force. Without friction (-1, 0), it is the
-    gradient and Hessian of ``-C F_1 . F_2``. In slip (1, c) the row has the slope of the other contact's dent
-    across the leaning force ``F' = (F_x - c F_y, F_y + c F_x)``; in stick (0, 0) it has none. The couples on
-    a face do not dent the element at the other contact here, and the force along the beam dents it as if it
-    were across.
-    """
-    C, dx, de, dxx, dxe, dee = cross
-    slope, bend = (dx / l0, de / l0), ((dxx, dxe), (dxe, dee))
-    residual, tangent = np.zeros(6), np.zeros((6, 6))
-    for own, other in ((0, 1), (1, 0)):
-        row, column, (way, c) = 3 * own, 3 * other, slips[own]
-        (Fx, Fy), (Gx, Gy) = forces[own], forces[other]
-        dot = (Fx - c * Fy) * Gx + (Fy + c * Fx) * Gy
-        residual[row : row + 3] = -C * Gx, -C * Gy, way * slope[own] * dot
-        tangent[[row, row + 1], [column, column + 1]] = -C
-        for k in range(2):
-            tangent[row : row + 3, 3 * k + 2] = (
-                -slope[k] * Gx,
-                -slope[k] * Gy,
-                way * bend[own][k] * dot / l0**2,
-            )
-        steep = way * slope[own]
-        tangent[row + 2, row : row + 2] = steep * (Gx + c * Gy), steep * (Gy - c * Gx)
-        tangent[row + 2, column : column + 2] = steep * (Fx - c * Fy), steep * (Fy + c * Fx)
-    return residual, tangent
+    """Coupling of two contacts on one element: gradient and Hessian of ``-C F_1 . F_2`` over force (2) and arc position of both."""
+    assert law.cross is not None, "the law has unknowns"
+    Fx, Fy, xi, Gx, Gy, eta = varied((*forces[0], places[0], *forces[1], places[1]))
+    C, *slopes = law.cross(p, xi, eta)
+    one, other = ((Fx * Gx + Fy * Gy) * slope / p.l0 for slope in slopes)
+    gradient = -np.array([C * Gx, C * Gy, one, C * Fx, C * Fy, other])
+    hessian = derivatives(gradient)
+    hessian[:, 2::3] /= p.l0
+    return plain(gradient), hessian

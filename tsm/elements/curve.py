@@ -24,7 +24,6 @@ class Curve:
         self.turn_x, self.turn_y = -self.dy / square, self.dx / square
         self.near = (1 + p.Phi / 2) / (1 + p.Phi)
         self.far = -(p.Phi / 2) / (1 + p.Phi)
-        self.shear_strain = self.far * (theta_i + theta_j)
         self.tan_i = tangent_of(self.near * theta_i + self.far * theta_j)
         self.tan_j = tangent_of(self.far * theta_i + self.near * theta_j)
 
@@ -72,11 +71,6 @@ class Curve:
         scale = 1 / (1 + slope * slope)
         turn = 1 + scale * turn
         return angle, (turn * self.turn_x, turn * self.turn_y, *(scale * part for part in by))
-
-    def shear_strain_slope(self) -> tuple[Any, ...]:
-        """Derivatives of the shear strain in ``(dx, dy, theta_i, theta_j)``."""
-        far = self.far
-        return -2 * far * self.turn_x, -2 * far * self.turn_y, far, far
 
     def _blend(self, h: tuple[Any, Any], dh: tuple[Any, Any]) -> tuple[Any, Any, Any, Any, Any]:
         """``h_i(xi) tan s_i + h_j(xi) tan s_j`` and its derivatives by the chord's angle, both rotations, and xi."""

@@ -42,13 +42,8 @@ class ElementType(ABC):
 
     @property
     @abstractmethod
-    def rubs(self) -> bool:
-        """Whether its contacts may have friction."""
-
-    @property
-    @abstractmethod
     def on_varying(self) -> Integrated | None:
-        """Type of the elements of a beam that is curved or tapered, or has a load along it; None where they cannot state it."""
+        """Type of the elements of a beam that is curved or tapered, has a load along it, or friction; None where they cannot state it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,7 +54,6 @@ class Integrated(ElementType):
     nodes: int | None = None
 
     contact_unknowns = 4
-    rubs = True
 
     @property
     def meshed(self) -> bool:
@@ -81,7 +75,7 @@ class ClosedForm(ElementType):
     contact: ContactLaw  # law of a contact inside the element
     order: int = 2  # order of the errors of forces and shapes in the element's length
     bearable_turn: float = 1.0  # the first neglected term is then a fifth of the force
-    # type of the elements of a beam that is curved or tapered, or has a load along it
+    # type of the elements of a beam that is curved or tapered, has a load along it, or a contact with friction
     varying: Integrated | None = None
     # factor and power of the shear strain F/GA in the error that no number of elements removes, measured on
     # KS for F/GA from 1e-3 to 3e-2
@@ -93,11 +87,6 @@ class ClosedForm(ElementType):
     def contact_unknowns(self) -> int:
         """Number of unknowns that a closed contact adds to the system."""
         return self.contact.unknowns
-
-    @property
-    def rubs(self) -> bool:
-        """Whether its contact law has friction."""
-        return self.contact.friction is not None
 
     @property
     def on_varying(self) -> Integrated | None:

@@ -34,16 +34,16 @@ from tsm.elements.properties import Array, Properties
 from tsm.elements.varied import derivatives, plain, varied
 
 # element displacements (6), node (2), force (2), xi  ->  dx, dy, theta_i, theta_j, F_x, F_y, xi
-REDUCE = np.zeros((7, 11))
-REDUCE[0, [0, 3]] = REDUCE[1, [1, 4]] = -1, 1
-REDUCE[[2, 3, 4, 5, 6], [2, 5, 8, 9, 10]] = 1
+_REDUCE = np.zeros((7, 11))
+_REDUCE[0, [0, 3]] = _REDUCE[1, [1, 4]] = -1, 1
+_REDUCE[[2, 3, 4, 5, 6], [2, 5, 8, 9, 10]] = 1
 """The seven quantities of a contact from the eleven unknowns."""
 # the upper triangle of a matrix over them, row by row, spread over the eleven
-_PRODUCTS = np.einsum("ai,bj->abij", REDUCE, REDUCE).reshape(7, 7, 121)
+_PRODUCTS = np.einsum("ai,bj->abij", _REDUCE, _REDUCE).reshape(7, 7, 121)
 _SPREAD = np.array([_PRODUCTS[a, b] + (a != b) * _PRODUCTS[b, a] for a in range(7) for b in range(a, 7)])
-LEVER = np.zeros((11, 11))
-LEVER[[0, 8, 1, 9], [8, 0, 9, 1]] = 1
-LEVER[[6, 8, 7, 9], [8, 6, 9, 7]] = -1
+_LEVER = np.zeros((11, 11))
+_LEVER[[0, 8, 1, 9], [8, 0, 9, 1]] = 1
+_LEVER[[6, 8, 7, 9], [8, 6, 9, 7]] = -1
 """Second derivatives of ``F . (x_i - x_c)``."""
 
 
@@ -52,14 +52,14 @@ def response(
 ) -> tuple[Array, Array]:
     """Gradient (11,) of the Lagrangian by element, node, force and arc position, and its Hessian, see `ContactLaw`."""
     gradient, hessian = _sharp(p, x, xi, force)
-    tangent = -(hessian @ _SPREAD).reshape(11, 11) - LEVER
+    tangent = -(hessian @ _SPREAD).reshape(11, 11) - _LEVER
     if offset:
         dx, dy, theta_i, theta_j, *loads, place = varied((x[3] - x[0], x[4] - x[1], x[2], x[5], *force, xi))
         surface = _surface(p, (0.0, 0.0, theta_i, dx, dy, theta_j), place, loads)
         gradient = gradient - side * offset * plain(surface)
-        tangent = tangent + REDUCE.T @ (side * offset * derivatives(surface)) @ REDUCE
+        tangent = tangent + _REDUCE.T @ (side * offset * derivatives(surface)) @ _REDUCE
     Fx, Fy = force
-    full = -(gradient @ REDUCE) + np.array([-Fx, -Fy, 0, 0, 0, 0, Fx, Fy, -lever[0], -lever[1], 0])
+    full = -(gradient @ _REDUCE) + np.array([-Fx, -Fy, 0, 0, 0, 0, Fx, Fy, -lever[0], -lever[1], 0])
     full[10] /= p.l0
     tangent[10] /= p.l0
     tangent[:, 10] /= p.l0
@@ -124,7 +124,7 @@ def _surface(p: Properties, x: Any, xi: Any, force: Any) -> Array:
     return np.array([px, py, pi, pj, fx, fy, ps - db * A * (T + bA * A)])
 
 
-def cross_compliance(p: Properties, xi: Any, eta: Any) -> tuple[Any, Any, Any, Any, Any, Any]:
+def cross_compliance(p: Properties, xi: Any, eta: Any) -> tuple[Any, Any, Any]:
     """Deflection at xi by a unit force at eta, both ends clamped.
 
     Simply supported, less what clamping takes away: with ``x = min, b = 1 - max`` of both, ``z = xi (1 -
@@ -132,39 +132,35 @@ def cross_compliance(p: Properties, xi: Any, eta: Any) -> tuple[Any, Any, Any, A
 
         C12 = l0^3/(12 EI) (2 x b (1 + Phi/2 - b^2 - x^2) - z z' (3 + m m'/(1 + Phi)))
 
-    Returns the value, derivatives in xi and eta, and the second ones xi-xi, xi-eta, eta-eta.
+    Returns the value, and its derivatives in xi and eta.
     """
     if np.any(np.real(xi) > np.real(eta)):
-        C, d_eta, d_xi, second, both, first = cross_compliance(p, eta, xi)
-        return C, d_xi, d_eta, first, both, second
+        C, d_eta, d_xi = cross_compliance(p, eta, xi)
+        return C, d_xi, d_eta
     x, b, h, k = xi, 1 - eta, 1 + p.Phi / 2, 1 / (1 + p.Phi)
     z, m, ze, me = xi * (1 - xi), 1 - 2 * xi, eta * (1 - eta), 1 - 2 * eta
     scale = p.l0**3 / (12 * p.EI)
-    bent, bent_e = m * m - 2 * z, me * me - 2 * ze
     return (
         scale * (2 * x * b * (h - b * b - x * x) - z * ze * (3 + k * m * me)),
-        scale * (2 * b * (h - b * b - 3 * x * x) - ze * (3 * m + k * me * bent)),
-        scale * (-2 * x * (h - 3 * b * b - x * x) - z * (3 * me + k * m * bent_e)),
-        scale * (-12 * b * x + ze * (6 + 6 * k * m * me)),
-        scale * (-2 * (h - 3 * b * b - 3 * x * x) - (3 * m * me + k * bent * bent_e)),
-        scale * (-12 * b * x + z * (6 + 6 * k * m * me)),
+        scale * (2 * b * (h - b * b - 3 * x * x) - ze * (3 * m + k * me * (m * m - 2 * z))),
+        scale * (-2 * x * (h - 3 * b * b - x * x) - z * (3 * me + k * m * (me * me - 2 * ze))),
     )
 
 
-def energy(p: Properties, x: Any, lever: Any, xi: Any, force: Any, side: float, offset: float) -> float:
-    """Value of the Lagrangian, the contribution of the contact to the strain energy in equilibrium. Arguments as for `response`."""
-    curve = Curve(p, x)
+def energy(p: Properties, x: Any, _lever: Any, xi: Any, force: Any, side: float, offset: float) -> float:
+    """Value of the Lagrangian where it is stationary in F, the contribution of the contact to the strain energy.
+
+    It is ``L - F . dL/dF``. Arguments as for `response`.
+    """
     Fx, Fy = force
-    w = curve.deflection(xi)[0]
     C, dC, _ = compliance(p, xi)
-    value = Fx * (lever[0] + xi * curve.dx - w * curve.dy) + Fy * (lever[1] + xi * curve.dy + w * curve.dx)
-    value += C * (Fx * Fx + Fy * Fy) / 2
+    value = C * (Fx * Fx + Fy * Fy) / 2
     if offset:
-        phi, _ = curve.slope_angle(xi)
+        phi, _ = Curve(p, x).slope_angle(xi)
         A, T = Fy * np.cos(phi) - Fx * np.sin(phi), Fx * np.cos(phi) + Fy * np.sin(phi)
         bA = dC / (2 * p.l0) * A
-        value -= side * offset * (A - bA * T - bA * bA * A / 2)
-    return -float(value)
+        value -= side * offset * bA * (T + bA * A)
+    return float(value)
 
 
 def compliance(p: Properties, xi: Any) -> tuple[Any, Any, Any]:

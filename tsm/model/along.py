@@ -10,7 +10,7 @@ from numpy.polynomial import Polynomial
 
 from tsm.elements import ELEMENTS, EXACT, ElementType, Integrated
 from tsm.elements.properties import Array
-from tsm.elements.rod import Course, Flexibility
+from tsm.elements.rod import Course
 from tsm.statement.beam import Beam, LineLoad, check
 from tsm.statement.stages import Increments
 
@@ -61,34 +61,28 @@ class Along:
 
     def course(self, elements: Array, part: Array, resultant: Array, resultant_rate: Array) -> Course:
         """What varies at parts (s, p) of the lengths of elements (s,), from resultants (2, d, s) and their rates."""
-        length = self.length[elements, None]
-        gauge, gyration = self.gauge[:, elements, None], self.gyration[:, elements, None]
-        wide, high = gauge[0] + (gauge[1] - gauge[0]) * part, gyration[0] + (gyration[1] - gyration[0]) * part
-        EA = wide * high
-        EA_slope = ((gauge[1] - gauge[0]) * high + wide * (gyration[1] - gyration[0])) / length
-        high_slope = (gyration[1] - gyration[0]) / length
-        stretch, bend = 1 / EA, 1 / (EA * high * high)
-        stretch_slope = -stretch * EA_slope / EA
-        bend_slope = -bend * (EA_slope / EA + 2 * high_slope / high)
-        ratio = self.ratio[elements, None]
-        powers = part ** np.arange(resultant.shape[1] + 1)[:, None, None]
-        risen = np.arange(1, resultant.shape[1] + 1)[:, None, None] * powers[:-1] / length
-        return Course(
-            Flexibility(stretch, stretch / ratio, bend),
-            Flexibility(stretch_slope, stretch_slope / ratio, bend_slope),
-            *(np.einsum("cds,dsp->csp", coefficients, on) for coefficients, on in (
-                (resultant, powers[1:]), (resultant, risen), (resultant_rate, powers[1:]))),
-        )  # fmt: skip
+        length, own = self.length[elements, None], (self.gauge, self.gyration)
+        (wide, wider), (high, higher) = (
+            (a + (b - a) * part, b - a) for a, b in (x[:, elements, None] for x in own)
+        )
+        stretch = 1 / (wide * high)
+        flexibility = np.array([stretch, stretch / self.ratio[elements, None], stretch / high**2])
+        rise = (wider / wide + np.array([1, 1, 3])[:, None, None] * higher / high) / length
+        degrees = np.arange(1, resultant.shape[1] + 1)[:, None, None]
+        powers, risen = part**degrees, degrees * part ** (degrees - 1) / length
+        pairs = (resultant, powers), (resultant, risen), (resultant_rate, powers)
+        P, q, rate = (np.einsum("cds,dsp->csp", coefficients, on) for coefficients, on in pairs)
+        return Course(flexibility, -flexibility * rise, P, q, rate)
 
 
-def kind_of(beam: Beam, *, varies: bool) -> ElementType:
-    """Type of a beam's elements.
+def kind_of(beam: Beam, *, varies: bool, rubbed: bool) -> ElementType:
+    """Type of a beam's elements; of one with friction the integrated one, if there is one.
 
     Raises ValueError if the beam has what its elements cannot state.
     """
     kind = ELEMENTS[beam.element]
     if not varies:
-        return kind
+        return kind.on_varying or kind if rubbed else kind
     able = ", ".join(name for name, other in ELEMENTS.items() if other.on_varying)
     rule = f"such elements are straight and uniform, without loads along them; use {able}"
     check(kind.on_varying is not None, f"Beam({beam.name})", "element", beam.element, rule)
@@ -102,7 +96,7 @@ def gauss_nodes(beams: Sequence[tuple[Beam, ElementType]]) -> int | None:
     """
     counts = {kind.nodes: beam for beam, kind in beams if isinstance(kind, Integrated)}
     fixed = next((beam for nodes, beam in counts.items() if nodes), beams[0][0])
-    rule = f'must be "{EXACT.name}" as of other beams here, since the beam is curved or tapered or has a load along it'
+    rule = f'must be "{EXACT.name}" as of other beams here, since the beam is curved or tapered, has a load along it, or friction'
     check(len(counts) < 2, f"Beam({fixed.name})", "element", fixed.element, rule)
     return next(iter(counts), None)
 

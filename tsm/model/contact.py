@@ -22,21 +22,21 @@ from tsm.model.state import State, Touch
 
 def with_touches(model: Model, state: State, touches: tuple[Touch | None, ...]) -> State:
     """State with other contacts."""
-    after = replace(state, touches=touches)
+    after = state if touches == state.touches else replace(state, touches=touches)
     return recut(model.rods, state, after) if model.rods else after
 
 
 def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...], past: float = 0.0) -> State:
     """State with moved contacts; a contact that left its element by a part of its length is handed over to the neighbour."""
-    owned: list[Touch | None] = []
-    for pair, touch in zip(model.pairs, touches, strict=True):
-        if touch is None:
-            owned.append(None)
-            continue
-        first = pair.target.first
-        k, xi = slide(pair.target.lengths, touch.element - first, touch.xi, max(past, pair.group.past_node))
-        owned.append(touch if first + k == touch.element else replace(touch, element=first + k, xi=xi))
-    return with_touches(model, replace(state, touches=touches), tuple(owned))
+    moved, owned = replace(state, touches=touches), list(touches)
+    for n, (pair, touch) in enumerate(zip(model.pairs, touches, strict=True)):
+        if touch is not None:
+            first = pair.target.first
+            past_node = max(past, model.group_of(pair.target).past_node)
+            k, xi = slide(pair.target.lengths, touch.element - first, touch.xi, past_node)
+            if touch.element != first + k:
+                owned[n] = replace(touch, element=first + k, xi=xi)
+    return with_touches(model, moved, tuple(owned))
 
 
 def chord_owner(model: Model, pair: PairModel, state: State, touch: Touch) -> Touch:

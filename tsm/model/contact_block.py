@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from copy import copy
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from tsm.elements.contact_law import crossing
 from tsm.elements.properties import Array
+from tsm.model.numbering import Numbering
+from tsm.model.pairs import PairModel
 from tsm.model.state import Touch
-
-if TYPE_CHECKING:
-    from tsm.model.model import Model
-    from tsm.model.pairs import PairModel
 
 
 class Bordered(NamedTuple):
@@ -39,13 +38,11 @@ class Units:
     ``model``: model whose longest beam and largest ``EI/L^2`` are the units. ``k``: bandwidth.
     """
 
-    def __init__(self, model: Model, k: int) -> None:
+    def __init__(self, model: Numbering, k: int) -> None:
         self.columns, self.rows = model.units, 1 / model.row_units
         banded, last = model.banded, model.equations
-        column, entry = np.indices((banded, 3 * k + 1))
-        row = column + entry - 2 * k
-        inside = (row >= 0) & (row < banded)
-        self.band = np.where(inside, self.columns[column] * self.rows[np.where(inside, row, 0)], 0.0)
+        rows = np.pad(self.rows[:banded], (2 * k, k))
+        self.band = self.columns[:banded, None] * sliding_window_view(rows, 3 * k + 1)
         self.right = np.append(self.rows[:last], 0.0)[:, None] * self.columns[banded:]
         self.below = self.rows[banded:, None] * np.append(self.columns[:last], 0.0)
         self.corner = self.rows[banded:, None] * self.columns[banded:]
@@ -75,7 +72,7 @@ class ContactBlock:
     ``crowded``: whether two nodes touch one element whose matrix knows a single contact.
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: Numbering) -> None:
         self.model = model
         self.right = np.zeros((model.equations + 1, model.border))
         self.below = np.zeros((model.border, model.equations + 1))
@@ -99,7 +96,7 @@ class ContactBlock:
         """Decouple the unknowns of an open pair: 1 on the diagonal, zeros elsewhere."""
         if pair.slot >= 0:
             slots = self.slots(pair)
-            self.corner[slots, slots] = np.eye(pair.element_type.contact_unknowns)
+            self.corner[slots, slots] = np.eye(pair.target.kind.contact_unknowns)
 
     def enter(self, k: int, pair: PairModel, force: tuple[float, float], rows: Any) -> None:
         """Enter force and residuals of a closed pair."""
@@ -131,8 +128,7 @@ class ContactBlock:
     def _share(self, p: Any, first: tuple[PairModel, Touch], second: tuple[PairModel, Touch]) -> None:
         """Couple two contacts on one element: each force deflects the element at the other contact."""
         pairs, (a, b) = (first[0], second[0]), (first[1], second[1])
-        one, two = (_slip(pair, touch) for pair, touch in (first, second))
-        gradient, block = crossing(pairs[0].cross(p, a.xi, b.xi), p.l0, (a.force, b.force), (one, two))
+        gradient, block = crossing(pairs[0].law, p, (a.xi, b.xi), (a.force, b.force))
         parts = (slice(0, 3), slice(3, 6))
         for pair_i, part_i in zip(pairs, parts, strict=True):
             self.residual[pair_i.slots] += gradient[part_i]
@@ -142,11 +138,4 @@ class ContactBlock:
     def slots(self, pair: PairModel) -> slice:
         """Rows and columns of a pair's unknowns in the border."""
         start = pair.slot + self.model.border_dofs
-        return slice(start, start + pair.element_type.contact_unknowns)
-
-
-def _slip(pair: PairModel, touch: Touch) -> tuple[float, float]:
-    """Sign of the last row, and the lean of the force, see `crossing`."""
-    if touch.grip is None:
-        return -1.0, 0.0
-    return float(touch.grip.held is None), pair.lean(touch.grip)
+        return slice(start, start + pair.target.kind.contact_unknowns)

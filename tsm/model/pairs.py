@@ -19,34 +19,27 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
-from tsm.elements import ClosedForm, ContactLaw, ElementType
-from tsm.elements.contact_law import Friction, Here, Vector
-from tsm.elements.properties import Array, Properties, unwind
+from tsm.elements import ClosedForm, ContactLaw, Integrated
+from tsm.elements.contact_law import Vector
+from tsm.elements.properties import unwind
+from tsm.model.mesh import BeamModel
 from tsm.model.projection import arc_position
 from tsm.model.state import Grip, Place, Touch, Traction
-from tsm.statement.structure import Beam, ContactPair, Pin
-
-if TYPE_CHECKING:
-    from tsm.model.groups import ElementGroup
+from tsm.statement.structure import ContactPair, Pin
 
 
-@dataclass(frozen=True, kw_only=True)
-class BeamModel:
-    """A beam's place in the model."""
+class Here(NamedTuple):
+    """What a contact sees of its beam, in numbers or in arrays with complex steps."""
 
-    beam: Beam  # what the user stated
-    first: int  # global number of its first element; its elements follow one another
-    nodes: Array  # global node numbers from start to end; shape (elements + 1,)
-    lengths: list[float]  # undeformed lengths of its elements
-    arcs: list[float]  # arc positions of its nodes
-    kind: ElementType  # type of its elements
-
-    @property
-    def last(self) -> int:
-        """Global number of its last element."""
-        return self.first + self.beam.elements - 1
+    arc: Any  # arc position on the beam
+    tangent: Vector  # mean tangent T, per undeformed length
+    # shear, direction: psi, the angle from the section's normal to T; phi, the angle of T; both, as the mean
+    # theta', matter with friction only
+    shear: Any
+    direction: Any
+    turn: Any  # mean theta', per undeformed length
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,8 +48,6 @@ class PairModel:
 
     pair: ContactPair  # what the user stated
     target: BeamModel  # the touched beam
-    element_type: ElementType  # its element type
-    group: ElementGroup  # group of its elements
     side: float  # +1 where the node comes from the right, -1 from the left
     pin: Pin | None  # the control node that touches, or None where a beam's end does
     node: int  # global number of the beam's end that touches, -1 for a pin
@@ -67,24 +58,13 @@ class PairModel:
     @property
     def cuts(self) -> bool:
         """Whether the contact cuts the touched element."""
-        return self.group.internal
+        return isinstance(self.target.kind, Integrated)
 
     @property
     def law(self) -> ContactLaw:
         """Contact law of a touched element in closed form."""
-        assert isinstance(self.element_type, ClosedForm), "an exact element is cut instead"
-        return self.element_type.contact
-
-    def cross(self, p: Properties, xi: float, eta: float) -> tuple[Any, ...]:
-        """Deflection of an element at xi by a unit force at eta, see `ContactLaw.cross`."""
-        assert self.law.cross is not None, "the law has unknowns"
-        return self.law.cross(p, xi, eta)
-
-    @property
-    def friction(self) -> Friction:
-        """Friction of the contact law."""
-        assert self.law.friction is not None, "the law has friction, see `Model`"
-        return self.law.friction
+        assert isinstance(self.target.kind, ClosedForm), "an exact element is cut instead"
+        return self.target.kind.contact
 
     @property
     def reach(self) -> float:
@@ -184,4 +164,4 @@ class PairModel:
     @property
     def slots(self) -> slice:
         """Positions of its unknowns among the contacts' unknowns."""
-        return slice(self.slot, self.slot + self.element_type.contact_unknowns)
+        return slice(self.slot, self.slot + self.target.kind.contact_unknowns)

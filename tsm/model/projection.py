@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from tsm.elements.properties import Array
-
-if TYPE_CHECKING:
-    from tsm.model.pairs import BeamModel
+from tsm.model.mesh import BeamModel
 
 AT_NODE = 1e-9
 """Part of an element's length that a contact may lie past its end: at a node, round-off would send it back and forth for ever."""

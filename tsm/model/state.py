@@ -80,3 +80,16 @@ class State:
         bool, ...
     ]  # by contact pair: whether an open one may close, its node being on the stated side
     profile: Profile | None = None  # angles inside the exact elements, None without such elements
+
+
+def profile_of(state: State) -> Profile:
+    """Angles inside the exact elements of a model that has some."""
+    assert state.profile is not None, "a model with exact elements has their profile"
+    return state.profile
+
+
+def touch_of(state: State, k: int) -> Touch:
+    """Closed contact of pair k."""
+    touch = state.touches[k]
+    assert touch is not None, "a cut is a closed contact"
+    return touch

@@ -172,7 +172,7 @@ def mechanism(point: Point, drive: Drive) -> bool:
     if by is None:
         return False
     for k, pair, touch in idle:
-        x, y = pair.group.direction(touch, point.state.q)
+        x, y = model.direction(pair, touch, point.state)
         fx, fy, *_ = by.contacts[pair.slots]
         if pair.side * (fy * x - fx * y) <= edge:
             state = changed(model, state, k, None, armed=True)
@@ -218,7 +218,7 @@ def _moves(model: Model, state: State) -> bool:
         moved = rows(model.element_nodes[[touch.element], 0], at)[0, :2]
         if pair.node >= 0:
             moved = moved - rows(np.array([pair.node]), at)[0, :2]
-        x, y = pair.group.direction(touch, state.q)
+        x, y = model.direction(pair, touch, state)
         sticks = touch.grip is not None and not touch.grip.slip
         equations.append(moved if sticks else np.array([[-y, x]]) / math.hypot(x, y) @ moved)
     every = np.concatenate(equations)

@@ -34,7 +34,7 @@ def crossing(model: Model, before: State, after: State) -> tuple[float, int] | N
     """
     crossings = []
     for k, (pair, armed) in enumerate(zip(model.pairs, before.armed, strict=True)):
-        if after.touches[k] is None and armed and not _over(model, last := pair.group.project(pair, after)):
+        if after.touches[k] is None and armed and not _over(model, last := model.project(pair, after)):
             t = _passage(model, pair, before, after, last.gap)
             if t is not None:
                 crossings.append((t, k))
@@ -52,7 +52,7 @@ def through_end(model: Model, before: State, after: State) -> float | None:
         way = 2.0 * math.dist(*nodes) + 3.0 * moved
         if not -small <= clearance(model, after, k).distance <= way:
             continue
-        over = before.armed[k] and _over(model, pair.group.project(pair, before))
+        over = before.armed[k] and _over(model, model.project(pair, before))
 
         def depth(t: float, k: int = k, over: bool = over) -> float:
             here = clearance(model, extrapolate(model, [before, after], t), k)
@@ -97,9 +97,9 @@ def _passage(model: Model, pair: PairModel, before: State, after: State, gap: fl
     t0, t1, small = before.load_parameter, after.load_parameter, ROUND_OFF * model.length
 
     def seen(t: float) -> Projection:
-        return pair.group.project(pair, extrapolate(model, [before, after], t))
+        return model.project(pair, extrapolate(model, [before, after], t))
 
-    first = pair.group.project(pair, before)
+    first = model.project(pair, before)
     if gap >= -small or first.gap < -small:
         return None
     if first.gap <= small:

@@ -101,7 +101,7 @@ def rolled(newton: Newton, before: State, reached: Equilibrium) -> Equilibrium:
 
 
 def _place(newton: Newton, node: Equilibrium, k: int) -> Place:
-    return traction(newton.model, node.state, node.system, k).place
+    return traction(newton.model, node.system, k).place
 
 
 def _curves(newton: Newton, held: Held, nodes: list[Equilibrium]) -> Array:

@@ -151,7 +151,7 @@ def _before(model: Model, state: State) -> set[int]:
     """Open pairs whose node lies on the stated side of the beam or on the surface, and which must touch before they pass it."""
     small = ROUND_OFF * model.length
     open_ones = [k for k, touch in enumerate(state.touches) if touch is None and state.armed[k]]
-    seen = {k: model.pairs[k].group.project(model.pairs[k], state) for k in open_ones}
+    seen = {k: model.project(model.pairs[k], state) for k in open_ones}
     return {k for k, place in seen.items() if place.overshoot <= small and place.gap >= -small}
 
 

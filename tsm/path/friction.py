@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import islice, product
 
+from tsm.model.groups import ExactGroup
 from tsm.model.model import Model
 from tsm.model.state import UNDECIDED, Grip, State, Traction
 from tsm.path.path import Point, Rates
@@ -37,15 +38,20 @@ Grips = tuple[tuple[int, Grip], ...]
 """Numbers and states of contacts."""
 
 
-def traction(model: Model, state: State, system: Linearisation, k: int) -> Traction:
+def _rods(model: Model) -> ExactGroup:
+    assert model.rods is not None, "a contact with friction cuts its element"
+    return model.rods
+
+
+def traction(model: Model, system: Linearisation, k: int) -> Traction:
     """Force and place of closed pair k, which has friction."""
-    pair = model.pairs[k]
-    return pair.group.traction(k, state, system.groups[pair.group.number])
+    rods = _rods(model)
+    return rods.traction(k, system.groups[rods.number])
 
 
 def traction_at(point: Point, k: int) -> Traction:
     """Force and place of closed pair k, which has friction."""
-    return traction(point.model, point.state, point.system, k)
+    return traction(point.model, point.system, k)
 
 
 def cone(point: Point, k: int) -> float:
@@ -56,9 +62,8 @@ def cone(point: Point, k: int) -> float:
 
 def slip_rate(point: Point, rates: Rates, k: int) -> float:
     """Slip rate of closed pair k."""
-    group = point.model.pairs[k].group
-    tangent = point.system.tangent.groups[group.number]
-    return group.slip_rate(k, point.state, tangent, rates.dofs, rates.contacts)
+    rods = _rods(point.model)
+    return rods.slip_rate(k, point.system.tangent.groups[rods.number], rates.dofs, rates.contacts)
 
 
 def regripped(point: Point, drive: Drive, last: State) -> Point | Status:

@@ -106,14 +106,15 @@ def _slip_rate(point: Point, k: int, drive: Drive) -> float:
 def _roundness(point: Point, k: int, _drive: Drive) -> float:
     """Curvature ``theta'/(1 + e)``, ``theta' = m/EI``, by which the beam may still bend round the node, over 1/d."""
     pair, touch, system = point.model.pairs[k], _touch(point.state, k), point.system
-    forces, push = system.groups[pair.group.number], system.forces[k]
-    curvature = -pair.side * pair.group.curvature(k, touch, point.state, forces, push)
+    group = point.model.group_of(pair.target)
+    forces, push = system.groups[group.number], system.forces[k]
+    curvature = -pair.side * group.curvature(k, touch, point.state, forces, push)
     return 1.0 - abs(pair.reach_at(pair.arc_position(touch))) * curvature
 
 
 def _gap(point: Point, k: int, _drive: Drive) -> float:
     pair, length = point.model.pairs[k], point.model.length
-    seen = pair.group.project(pair, point.state)
+    seen = point.model.project(pair, point.state)
     return seen.gap / length if seen.overshoot <= ROUND_OFF * length else 1.0
 
 
@@ -123,7 +124,7 @@ def _close(point: Point, state: State, margin: Margin, _alone: bool) -> State:
     if margin.value < -ROUND_OFF:
         return changed(model, state, k, None, armed=False)
     pair = model.pairs[k]
-    return changed(model, state, k, closed_at(pair, pair.group.project(pair, state)), armed=True)
+    return changed(model, state, k, closed_at(pair, model.project(pair, state)), armed=True)
 
 
 def _open(point: Point, state: State, margin: Margin, alone: bool) -> State | Status:

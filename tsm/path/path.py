@@ -122,11 +122,11 @@ class Point:
             return None
         rates, dofs = solved[:, 1], assembler.prescribed_rate(drive.stage)
         dofs[model.free], contacts = rates[: model.equations], rates[model.equations :]
-        inside = [
-            group.turning(self.state, tangent, dofs, contacts)
-            for group, tangent in zip(model.groups, self.system.tangent.groups, strict=True)
-        ]
-        return Rates(rates, dofs, contacts, np.concatenate([dofs[model.free], *inside]))
+        motion, rods = dofs[model.free], model.rods
+        if rods:
+            tangent = self.system.tangent.groups[rods.number]
+            motion = np.concatenate([motion, rods.turning(self.state, tangent, dofs, contacts)])
+        return Rates(rates, dofs, contacts, motion)
 
     def _rates_to(self, t: float) -> Rates | None:
         return self.rates(self.newton.assembler.drive(self.t, t))
@@ -249,8 +249,8 @@ def extrapolate(model: Model, history: list[State], t: float, *, tangents: bool 
 
     With `tangents`, every other one lies ahead of the next along the tangent there, which the polynomial has too.
     """
-    for group in model.groups:
-        history = group.alike(history)
+    if model.rods:
+        history = model.rods.alike(history)
     times = [state.load_parameter for state in history]
     if tangents and len(times) > 1:
         history, times = history[len(times) % 2 :], times[len(times) % 2 :]

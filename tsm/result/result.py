@@ -10,7 +10,7 @@ import numpy as np
 
 from tsm.contact.events import Event, normal_force
 from tsm.elements.properties import Array
-from tsm.model.groups.shape import Stations
+from tsm.model.groups.base import Stations
 from tsm.model.model import Model
 from tsm.path.critical import CriticalPoint
 from tsm.path.friction import grips, traction
@@ -308,7 +308,7 @@ def _contact_at(model: Model, equilibrium: Equilibrium, k: int) -> tuple[float, 
     if touch is not None:
         left = equilibrium.system.residual[model.equations :][pair.slots][:2]
         return normal_force(model, equilibrium, k), pair.arc_position(touch), float(np.hypot.reduce(left))
-    seen = pair.group.project(pair, state)
+    seen = model.project(pair, state)
     over = state.armed[k] and seen.overshoot <= 0
     return 0.0, np.nan, seen.gap if over else np.nan
 
@@ -318,7 +318,7 @@ def _friction(model: Model, steps: list[Step], k: int) -> FrictionHistory:
     for step in steps:
         state, system = step.equilibrium.state, step.equilibrium.system
         grip = dict(grips(state)).get(k)
-        here = traction(model, state, system, k) if grip else None
+        here = traction(model, system, k) if grip else None
         force = (here.tangential, here.normal) if here else (0.0, 0.0)
         rows.append((*force, grip.slip if grip else 0, step.spent[1 + k] if len(step.spent) else np.nan))
     tangential, normal, slip, dissipated = np.array(rows).reshape(-1, 4).T

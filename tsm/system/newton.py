@@ -103,8 +103,8 @@ class Newton:
 
         Positions inside need no entries: they follow from the rotations and the nodes.
         """
-        inside = [group.turned(one, other, like) for group in self.model.groups]
-        return np.concatenate([(other.q - one.q)[self.model.free], *inside])
+        nodes, rods = (other.q - one.q)[self.model.free], self.model.rods
+        return np.concatenate([nodes, rods.turned(one, other, like)]) if rods else nodes
 
     def potential(self, state: State) -> float:
         """Strain energy less the work of the dead loads."""
@@ -218,21 +218,19 @@ class Newton:
 
     def with_more_nodes(self, state: State, system: Linearisation, residuals: list[float]) -> State | None:
         """State with more Gauss nodes in the exact elements; None if it is far from equilibrium or needs no more."""
-        near = residuals[-1] <= _NEAR
-        if not near or (
-            len(residuals) > 1 and residuals[-2] <= _NEAR and not self.converged(residuals, system)
+        rods, near = self.model.rods, residuals[-1] <= _NEAR
+        if (
+            rods is None
+            or not near
+            or (len(residuals) > 1 and residuals[-2] <= _NEAR and not self.converged(residuals, system))
         ):
             return None
-        refined = (
-            group.refined(state, forces, self.integration_tolerance)
-            for group, forces in zip(self.model.groups, system.groups, strict=True)
-        )
-        return next((finer for finer in refined if finer is not None), None)
+        return rods.refined(state, system.groups[rods.number], self.integration_tolerance)
 
     def verdict(self, system: Linearisation) -> Status:
         """Status of a small residual."""
-        groups = zip(self.model.groups, system.groups, strict=True)
-        if any(group.inaccurate(forces, self.integration_tolerance) for group, forces in groups):
+        rods = self.model.rods
+        if rods and rods.inaccurate(system.groups[rods.number], self.integration_tolerance):
             return Status.INACCURATE
         return Status.TWO_CONTACTS if system.crowded else Status.CONVERGED
 
@@ -285,16 +283,17 @@ class Newton:
             return replace(state, q=q)
         dofs = np.zeros(model.dof_count)
         dofs[model.free], dofs[model.fixed] = dq, model.motions.change(begin, end)
-        change = Change(dofs, dz, float(residual), factor, end - begin)
+        profile, rods = None, model.rods
+        if rods:
+            change = Change(dofs, dz, float(residual), factor, end - begin)
+            profile = rods.changed(state, system.tangent.groups[rods.number], change)
         moved = State(
             load_parameter=state.load_parameter,
             q=q,
             touches=state.touches,
             armed=state.armed,
-            profile=state.profile,
+            profile=profile,
         )
-        for group, tangent in zip(model.groups, system.tangent.groups, strict=True):
-            moved = group.with_change(state, moved, tangent, change)
         if not state.touches:
             return moved
         dz_taken = (factor * dz).tolist()

@@ -141,7 +141,7 @@ def _units(assembler: Assembler, state: State) -> tuple[Array, Array]:
     for pair, touch in zip(model.pairs, state.touches, strict=True):
         if touch is None and pair.slot >= 0:
             start = model.banded + model.border_dofs + pair.slot
-            own = slice(start, start + pair.element_type.contact_unknowns)
+            own = slice(start, start + pair.target.kind.contact_unknowns)
             rows[own] = 1 / columns[own]
     return columns, rows
 

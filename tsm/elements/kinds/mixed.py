@@ -4,13 +4,11 @@ from tsm.elements import mixed_contact
 from tsm.elements.beam import bowed_coefficients, linear_coefficients
 from tsm.elements.contact_law import ContactLaw
 from tsm.elements.element_type import ClosedForm, Integrated
-from tsm.elements.mixed_friction import FRICTION
 
 LAW = ContactLaw(
     response=mixed_contact.response,
     energy=mixed_contact.energy,
     cross=mixed_contact.cross_compliance,
-    friction=FRICTION,
 )
 """The contact law whose force and arc position are unknowns."""
 
@@ -23,7 +21,7 @@ VARYING = Integrated(
     colour=_COLOUR,
     marker="D",
 )
-"""The elements of a curved or tapered beam, or one with a load along it, for which there is no closed form."""
+"""The elements of a beam that is curved or tapered, has a load along it, or friction, for which there is no closed form."""
 MIXED = ClosedForm(
     name="mixed",
     source="contact force as unknown, full derivative, strains of the Reissner rod to fourth order",

@@ -38,7 +38,7 @@ from tsm.elements.beam import linear_coefficients
 from tsm.elements.contact_law import ContactLaw
 from tsm.elements.element_type import ClosedForm
 from tsm.elements.properties import Array, Properties, chord_rotation, unwind
-from tsm.elements.varied import STEP
+from tsm.elements.varied import STEP, derivatives, plain, varied
 
 Matrix = Callable[[Properties, Any], Array]
 """Matrix at a given ``xi = a/l0``: the stiffness of a basic system, or T."""
@@ -176,43 +176,23 @@ def response(
     element_force: ElementForce, p: Properties, x: Any, lever: Any, side: float, offset: float
 ) -> tuple[Array, Array]:
     """Forces (8,) on an element (6) and the node (2) that touches it, and their exact tangent, see `ContactLaw`."""
-    (dx, dy), (rx, ry) = (p.dx0 + (x[3] - x[0]), p.dy0 + (x[4] - x[1])), (-lever[0], -lever[1])
-    length = np.sqrt(dx * dx + dy * dy)
-    t = np.array([dx, dy]) / length
-    n = np.array([-t[1], t[0]])
-    turn = chord_rotation(p.dx0 * dy - p.dy0 * dx, p.dx0 * dx + p.dy0 * dy)
-    y = n[0] * rx + n[1] * ry
-    xi = (dx * rx + dy * ry) / (dx * dx + dy * dy)
-    if not INSIDE <= xi.real <= 1 - INSIDE:
-        xi = min(max(xi.real, INSIDE), 1 - INSIDE)
-    du, dv = x[3] - x[0], x[4] - x[1]
-    elongation = (2 * (p.dx0 * du + p.dy0 * dv) + du * du + dv * dv) / (length + p.l0)
-    deformation = np.array([unwind(x[2] - turn), unwind(x[5] - turn), y + side * offset])
-    S, K, slope = element_force(p, xi, deformation)
-    N = p.EA / p.l0 * elongation
-
-    B = np.zeros((3, 6), dtype=S.dtype)
-    B[:2, 2:4] = -n / length
-    B[0, 4] = B[1, 5] = 1
-    B[2, :2], B[2, 2:4] = n, -xi * n
-    stretch = np.zeros(6, dtype=S.dtype)
-    stretch[2:4] = t
-    slide = np.zeros(6, dtype=S.dtype)
-    slide[:2], slide[2:4] = t / length, (y * n - xi * length * t) / length**2
-
-    nn, tn = np.outer(n, n), np.outer(t, n)
-    tn = tn + tn.T
-    geometric = np.zeros((6, 6), dtype=S.dtype)
-    geometric[2:4, 2:4] = (
-        N / length * nn + (S[0] + S[1]) / length**2 * tn + S[2] * (xi * tn / length - y * nn / length**2)
-    )
-    geometric[:2, 2:4] = -S[2] / length * np.outer(t, n)
-    geometric[2:4, :2] = geometric[:2, 2:4].T
-
-    force = N * stretch + S @ B
-    tangent = p.EA / p.l0 * np.outer(stretch, stretch) + B.T @ K @ B + geometric
-    tangent += np.outer(slope @ B, p.l0 * slide)
-    return force @ _REDUCE, _REDUCE.T @ tangent @ _REDUCE
+    moved = (-lever[0], -lever[1], x[3] - x[0], x[4] - x[1], x[2], x[5])
+    rx, ry, du, dv, theta_i, theta_j = varied(moved)
+    dx, dy = p.dx0 + du, p.dy0 + dv
+    square = dx * dx + dy * dy
+    length, turn = np.sqrt(square), chord_rotation(p.dx0 * dy - p.dy0 * dx, p.dx0 * dx + p.dy0 * dy)
+    tx, ty, xi = dx / length, dy / length, (dx * rx + dy * ry) / square
+    if not INSIDE <= xi[-1].real <= 1 - INSIDE:
+        xi = np.clip(xi.real, INSIDE, 1 - INSIDE) + 1j * xi.imag
+    v = np.array([unwind(theta_i - turn), unwind(theta_j - turn), tx * ry - ty * rx + side * offset])
+    S, K, slope = element_force(p, plain(xi), plain(v))
+    steps = S.real[:, None] + 1j * (K.real @ v.imag + np.outer(p.l0 * slope, xi.imag))
+    steps[:, -1] = S
+    M_i, M_j, Y = steps
+    N = p.EA / p.l0 * (2 * (p.dx0 * du + p.dy0 * dv) + du * du + dv * dv) / (length + p.l0)
+    across = (M_i + M_j) / length + Y * xi
+    forces = np.array([-Y * ty, Y * tx, N * tx + across * ty, N * ty - across * tx, M_i, M_j])
+    return plain(forces) @ _REDUCE, _REDUCE.T @ derivatives(forces) @ _REDUCE
 
 
 def law(element_force: ElementForce) -> ContactLaw:

@@ -5,20 +5,19 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from tsm.elements.contact_law import Vector
 from tsm.elements.properties import Array
 from tsm.model.contact_block import ContactBlock
+from tsm.model.mesh import BeamModel
+from tsm.model.numbering import Numbering
+from tsm.model.pairs import PairModel
 from tsm.model.projection import Projection, arc_position, overshoot, slide
-from tsm.model.state import State, Touch, Traction
-
-if TYPE_CHECKING:
-    from tsm.model.groups.shape import Stations
-    from tsm.model.model import Model
-    from tsm.model.pairs import BeamModel, PairModel
+from tsm.model.state import State, Touch
 
 _STEPS, _PROJECTED = 30, 1e-14
 """Newton steps of a projection at most, and the step, in lengths of an element, at which the closest point is found."""
@@ -26,36 +25,30 @@ _PARTS = 33
 """Longest step, as a part of an element's length."""
 
 
-class GroupForces(Protocol):
+@dataclass(kw_only=True)
+class GroupForces:
     """Forces of a group of e elements, each with n degrees of freedom, at a configuration."""
 
-    @property
-    def nodal(self) -> Array:
-        """Residual of the degrees of freedom, shape (n, e)."""
+    nodal: Array  # residual of the degrees of freedom, those of the nodes first and last; shape (n, e)
+    inside: float = 0.0  # largest residual of the unknowns inside the elements [rad]
 
     @property
     def ends(self) -> Array:
         """Forces and moments at both ends of the elements, shape (6, e)."""
-
-    @property
-    def inside(self) -> float:
-        """Largest residual of the unknowns inside the elements [rad]; 0 without such unknowns."""
+        ends: Array = self.nodal[[0, 1, 2, -3, -2, -1]]
+        return ends
 
 
-class GroupTangent(Protocol):
+@dataclass(kw_only=True)
+class GroupTangent:
     """Tangent of a group, the unknowns inside its elements eliminated."""
 
-    @property
-    def tangent(self) -> Array:
-        """Derivative of the residual, row by row, shape (n n, e)."""
-
-    @property
-    def condensed_residual(self) -> Array:
-        """Contribution of the inner residual to the residual after the inner unknowns are eliminated, shape (n, e)."""
-
-    @property
-    def by_load(self) -> Array:
-        """Derivative of the residual in the load parameter, by loads along the elements, shape (n, e)."""
+    tangent: Array  # derivative of the residual, row by row; shape (n n, e)
+    # contribution of the inner residual to the residual after the inner unknowns are eliminated; shape (n, e)
+    condensed_residual: Array
+    by_load: (
+        Array  # derivative of the residual in the load parameter, by loads along the elements; shape (n, e)
+    )
 
 
 class Change(NamedTuple):
@@ -68,14 +61,21 @@ class Change(NamedTuple):
     load: float  # change of the load parameter
 
 
+class Stations(NamedTuple):
+    """Short lines along a beam. Neighbours share no point: section forces may jump between them."""
+
+    arc: Array  # distance along the undeformed axis; shape (c, 2)
+    position: Array  # deformed position; shape (c, 2, 2)
+    rotation: Array  # rotation from the undeformed state; shape (c, 2)
+    forces: Array  # axial force, shear force and moment; shape (c, 2, 3)
+
+
 class ElementGroup(ABC):
     """Elements of a model with the same kind of equations.
 
-    What is not abstract is zero, or nothing, where an element has no unknowns inside and no loads along it.
-
     ``elements`` (e,) are numbered globally. ``dofs`` (n, e): degrees of freedom of the elements.
 
-    ``number``: number of the group in the model. ``none`` (n, e): zeros.
+    ``number``: number of the group in the model.
     ``pairs``: contact pairs on the elements, with their numbers.
     ``internal``: whether an element has a force and a moment as degrees of freedom, and further unknowns
         inside, which are eliminated.
@@ -85,10 +85,10 @@ class ElementGroup(ABC):
     internal: ClassVar[bool]
     past_node: ClassVar[float]
 
-    def __init__(self, model: Model, number: int, elements: Array, dofs: Array) -> None:
-        self.model, self.number, self.elements, self.dofs = model, number, elements, dofs
-        self.none = np.zeros(dofs.shape)
-        self.pairs: list[tuple[int, PairModel]] = []
+    def __init__(self, model: Numbering, number: int, elements: Array) -> None:
+        self.model, self.number, self.elements = model, number, elements
+        self.dofs = model.dofs[:, elements]
+        self.pairs = [(k, pair) for k, pair in enumerate(model.pairs) if pair.cuts == self.internal]
 
     @abstractmethod
     def forces(self, state: State, contacts: ContactBlock) -> GroupForces:
@@ -99,40 +99,8 @@ class ElementGroup(ABC):
         """Tangent where the forces are known; the tangents of the contacts are entered in their block."""
 
     @abstractmethod
-    def traction(self, k: int, state: State, forces: Any) -> Traction:
-        """Force and place of closed pair k, which has friction."""
-
-    @abstractmethod
-    def slip_rate(self, k: int, state: State, tangent: Any, dofs: Array, contacts: Array) -> float:
-        """Slip rate of closed pair k at rates of all degrees of freedom and of the contacts' unknowns."""
-
-    @abstractmethod
     def energy(self, state: State) -> float:
         """Strain energy of elements and contacts in equilibrium."""
-
-    def with_change(self, _before: State, after: State, _tangent: Any, _change: Change) -> State:
-        """State `after` a change, with the unknowns inside changed too."""
-        return after
-
-    def alike(self, history: list[State]) -> list[State]:
-        """The latest states that can be extrapolated together."""
-        return history
-
-    def turned(self, _one: State, _other: State, _like: State) -> Array:
-        """Rotations inside the elements from one state to another, at the Gauss nodes of a third; nan where the elements are cut otherwise."""
-        return np.zeros(0)
-
-    def turning(self, _state: State, _tangent: Any, _dofs: Array, _contacts: Array) -> Array:
-        """Rates of the rotations inside the elements at rates of all degrees of freedom and of the contacts' unknowns."""
-        return np.zeros(0)
-
-    def refined(self, _state: State, _forces: Any, _tolerance: float) -> State | None:
-        """State with a finer integration inside the elements, None if the integration of `state` is fine enough."""
-        return None
-
-    def inaccurate(self, _forces: Any, _tolerance: float) -> bool:
-        """Whether the finest integration inside the elements does not suffice."""
-        return False
 
     @abstractmethod
     def project(self, pair: PairModel, state: State) -> Projection:

@@ -3,39 +3,34 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 
 from tsm.elements import beam as beam_element
 from tsm.elements.axis import deflected_axes
-from tsm.elements.contact_law import Here, Vector
+from tsm.elements.contact_law import Vector
 from tsm.elements.curve import Curve
-from tsm.elements.mixed_contact import REDUCE
 from tsm.elements.properties import Array, Properties
-from tsm.elements.varied import plain
 from tsm.model.contact_block import ContactBlock
-from tsm.model.groups.base import ElementGroup
-from tsm.model.groups.shape import Stations
+from tsm.model.groups.base import ElementGroup, GroupForces, GroupTangent, Stations
+from tsm.model.mesh import BeamModel
+from tsm.model.pairs import PairModel
 from tsm.model.projection import AT_NODE, Projection, nearest_chord
-from tsm.model.state import State, Touch, Traction
-
-if TYPE_CHECKING:
-    from tsm.model.pairs import BeamModel, PairModel
+from tsm.model.state import State, Touch
 
 _POINTS = 10
 """Intervals in which an element is drawn."""
 
 
-class ClosedFormForces(NamedTuple):
+@dataclass(kw_only=True)
+class ClosedFormForces(GroupForces):
     """Forces and tangents of elements in closed form, their contacts included."""
 
-    nodal: Array  # nodal forces; shape (6, e)
-    tangent: Array  # their derivatives, row by row; shape (36, e)
-    ends: Array  # the same as `nodal`: forces and moments at both ends
-    condensed_residual: Array  # condensed_residual, by_load: zero
-    by_load: Array
-    inside: float = 0.0  # residual inside the elements
+    tangent: Array  # derivatives of the forces, row by row; shape (36, e)
 
 
 class ClosedFormGroup(ElementGroup):
@@ -53,96 +48,56 @@ class ClosedFormGroup(ElementGroup):
                 contacts.leave_open(pair)
                 continue
             place = self.model.place[touch.element]
-            gradient, block = self.contact(k, pair, touch, state)
+            gradient, block = pair.law.response(*self._contact(pair, touch, state))
             if pair.slot < 0:
                 force[:, place] = tangent[:, place] = 0.0
             force[:, place] += gradient[:6]
             tangent[:, place] += block[:6, :6].ravel()
             contacts.close(k, pair, touch, gradient, block)
-        return ClosedFormForces(force, tangent, force, self.none, self.none)
+        return ClosedFormForces(nodal=force, tangent=tangent)
 
-    def tangent(self, _state: State, forces: ClosedFormForces, _contacts: ContactBlock) -> ClosedFormForces:
+    def tangent(self, _state: State, forces: ClosedFormForces, _contacts: ContactBlock) -> GroupTangent:
         """Tangent, which is known with the forces."""
-        return forces
-
-    def traction(self, k: int, state: State, _forces: ClosedFormForces) -> Traction:
-        """Force and place of a contact with friction."""
-        loaded, tilted = self._loaded(k, state)
-        pair, here = self.model.pairs[k], Here(*(plain(value) for value in loaded.here))
-        place = pair.traction(plain(loaded.force), here).place
-        return pair.traction(plain(loaded.force), here._replace(tangent=tilted))._replace(place=place)
-
-    def slip_rate(
-        self, k: int, state: State, _tangent: ClosedFormForces, dofs: Array, contacts: Array
-    ) -> float:
-        """Slip rate of a contact."""
-        pair, touch, (loaded, tilted) = self.model.pairs[k], state.touches[k], self._loaded(k, state)
-        assert touch is not None, "a contact with friction is closed"
-        angles = pair.lever * loaded.here.shear + pair.roll * loaded.here.direction
-        form = pair.friction.slip(angles, self.model.element[touch.element].l0)
-        form[6] += np.hypot(*tilted) + pair.lever * plain(loaded.here.turn)
-        own = np.concatenate([dofs[self.model.dofs[:, touch.element]], [0.0, 0.0], contacts[pair.slots]])
-        return float(form @ REDUCE @ own)
-
-    def _loaded(self, k: int, state: State) -> tuple[Any, Any]:
-        """Element under a contact with friction, and the mean tangent there, turned by the other contacts on the element."""
-        pair, touch = self.model.pairs[k], state.touches[k]
-        assert touch is not None, "a contact with friction is closed"
-        e, p = touch.element, self.model.element[touch.element]
-        x, start = tuple(state.q[self.model.dofs[:, e]].tolist()), pair.target.arcs[e - pair.target.first]
-        loaded = pair.friction.load(p, x, touch.xi, touch.force, pair.lever, start)
-        tilted = plain(loaded.here.tangent)
-        for n, other in enumerate(state.touches):
-            if other is not None and n != k and other.element == e:
-                tilted = tilted + pair.cross(p, touch.xi, other.xi)[1] / p.l0 * np.array(other.force)
-        return loaded, tilted
+        none = np.zeros(self.dofs.shape)
+        return GroupTangent(tangent=forces.tangent, condensed_residual=none, by_load=none)
 
     def energy(self, state: State) -> float:
         """Strain energy of elements and contacts in equilibrium."""
         total = float(beam_element.energy(self.model.coefficients, state.q[self.dofs]).sum())
         for k, pair in self.pairs:
             touch = state.touches[k]
-            if touch is None:
-                continue
-            p, x, lever = self._lever(pair, touch.element, state)
-            if touch.grip is not None:
-                total += float(plain(self._loaded(k, state)[0].energy))
-            else:
-                total += pair.law.energy(p, x, lever, touch.xi, touch.force, pair.side, pair.pair.offset)
-            for other in state.touches[:k]:
-                if pair.law.cross and other is not None and other.element == touch.element:
-                    dot = touch.force[0] * other.force[0] + touch.force[1] * other.force[1]
-                    # the Lagrangian of each contact without friction holds it once, in equilibrium
-                    times = 1 - (touch.grip is None) - (other.grip is None)
-                    total += times * pair.cross(p, touch.xi, other.xi)[0] * dot
+            if touch is not None:
+                total += pair.law.energy(*self._contact(pair, touch, state))
+                dent = self._dent(pair, state.touches[:k], touch.element, touch.xi)
+                total += float(dent @ touch.force)
         return total
 
-    def contact(self, k: int, pair: PairModel, touch: Touch, state: State) -> tuple[Array, Array]:
-        """Gradient and tangent of a closed contact, see `ContactLaw.response`."""
-        p, x, lever = self._lever(pair, touch.element, state)
-        if touch.grip is None:
-            return pair.law.response(p, x, lever, touch.xi, touch.force, pair.side, pair.pair.offset)
-        loaded, _ = self._loaded(k, state)
-        rows = pair.rows(touch.grip, loaded.force, loaded.here, self.model.stick_stiffness)
-        return pair.friction.response(loaded, lever, rows, p.l0)
+    def _contact(self, pair: PairModel, touch: Touch, state: State) -> tuple[Any, ...]:
+        """Arguments of the functions of a closed contact, see `ContactLaw`."""
+        p, x, (start_x, start_y) = self._at(touch.element, state)
+        cx, cy = self.model.node_position(pair, state.q, state.load_parameter)
+        return p, x, (start_x - cx, start_y - cy), touch.xi, touch.force, pair.side, pair.pair.offset
 
-    def _lever(
-        self, pair: PairModel, element: int, state: State
-    ) -> tuple[Properties, list[float], tuple[float, float]]:
-        """Constants and displacements of an element, and the vector from the pair's node to its end i."""
-        model = self.model
-        cx, cy = model.node_position(pair, state.q, state.load_parameter)
-        x = state.q[model.dofs[:, element]].tolist()
-        start_x, start_y = model.element_start[element]
-        return model.element[element], x, (start_x + x[0] - cx, start_y + x[1] - cy)
+    def _at(self, element: int, state: State) -> tuple[Properties, list[float], tuple[float, float]]:
+        """Constants and displacements of an element, and the position of its end i."""
+        x = state.q[self.model.dofs[:, element]].tolist()
+        start_x, start_y = self.model.element_start[element]
+        return self.model.element[element], x, (start_x + x[0], start_y + x[1])
+
+    def _dent(self, pair: PairModel, touches: Sequence[Touch | None], element: int, xi: float) -> Array:
+        """Deflection (2,) of an element at xi by the forces of contacts on it."""
+        cross, total = pair.law.cross, np.zeros(2)
+        for touch in touches:
+            if cross and touch is not None and touch.element == element:
+                total += cross(self.model.element[element], xi, touch.xi)[0] * np.array(touch.force)
+        return total
 
     def point(self, element: int, arc: float, state: State) -> tuple[Vector, Vector, Vector]:
         """Point of the curve, its tangent, and the tangent's derivative."""
-        model, p = self.model, self.model.element[element]
-        x = state.q[model.dofs[:, element]].tolist()
-        curve, xi, (start_x, start_y) = Curve(p, x), arc / p.l0, model.element_start[element]
+        p, x, (start_x, start_y) = self._at(element, state)
+        curve, xi = Curve(p, x), arc / p.l0
         (w, dw, ddw), dx, dy = curve.deflection(xi), curve.dx, curve.dy
-        position = start_x + x[0] + xi * dx - w * dy, start_y + x[1] + xi * dy + w * dx
+        position = start_x + xi * dx - w * dy, start_y + xi * dy + w * dx
         tangent, bend = ((dx - dw * dy) / p.l0, (dy + dw * dx) / p.l0), ddw / p.l0**2
         return position, tangent, (-bend * dy, bend * dx)
 
@@ -151,14 +106,7 @@ class ClosedFormGroup(ElementGroup):
         target, model = pair.target, self.model
         node = model.node_position(pair, state.q, state.load_parameter)
         owner, xi = nearest_chord(model.positions(target, state.q), node)
-
-        def dent(element: int, xi: float) -> Array:
-            total = np.zeros(2)
-            for touch in state.touches:
-                if pair.law.cross and touch is not None and touch.element == element:
-                    total += pair.cross(model.element[element], xi, touch.xi)[0] * np.array(touch.force)
-            return total
-
+        dent = partial(self._dent, pair, state.touches)
         return self.closest(pair, state, owner, xi * target.lengths[owner], dent)
 
     def direction(self, touch: Touch, q: Array) -> tuple[float, float]:
@@ -172,18 +120,14 @@ class ClosedFormGroup(ElementGroup):
         self, k: int, touch: Touch, state: State, forces: ClosedFormForces, push: tuple[float, float]
     ) -> float:
         """Curvature from the moment and stretch that the forces at end i and the lever of the contact give."""
-        model, pair, p = self.model, self.model.pairs[k], self.model.element[touch.element]
-        x = state.q[model.dofs[:, touch.element]].tolist()
+        model, pair, (p, x, start) = self.model, self.model.pairs[k], self._at(touch.element, state)
         fx, fy, moment = forces.nodal[:3, model.place[touch.element]].tolist()
         dx, dy = p.dx0 + x[3] - x[0], p.dy0 + x[4] - x[1]
-        chord = math.hypot(dx, dy)
-        size = math.hypot(*push)
+        chord, size = math.hypot(dx, dy), math.hypot(*push)
         normal = -pair.side * dy / chord, pair.side * dx / chord
         away = (push[0] / size, push[1] / size) if size > 0 else normal
-        cx, cy = model.node_position(pair, state.q, state.load_parameter)
-        start_x, start_y = model.element_start[touch.element]
-        rx = cx + pair.pair.offset * away[0] - start_x - x[0]
-        ry = cy + pair.pair.offset * away[1] - start_y - x[1]
+        node = model.node_position(pair, state.q, state.load_parameter)
+        rx, ry = (c + pair.pair.offset * n - s for c, n, s in zip(node, away, start, strict=True))
         stretch = -(fx * dx + fy * dy) / (chord * p.EA)
         return float((-moment + rx * fy - ry * fx) / p.EI / (1 + stretch))
 

@@ -8,22 +8,21 @@ which is the tangent vector under the force ``n - F/2``, and the mean turn, whic
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tsm.elements import rod
-from tsm.elements.contact_law import Here
 from tsm.elements.properties import Array, cosine, sine
 from tsm.elements.rod import Course
 from tsm.elements.varied import derivatives, varied
 from tsm.model.contact_block import ContactBlock
+from tsm.model.groups.base import ElementGroup
 from tsm.model.groups.layout import CUT, OWN, chain
-from tsm.model.pairs import PairModel
+from tsm.model.pairs import Here, PairModel
 from tsm.model.state import Touch
-
-if TYPE_CHECKING:
-    from tsm.model.groups.rods import Rods
 
 _NODAL = [0, 1, 2, 6, 7, 8]
 """Unknowns of an element that are its nodes'."""
@@ -42,7 +41,8 @@ class Section(NamedTuple):
     course: Course | None  # of shape (1, 1)
 
 
-class Cut(NamedTuple):
+@dataclass(eq=False)
+class Cut:
     """A contact at the end of a segment."""
 
     s: int  # number of the segment
@@ -53,25 +53,25 @@ class Cut(NamedTuple):
     at: tuple[Any, ...]
     here: Here
     couple: Any  # on the axis, by which the moment falls
+    unit: float  # unit of the row of a stick
 
-    def derivatives(self, unit: float, selectors: Array) -> Array:
-        """Derivatives (5, n) of the point of the surface (2), the last row, the couple and the angles of `slip`.
+    @cached_property
+    def derivatives(self) -> Array:
+        """Derivatives (5, 8) of the point of the surface (2), the last row, the couple and the angles of `slip` by what is `at` the contact.
 
-        ``unit``: unit of the row of a stick. ``selectors`` (8, n): derivatives of what is `at` the contact.
         The last two are without friction left out.
         """
         if not self.pair.pair.offset and not self.pair.rubs and self.section.course is None:
-            return np.array([_NONE, _NONE, self._by_hand()]) @ selectors
+            return np.array([_NONE, _NONE, self._by_hand()])
         moved = varied(self.at)
         pair, here, couple = self.pair, *seen(self.pair, self.section, moved, self.at)
-        rows = [*pair.rows(self.touch.grip, moved[3:5], here, unit)]
+        rows = [*pair.rows(self.touch.grip, moved[3:5], here, self.unit)]
         if self.touch.grip is not None:
             rows += [couple, pair.lever * here.shear + pair.roll * here.direction]
-        stacked = np.zeros((len(rows), len(selectors) + 1), dtype=complex)
+        stacked = np.zeros((len(rows), len(self.at) + 1), dtype=complex)
         for row, values in zip(stacked, rows, strict=True):
             row[:] = values
-        by: Array = derivatives(stacked) @ selectors
-        return by
+        return derivatives(stacked)
 
     def _by_hand(self) -> list[float]:
         """Derivatives of ``F . T`` by what is `at` a sharp pin on a uniform rod, for speed."""
@@ -102,7 +102,7 @@ def seen(pair: PairModel, section: Section, at: Any, held: tuple[Any, ...]) -> t
     if course is not None:
         on, later = arc - held[5], load - held[7]
         stretch, shear, bend = (
-            value + slope[0, 0] * on for value, slope in zip(section[:3], course.slope, strict=True)
+            value + slope * on for value, slope in zip(section[:3], course.slope[:, 0, 0], strict=True)
         )
         nx, ny = (
             n - (P + q * on + rate * later)
@@ -117,7 +117,7 @@ def seen(pair: PairModel, section: Section, at: Any, held: tuple[Any, ...]) -> t
     return Here(arc, T, slant, angle + slant, turn + bend * (moment - couple / 2)), couple
 
 
-def cut_element(element: int, cuts: dict[int, Cut], transfer: Array, unit: float) -> CutElement:
+def cut_element(element: int, cuts: dict[int, Cut], transfer: Array) -> CutElement:
     """Tangent of an element from its contacts by pair, and from the transfer (k + 1, 4, 7 or 9) of its segments."""
     count = len(cuts)
     inputs, tangent, selectors = (part.copy() for part in chain(count))
@@ -128,7 +128,7 @@ def cut_element(element: int, cuts: dict[int, Cut], transfer: Array, unit: float
         out = transfer[n] @ inputs[n]
         moved += out[2:]
         inputs[n + 1, 1] = selectors[n, 6] = out[1]
-        by = cut.derivatives(unit, selectors[n])
+        by = cut.derivatives @ selectors[n]
         tangent[row : row + 2], tangent[row + 2], tangent[row + 3] = moved + by[:2], by[2], out[0]
         if cut.touch.grip is not None:
             inputs[n + 1, 1] -= by[3]
@@ -141,7 +141,7 @@ def cut_element(element: int, cuts: dict[int, Cut], transfer: Array, unit: float
     return CutElement(element, tuple(cuts), slots, tangent, inputs, slip)
 
 
-def enter(part: CutElement, group: Rods, contacts: ContactBlock) -> None:
+def enter(part: CutElement, group: ElementGroup, contacts: ContactBlock) -> None:
     """Enter the tangent of the contacts that cut an element."""
     model, dofs, tangent = group.model, group.dofs[:, part.element], part.tangent
     eq = model.equation[dofs]

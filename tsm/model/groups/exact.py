@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,15 +11,14 @@ from tsm.elements import rod
 from tsm.elements.contact_law import Vector
 from tsm.elements.properties import Array
 from tsm.elements.varied import STEP
-from tsm.model.groups.base import Change
+from tsm.model.groups.base import Change, Stations
 from tsm.model.groups.layout import layout
-from tsm.model.groups.rods import RodBalance, Rods, RodTangent
-from tsm.model.groups.shape import Stations, deflected, pieces, profile_of, resampled, truncation
+from tsm.model.groups.rods import RodBalance, Rods
+from tsm.model.groups.shape import deflected, pieces, resampled, truncation
+from tsm.model.mesh import BeamModel
+from tsm.model.pairs import PairModel
 from tsm.model.projection import Projection
-from tsm.model.state import Profile, State, Touch
-
-if TYPE_CHECKING:
-    from tsm.model.pairs import BeamModel, PairModel
+from tsm.model.state import Profile, State, Touch, profile_of
 
 MOST_NODES = 256
 """Largest number of Gauss nodes of a segment."""
@@ -40,11 +38,11 @@ _POINTS, _LINES = 100, 60
 class ExactGroup(Rods):
     """The exact elements of a model."""
 
-    def with_change(self, before: State, after: State, tangent: RodTangent, change: Change) -> State:
-        """State with its angles inside changed."""
-        profile = profile_of(before)
-        angle = profile.angle + change.factor * self.inside(tangent, before, change)
-        return replace(after, profile=Profile(cuts=profile.cuts, angle=angle))
+    def changed(self, state: State, tangent: Any, change: Change) -> Profile:
+        """Angles inside a state after a change."""
+        profile = profile_of(state)
+        angle = profile.angle + change.factor * self.inside(tangent, state, change)
+        return Profile(cuts=profile.cuts, angle=angle)
 
     def turned(self, one: State, other: State, like: State) -> Array:
         """Differences of the angles at the Gauss nodes."""
@@ -74,7 +72,7 @@ class ExactGroup(Rods):
             states.insert(0, resampled(self, state, order))
         return states
 
-    def refined(self, state: State, forces: RodBalance, tolerance: float) -> State | None:
+    def refined(self, state: State, forces: Any, tolerance: float) -> State | None:
         """State with more Gauss nodes, None where the error estimate of `truncation` is small enough, or their number is fixed."""
         if self.nodes is not None:
             return None
@@ -84,7 +82,7 @@ class ExactGroup(Rods):
         more = 2 * math.ceil(math.log(error / tolerance, _FALL)) if math.isfinite(error) else order
         return resampled(self, state, min(order + max(more, _AT_ONCE), 2 * order, MOST_NODES))
 
-    def inaccurate(self, forces: RodBalance, tolerance: float) -> bool:
+    def inaccurate(self, forces: Any, tolerance: float) -> bool:
         """Whether the most Gauss nodes do not suffice; with a fixed number, whether the mesh does not resolve the deflected axis."""
         if self.nodes is not None:
             return truncation(self, forces.entry) > _UNRESOLVED

@@ -9,33 +9,24 @@ eliminated (`tsm.elements.rod`) and kept in the state.
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tsm.elements import rod
 from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array
-from tsm.elements.rod import Arrival, Course, Field, Flexibility, Segments
+from tsm.elements.rod import Arrival, Course, Field, Segments
 from tsm.elements.varied import STEP
 from tsm.model.contact_block import ContactBlock
-from tsm.model.groups.base import Change, ElementGroup
+from tsm.model.groups.base import Change, ElementGroup, GroupForces, GroupTangent
 from tsm.model.groups.cut import Cut, CutElement, Section, cut_element, enter, seen
 from tsm.model.groups.layout import COLUMNS, FIXED, OWN, ROWS, Layout, layout
-from tsm.model.groups.shape import (
-    RodShape,
-    profile_of,
-    touch_of,
-)
+from tsm.model.numbering import Numbering
 from tsm.model.projection import Projection
-from tsm.model.state import Cuts, Profile, State, Traction
+from tsm.model.state import Profile, State, Traction, profile_of, touch_of
 
-if TYPE_CHECKING:
-    from tsm.model.model import Model
-
-_KEPT = 16
-"""Divisions into segments whose constants are kept."""
 _UNDEFORMED_ORDER = 24
 """Gauss nodes of an undeformed element."""
 
@@ -54,42 +45,21 @@ class Entry(NamedTuple):
     cuts: dict[int, Cut]  # the contacts, by pair; without friction, once forces are asked for
 
 
-class RodBalance(NamedTuple):
-    """Residual of the exact elements."""
+@dataclass(kw_only=True)
+class RodBalance(GroupForces):
+    """Residual of the exact elements: forces on node i, arrival at node j, forces on node j."""
 
     entry: Entry  # the segments
     arrival: Arrival  # their residuals
-    nodal: Array  # forces on node i, arrival at node j, forces on node j; shape (9, r)
-    inside: float  # largest residual inside [rad]
-
-    @property
-    def ends(self) -> Array:
-        """Forces and moments at both ends of the elements, shape (6, r)."""
-        ends: Array = self.nodal[[0, 1, 2, 6, 7, 8]]
-        return ends
 
 
-class RodTangent(NamedTuple):
+@dataclass(kw_only=True)
+class RodTangent(GroupTangent):
     """Tangent of the exact elements."""
 
-    # contribution of the inner residual to the residual after the inner unknowns are eliminated; shape (9, r)
-    condensed_residual: Array
-    tangent: Array  # derivative of the residual, row by row; shape (81, r)
-    by_load: Array  # derivative of the residual in the load parameter; shape (9, r)
     cut: tuple[CutElement, ...]  # elements with contacts, whose first nine rows and columns are above too
     inner: Array  # derivatives of the angles inside by the inputs of the segments; shape (s, p, i)
     transfer: Array  # derivatives of their outputs, see `rod.Condensed`; shape (s, 4, i)
-
-
-class _Owned(NamedTuple):
-    """Constants of the elements, one for every segment."""
-
-    place: Layout  # the segments
-    dofs: Array  # degrees of freedom of the elements; shape (9, s)
-    angles: Array  # angles of the undeformed elements at both ends; shape (2, s)
-    length: Array  # their length; shape (s,)
-    flexibility: Flexibility
-    curvature: Array  # shape (s, 1)
 
 
 class Rods(ElementGroup):
@@ -98,17 +68,20 @@ class Rods(ElementGroup):
     internal = True
     past_node = 0.0
 
-    def __init__(self, model: Model, number: int, elements: Array, dofs: Array) -> None:
-        super().__init__(model, number, elements, dofs)
+    def __init__(self, model: Numbering, number: int, elements: Array) -> None:
+        super().__init__(model, number, elements)
+        inside = 3 * model.block[elements] + np.arange(3)[:, None]
+        self.dofs = np.concatenate([self.dofs[:3], inside, self.dofs[3:]])
         along = model.along
         self.varies, self.nodes = bool(along.varies[elements].any()), model.gauss_nodes
         self.near, self.far = model.coordinates[model.element_nodes[elements].T].transpose(0, 2, 1)
-        self.angles, self.length = np.stack([along.start, along.end])[:, elements], along.length[elements]
-        self.natural = along.curvature[elements]
-        unloaded = np.zeros((2, 2, 0, len(elements)))
-        self.flexibility = along.course(elements, 0 * self.length[:, None], *unloaded).flexibility
-        self._constants: dict[Cuts, _Owned] = {}
-        self.memo: tuple[State, RodShape, dict[int, Projection]] | None = None
+        course = along.course(elements, np.zeros((len(elements), 1)), *np.zeros((2, 2, 0, len(elements))))
+        own = (along.start, along.end, along.length, along.curvature)
+        self.constants = np.array([*(value[elements] for value in own), *course.flexibility[:, :, 0]])
+        self.angles, self.length, self.natural = self.constants[:2], self.constants[2], self.constants[3]
+        self.memo: tuple[State, Any, dict[int, Projection]] | None = (
+            None  # the shape of a state, and points found on it
+        )
 
     def course(self, owner: Array, arc: Array, load_parameter: Any) -> Course:
         """What varies at arc positions (s, p) within elements (s,), counted over the exact ones."""
@@ -126,29 +99,18 @@ class Rods(ElementGroup):
         """Section of an element at an arc position within it."""
         place = np.array([element]), np.array([[arc]])
         course = self.course(*place, load_parameter) if self.varies else None
-        own = course.flexibility if course else (value[element] for value in self.flexibility)
-        stretch, shear, bend = (value.item() for value in own)
+        flexibility = course.flexibility[:, 0, 0] if course else self.constants[4:, element]
+        stretch, shear, bend = flexibility.tolist()
         return Section(stretch, shear, bend, float(self.natural[element]), course)
-
-    def _owned(self, cuts: Cuts) -> _Owned:
-        if cuts not in self._constants:
-            if len(self._constants) == _KEPT:
-                self._constants.clear()
-            place = layout(len(self.length), cuts)
-            own = place.owner
-            self._constants[cuts] = _Owned(
-                place, self.dofs[:, own], self.angles[:, own], self.length[own],
-                Flexibility(*(value[own] for value in self.flexibility)), self.natural[own, None],
-            )  # fmt: skip
-        return self._constants[cuts]
 
     def enter(self, state: State) -> Entry:
         """Cut the elements at their contacts and evaluate the rod's equations inside."""
         profile = profile_of(state)
-        place, dofs, (angle0, angle1), length, flexibility, curvature = self._owned(profile.cuts)
-        q = state.q[dofs]
-        length, begin = length.astype(q.dtype), np.zeros(len(length), q.dtype)
-        force, start, end, moment = q[3:5, :, None], q[2] + angle0, q[8] + angle1, q[5]
+        place = layout(len(self.length), profile.cuts)
+        own = place.owner
+        q, constants = state.q[self.dofs[:, own]], self.constants[:, own]
+        length, begin = constants[2].astype(q.dtype), np.zeros(len(own), q.dtype)
+        force, start, end, moment = q[3:5, :, None], q[2] + constants[0], q[8] + constants[1], q[5]
         for element, pairs in profile.cuts:
             s = int(place.first[element])
             for k in pairs:
@@ -160,19 +122,19 @@ class Rods(ElementGroup):
                 force[0, s, 0] = force[0, s - 1, 0] - touch.force[0]
                 force[1, s, 0] = force[1, s - 1, 0] - touch.force[1]
             length[s] = self.length[element] - begin[s]
-        whole = (
-            flexibility,
-            force,
-            length[:, None],
-            profile.angle,
-            force,
-            place.owner,
-            begin[:, None],
-            curvature,
+        segments = Segments(
+            flexibility=constants[4:, :, None],
+            force=force,
+            length=length[:, None],
+            angle=profile.angle,
+            constant=force,
+            owner=own,
+            begin=begin[:, None],
+            curvature=constants[3, :, None],
         )
-        segments = self.placed(Segments(*whole), state.load_parameter)
+        segments = self.placed(segments, state.load_parameter)
         field = rod.field(segments)
-        gain, *vector = field.sums[:, :, 0] * length
+        gain, *vector = field.sums * length
         cuts: dict[int, Cut] = {}
         for element, pairs in profile.cuts:
             for s, k in enumerate(pairs, int(place.first[element])):
@@ -187,7 +149,7 @@ class Rods(ElementGroup):
         """Segments with what varies along them, from those with the constant part of their forces."""
         if not self.varies:
             return segments
-        nodes = collocation(segments.angle.shape[1]).c
+        nodes = segments.table.c
         course = self.course(segments.owner, segments.begin + segments.length * nodes, load_parameter)
         return segments._replace(
             flexibility=course.flexibility, force=segments.constant - course.resultant, course=course
@@ -201,7 +163,7 @@ class Rods(ElementGroup):
         at = (
             touch.angle, *segments.constant[:, s, 0].tolist(), *touch.force, pair.arc_position(touch), moment, t
         )  # fmt: skip
-        return Cut(s, pair, touch, section, at, *seen(pair, section, at, at))
+        return Cut(s, pair, touch, section, at, *seen(pair, section, at, at), self.model.stick_stiffness)
 
     def forces(self, state: State, contacts: ContactBlock) -> RodBalance:
         """Residual of the elements and of the contacts that cut them."""
@@ -229,19 +191,18 @@ class Rods(ElementGroup):
                 dx, dy = entry.vector[:, cut.s].tolist()
                 x, y = x + dx, y + dy
                 cx, cy = self.model.node_position(cut.pair, state.q, state.load_parameter)
-                px, py, row = cut.pair.rows(
-                    cut.touch.grip, cut.touch.force, cut.here, self.model.stick_stiffness
-                )
+                px, py, row = cut.pair.rows(cut.touch.grip, cut.touch.force, cut.here, cut.unit)
                 contacts.enter(
                     k, cut.pair, cut.touch.force, (x - cx + px, y - cy + py, row, arrival.end_residual[cut.s])
                 )
                 residual[3:5, element] += entry.vector[:, cut.s + 1]
-        return RodBalance(entry, arrival, residual, float(np.abs(arrival.inside).max()))
+        inside = float(np.abs(arrival.inside).max())
+        return RodBalance(nodal=residual, inside=inside, entry=entry, arrival=arrival)
 
     def tangent(self, state: State, forces: RodBalance, contacts: ContactBlock) -> RodTangent:
         """Tangent of the elements and of the contacts that cut them."""
         entry = forces.entry
-        condensed = rod.condense(entry.segments, entry.field, forces.arrival, entry.moment)
+        condensed = rod.condense(entry.segments, entry.field, forces.arrival)
         first = entry.place.first
         tangent = np.empty((len(first), OWN, OWN), dtype=state.q.dtype)
         tangent[:] = FIXED
@@ -251,17 +212,19 @@ class Rods(ElementGroup):
         condensed_residual[ROWS] = transfer[:, :, 6].T
         if self.varies:
             by_load[ROWS] = transfer[:, :, rod.LOAD].T
-        cut, unit = [], self.model.stick_stiffness
+        cut = []
         for e, pairs in profile_of(state).cuts:
-            part = cut_element(e, {k: entry.cuts[k] for k in pairs}, condensed.transfer[first[e] :], unit)
+            part = cut_element(e, {k: entry.cuts[k] for k in pairs}, condensed.transfer[first[e] :])
             own = part.tangent[:OWN]
             tangent[e], by_load[:, e], condensed_residual[:, e] = own[:, :OWN], own[:, -2], own[:, -1]
             enter(part, self, contacts)
             cut.append(part)
         if self.varies:
             by_load[6:8] = -self._resultant(state, rate=True)
-        flat = tangent.reshape(len(first), -1).T
-        return RodTangent(condensed_residual, flat, by_load, tuple(cut), condensed.inner, condensed.transfer)
+        return RodTangent(
+            tangent=tangent.reshape(len(first), -1).T, condensed_residual=condensed_residual, by_load=by_load,
+            cut=tuple(cut), inner=condensed.inner, transfer=condensed.transfer,
+        )  # fmt: skip
 
     def inside(self, tangent: RodTangent, state: State, change: Change) -> Array:
         """Change (s, p) of the inner angles with all other unknowns; `residual` is 1 to remove the residual inside."""
@@ -276,16 +239,16 @@ class Rods(ElementGroup):
         inside: Array = (tangent.inner @ inputs[:, :, None])[:, :, 0]
         return inside
 
-    def turning(self, state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> Array:
+    def turning(self, state: State, tangent: Any, dofs: Array, contacts: Array) -> Array:
         """Rates of the angles at the Gauss nodes."""
         return self.inside(tangent, state, Change(dofs, contacts, 0.0, 1.0, 1.0)).ravel()
 
-    def traction(self, k: int, _state: State, forces: RodBalance) -> Traction:
+    def traction(self, k: int, forces: Any) -> Traction:
         """Force and place of a contact with friction."""
-        cut = forces.entry.cuts[k]
+        cut: Cut = forces.entry.cuts[k]
         return cut.pair.traction(cut.touch.force, cut.here)
 
-    def slip_rate(self, k: int, _state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> float:
+    def slip_rate(self, k: int, tangent: Any, dofs: Array, contacts: Array) -> float:
         """Slip rate of a contact."""
         part = next(part for part in tangent.cut if k in part.pairs)
         own = (dofs[self.dofs[:, part.element]], contacts[part.slots], [1.0, 0.0])
@@ -297,7 +260,7 @@ class Rods(ElementGroup):
         segments, field, (stretch, shear, bend) = entry.segments, entry.field, entry.segments.flexibility
         moment = rod.moments(segments, field, entry.moment)
         density = bend * moment**2 + stretch * field.N**2 + shear * field.q**2
-        return float((segments.length * density @ collocation(segments.angle.shape[1]).w).sum()) / 2
+        return float((segments.length * density @ segments.table.w).sum()) / 2
 
     def _resultant(self, state: State, *, rate: bool = False) -> Array:
         """Resultants (2, r) of the loads along the elements, or their derivatives in the load parameter."""
@@ -309,9 +272,9 @@ class Rods(ElementGroup):
         """Work of the loads of a state on the displacements to it: ``[P . u] - int P . (r' - r_0') ds`` with ``P' = q``."""
         entry, own, t = self.enter(state), np.arange(len(self.length)), state.load_parameter.real
         segments, table = entry.segments, collocation(_UNDEFORMED_ORDER)
-        arc = segments.begin + segments.length * collocation(segments.angle.shape[1]).c
+        arc = segments.begin + segments.length * segments.table.c
         density = (self.course(segments.owner, arc, t).resultant * entry.field.values[1:]).sum(axis=0)
-        along = (density @ collocation(segments.angle.shape[1]).w) @ segments.length[:, 0]
+        along = (density @ segments.table.w) @ segments.length[:, 0]
         arc = self.length[:, None] * table.c
         angle = self.undeformed_angle(own[:, None], arc)
         straight = (self.course(own, arc, t).resultant * np.stack([np.cos(angle), np.sin(angle)])).sum(axis=0)

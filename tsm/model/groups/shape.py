@@ -9,37 +9,23 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tsm.elements import rod
 from tsm.elements.collocation import collocation, interpolation
 from tsm.elements.properties import Array
-from tsm.model.groups.layout import layout
+from tsm.model.groups.base import Stations
+from tsm.model.groups.layout import Layout, layout
+from tsm.model.groups.rods import Entry, Rods
 from tsm.model.projection import Projection
-from tsm.model.state import Cuts, Profile, State, Touch
-
-if TYPE_CHECKING:
-    from tsm.model.groups.rods import Entry, Rods
+from tsm.model.state import Cuts, Profile, State, profile_of, touch_of
 
 START_ORDER = 14
 """Gauss nodes of an undeformed element whose accuracy decides on their number."""
 _SMOOTH = 1e-13
 """Error of an inner polynomial that counts as round-off."""
-
-
-def profile_of(state: State) -> Profile:
-    """Angles inside the exact elements of a model that has some."""
-    assert state.profile is not None, "a model with exact elements has their profile"
-    return state.profile
-
-
-def touch_of(state: State, k: int) -> Touch:
-    """Closed contact of pair k."""
-    touch = state.touches[k]
-    assert touch is not None, "a cut is a closed contact"
-    return touch
 
 
 class Station(NamedTuple):
@@ -51,20 +37,10 @@ class Station(NamedTuple):
     force: Array  # internal force; shape (m, 2)
 
 
-class Stations(NamedTuple):
-    """Short lines along a beam. Neighbours share no point: section forces may jump between them."""
-
-    arc: Array  # distance along the undeformed axis; shape (c, 2)
-    position: Array  # deformed position; shape (c, 2, 2)
-    rotation: Array  # rotation from the undeformed state; shape (c, 2)
-    forces: Array  # axial force, shear force and moment; shape (c, 2, 3)
-
-
 class RodShape(NamedTuple):
     """Polynomials of angle, moment and position in every segment."""
 
-    first: Array  # first, last: first and last segment of every element; shape (r,)
-    last: Array
+    place: Layout  # elements of the segments
     arc: Array  # arc position of the start of every segment within the element; shape (s,)
     length: Array  # undeformed length of every segment; shape (s,)
     force: Array  # internal force at the start of every segment; shape (2, s)
@@ -74,29 +50,18 @@ class RodShape(NamedTuple):
 
     def at(self, element: int, arc: Array) -> Station:
         """Stations of an element, counted over the exact ones, at arc positions (m,) within it."""
-        first, last = int(self.first[element]), int(self.last[element])
-        within = np.searchsorted(self.arc[first + 1 : last + 1], arc, side="right")
-        if (within == within[0]).all():
-            segment = first + int(within[0])
-            length = self.length[segment]
-            sigma = (arc - self.arc[segment]) / length if length else np.zeros(len(arc))
-            return self.within(segment, sigma)
-        numbers = sorted(set(within.tolist()))  # `np.unique` imports numpy.ma
-        parts = [self.at(element, arc[within == n]) for n in numbers]
-        stations = Station(*(np.empty((len(arc), *value.shape[1:])) for value in parts[0]))
-        for n, part in zip(numbers, parts, strict=True):
-            for whole, value in zip(stations, part, strict=True):
-                whole[within == n] = value
-        return stations
+        first, last = int(self.place.first[element]), int(self.place.last[element])
+        segment = first + np.searchsorted(self.arc[first + 1 : last + 1], arc, side="right")
+        length = self.length[segment]
+        return self.within(segment, (arc - self.arc[segment]) / np.where(length, length, 1.0))
 
-    def within(self, segment: int, sigma: Array) -> Station:
-        """Stations at parts sigma (m,) of a segment."""
-        x, y, angle, moment, *varying = (
-            self.values[:, segment] @ interpolation(self.values.shape[2] - 1, sigma).T
-        )
-        force = np.empty((len(sigma), 2))
-        force[:] = np.array(varying).T if varying else self.force[:, segment]
-        return Station(np.array([x, y]).T, angle, moment, force)
+    def within(self, segment: Any, sigma: Array) -> Station:
+        """Stations at parts sigma (m,) of segments (m,), or of one segment."""
+        segment = np.atleast_1d(segment)
+        weights = interpolation(self.values.shape[2] - 1, sigma)
+        x, y, angle, moment, *varying = (self.values[:, segment] * weights).sum(axis=-1)
+        force = np.array(varying) if varying else self.force[:, segment]
+        return Station(np.array([x, y]).T, angle, moment, np.broadcast_to(force.T, (len(sigma), 2)))
 
 
 def plain_shape(group: Rods, state: State, entry: Entry | None = None) -> RodShape:
@@ -114,23 +79,23 @@ def plain_shape(group: Rods, state: State, entry: Entry | None = None) -> RodSha
         force = force - group.course(segments.owner, segments.begin, state.load_parameter).resultant[:, :, 0]
         start, rates = np.concatenate([start, force]), np.concatenate([rates, -segments.course.load])
     arc, length = segments.begin[:, 0], segments.length[:, 0]
-    risen = start[:, :, None] + rates @ collocation(rates.shape[2]).once.T * length[:, None]
+    risen = start[:, :, None] + rates @ segments.table.once.T * length[:, None]
     values = np.concatenate([start[:, :, None], risen], axis=2)
-    return RodShape(place.first, place.last, arc, length, force, values)
+    return RodShape(place, arc, length, force, values)
 
 
 def turning(entry: Entry) -> Array:
     """Derivatives (s, p) of the angles at the Gauss nodes in the arc position."""
     segments = entry.segments
-    bent = segments.flexibility.bend * rod.moments(segments, entry.field, entry.moment)
-    turn: Array = bent + segments.curvature
+    moments = rod.moments(segments, entry.field, entry.moment)
+    turn: Array = segments.flexibility[2] * moments + segments.curvature
     return turn
 
 
 def pieces(group: Rods, shape: RodShape, element: int, count: int) -> Stations:
     """Lines along an element, `count` for every segment."""
     lines = []
-    for s in range(shape.first[element], shape.last[element] + 1):
+    for s in range(shape.place.first[element], shape.place.last[element] + 1):
         sigma = np.linspace(0, 1, count + 1)
         at = shape.within(s, sigma)
         c, sn = np.cos(at.angle), np.sin(at.angle)
@@ -217,10 +182,10 @@ def truncation(group: Rods, entry: Entry) -> float:
     """
     segments, values = entry.segments, entry.field.values
     order = values.shape[2]
-    last = collocation(order).legendre[-2:].T
+    last = segments.table.legendre[-2:].T
     tail = np.abs(values @ last).max(axis=2)
     length = np.abs(segments.length[:, 0])
-    turn = tail[0] * length**2 * segments.flexibility.bend.max(axis=1)
+    turn = tail[0] * length**2 * segments.flexibility[2].max(axis=1)
     if segments.course is not None:
         turn = np.maximum(turn, np.abs(turning(entry) @ last).max(axis=1) * length)
     largest = np.maximum(turn, tail[1:].max(axis=0) * length / group.model.length).max()
@@ -249,7 +214,7 @@ def _finer_inside(group: Rods, state: State) -> Entry:
         arrival = rod.arrival(entry.segments, entry.field, entry.start, entry.moment, entry.end)
         if np.abs(arrival.inside).max() < _SMOOTH:
             break
-        inner = rod.condense(entry.segments, entry.field, arrival, entry.moment).inner
+        inner = rod.condense(entry.segments, entry.field, arrival).inner
         profile = profile_of(finer)
         finer = replace(finer, profile=replace(profile, angle=profile.angle + inner[:, :, 6]))
         entry = group.enter(finer)

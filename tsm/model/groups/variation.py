@@ -20,14 +20,14 @@ from typing import NamedTuple
 import numpy as np
 
 from tsm.elements import rod
-from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array
 from tsm.elements.rod import Segments
+from tsm.elements.varied import STEP
 from tsm.model.groups.cut import Cut
-from tsm.model.groups.layout import COLUMNS, CUT, OWN
+from tsm.model.groups.layout import COLUMNS, CUT, OWN, chain
 from tsm.model.groups.rods import Entry, RodBalance, Rods
-from tsm.model.groups.shape import plain_shape, profile_of
-from tsm.model.state import State
+from tsm.model.groups.shape import plain_shape
+from tsm.model.state import State, profile_of
 
 _LONGEST = 7.0
 """Largest ``- f_phi h^2/EI`` of a segment that is not divided; its first mode lies at ``pi^2``."""
@@ -96,10 +96,10 @@ def modes_at_least(balance: RodBalance) -> int:
 
 def _square(segments: Segments) -> Array:
     """``h^2/EI``, by which a falling coefficient is multiplied; where EI varies it is ``(int ds/EI)^2 EI``, of shape (s, p)."""
-    length, bend = segments.length, segments.flexibility.bend
+    length, bend = segments.length, segments.flexibility[2]
     square: Array = length * length * bend
     if bend.shape[1] > 1:
-        square *= ((bend @ collocation(bend.shape[1]).w)[:, None] / bend) ** 2
+        square *= ((bend @ segments.table.w)[:, None] / bend) ** 2
     return square
 
 
@@ -148,10 +148,9 @@ def _pieces(group: Rods, state: State, balance: RodBalance, transfer: Array | No
         segments, start, moment, end = _divided(group, state, entry, counts)
         field, transfer, whole = rod.field(segments), None, np.repeat(whole, counts)
     if transfer is None:
-        arrival = rod.arrival(segments, field, start, moment, end)
-        transfer = rod.condense(segments, field, arrival, moment).transfer
+        transfer = rod.condense(segments, field, rod.arrival(segments, field, start, moment, end)).transfer
     length = segments.length[:, 0]
-    ends = np.concatenate([start, end, moment, moment + field.sums[0, :, :1] * segments.length], axis=1).T
+    ends = np.concatenate([start, end, moment, moment + field.sums[0][:, None] * segments.length], axis=1).T
     short = length < _SHORT * whole
     hessian = _hessians(group, segments, ends, transfer, state.load_parameter, eliminated=1)
     if short.any():
@@ -163,7 +162,7 @@ def _pieces(group: Rods, state: State, balance: RodBalance, transfer: Array | No
 def _divided(group: Rods, state: State, entry: Entry, count: Array) -> tuple[Segments, Array, Array, Array]:
     """Equal pieces of the segments, with their angles and moments at the ends."""
     whole, own = entry.segments, np.repeat(np.arange(len(count)), count)
-    shape, nodes = plain_shape(group, state, entry), collocation(whole.angle.shape[1]).c
+    shape, nodes = plain_shape(group, state, entry), whole.table.c
     inside, ends = [], []
     for s, parts in enumerate(count.tolist()):
         sigma = (np.arange(parts)[:, None] + nodes) / parts
@@ -173,7 +172,7 @@ def _divided(group: Rods, state: State, entry: Entry, count: Array) -> tuple[Seg
     length = whole.length[own] / count[own, None]
     part = np.arange(len(own)) - (np.cumsum(count) - count)[own]
     segments = Segments(
-        flexibility=rod.Flexibility(*(value[own] for value in whole.flexibility)),
+        flexibility=whole.flexibility[:, own],
         force=whole.constant[:, own],
         length=length,
         angle=np.concatenate(inside),
@@ -217,16 +216,17 @@ def _hessians(
         hessian[:, 0, 1] = hessian[:, 1, 0] = -1.0
     hessian[:, 5:, :5] = hessian[:, :5, 5:].transpose(0, 2, 1)
     if course is None:
-        hessian[:, 5, 5] = -ends[3] * segments.flexibility.bend[:, 0] * hessian[:, 2, 5]
+        hessian[:, 5, 5] = -ends[3] * segments.flexibility[2, :, 0] * hessian[:, 2, 5]
         return hessian
     arcs = np.concatenate([segments.begin, segments.begin + segments.length], axis=1)
     course = group.course(segments.owner, arcs, load_parameter)
-    (nx, ny), angles, moments = segments.constant - course.resultant, ends[:2].T, ends[2:].T
-    c, s = np.cos(angles), np.sin(angles)
-    N, Q, (stretch, shear, bend) = nx * c + ny * s, ny * c - nx * s, course.flexibility
-    along, across, (qx, qy), (e, u, b) = 1 + stretch * N, shear * Q, course.load, course.slope
-    own = (b * moments**2 + e * N**2 + u * Q**2) / 2
-    own -= qx * (along * c - across * s) + qy * (along * s + across * c)
+    angles, moments, force = ends[:2].T, ends[2:].T, segments.constant - course.resultant
+    stretch, shear, bend = course.flexibility
+    e, u, b = course.flexibility + 1j * STEP * course.slope
+    c, s, (nx, ny) = np.cos(angles), np.sin(angles), force - 1j * STEP * course.load
+    N, Q = nx * c + ny * s, ny * c - nx * s
+    own = (b * moments**2 / 2 + N + e * N**2 / 2 + u * Q**2 / 2).imag / STEP
+    N, Q = N.real, Q.real
     turn = bend * moments + segments.curvature
     change = Q[:, 0] * (1 + (stretch - shear) * N)[:, 0] if not eliminated else turn[:, 0]
     hessian[:, 5, 5] = -turn[:, 1] * hessian[:, 2, 5] - own[:, 1]
@@ -264,31 +264,22 @@ def _stations(counts: tuple[int, ...], short: tuple[bool, ...], width: int) -> t
     moment. The seventh is the arc position of the start; ``directions`` (contacts, 8, n), angle, force
     before, contact force, arc position, and zeros of every contact by the same.
     """
-    contacts, pieces = len(counts) - 1, sum(counts)
-    own_angle = OWN + CUT * contacts
-    own_moment = own_angle + pieces - len(counts)
-    rows = np.eye(own_moment + sum(short))
-    fixed, inputs = np.zeros_like(rows), np.zeros((pieces, width, len(rows)))
+    whole, _, selectors = (part[..., :-2] for part in chain(len(counts) - 1))
+    size, part = whole.shape[2], np.concatenate([np.arange(count) for count in counts])
+    inside = np.flatnonzero(part)
+    own = np.eye(size + len(inside) + sum(short))
+    fixed, inputs = np.zeros_like(own), np.zeros((len(part), width, len(own)))
+    directions = np.zeros((*selectors.shape[:2], len(own)))
+    directions[..., :size] = selectors
     fixed[:OWN, :OWN] = _PULL
-    directions = np.zeros((contacts, 8, len(rows)))
-    force, angle, arc, piece = rows[3:5].copy(), rows[2], np.zeros(len(rows)), 0
-    for segment, count in enumerate(counts):
-        own, ahead = OWN + CUT * segment, segment < contacts
-        ends = rows[own + 2] if ahead else np.zeros(len(rows))
-        for part in range(count):
-            arriving = rows[own_angle] if part < count - 1 else rows[own + 3] if ahead else rows[8]
-            own_angle += part < count - 1
-            inputs[piece, [0, 2, 3, 4, 5]] = [angle, arriving, *force, (ends - arc) / count]
-            inputs[piece, 6:] = arc + (ends - arc) * (part / count)
-            if short[piece]:
-                inputs[piece, 1] = rows[own_moment]
-                own_moment += 1
-            angle, piece = arriving, piece + 1
-        arc = ends
-        if ahead:
-            fixed[[own, own + 1, 6, 7], [6, 7, own, own + 1]] -= 1
-            directions[segment, :6] = [rows[own + 3], *force, *rows[own : own + 3]]
-            force -= rows[own : own + 2]
+    for k in range(OWN, size, CUT):
+        fixed[[k, k + 1, 6, 7], [6, 7, k, k + 1]] -= 1
+    inputs[..., :size] = np.repeat(whole[:, [0, 1, 2, 3, 4, 5, rod.ARC][:width]], counts, axis=0)
+    inputs[:, 5] /= np.repeat(counts, counts)[:, None]
+    inputs[:, 6:] += part[:, None, None] * inputs[:, 5:6]
+    inputs[inside, 0] = inputs[inside - 1, 2] = own[size : size + len(inside)]
+    inputs[:, 1] = 0
+    inputs[np.array(short), 1] = own[size + len(inside) :]
     return fixed, inputs, directions
 
 
@@ -301,7 +292,7 @@ def _surface(cut: Cut, selectors: Array) -> Array:
     pair, force, reach = cut.pair, np.array(cut.touch.force), cut.pair.reach_at(cut.here.arc)
     normal, along = np.array(pair.face(cut.here))
     along /= np.hypot(*along)
-    turn = along @ cut.derivatives(1.0, selectors)[:2] / reach
+    turn = along @ cut.derivatives[:2] @ selectors / reach
     both = reach * np.outer(along @ selectors[3:5], turn)
     both += pair.steep * np.outer(normal @ selectors[3:5], selectors[5])
     envelope: Array = reach * (normal @ force) * np.outer(turn, turn) - both - both.T
