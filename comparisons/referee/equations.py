@@ -1,7 +1,6 @@
 """Energy of the rods with its exact gradient and Hessian; the unknowns inside the elements are condensed.
 
-With the force ``n = c - W(s)`` of a part in the frame of the undeformed tangent e, ``N = n_x cos th + n_y sin th`` and ``Q = -n_x sin th +
-n_y cos th``:
+With the force ``n = c - W(s)`` of a part, the undeformed tangent e and the section's directions d and d2, ``N = n.d`` and ``Q = n.d2``:
 
     Pi = sum_parts c.(r_b - r_a - R_b + R_a) + int EI th'^2/2 - (n.(d - e) + N^2/2EA + Q^2/2GA) ds  -  loads  +  springs
 
@@ -18,15 +17,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.elements import OUTER, Mesh, elements
+from comparisons.referee.elements import OUTER, STEP, Mesh, elements
 from comparisons.referee.grip import rows
 from comparisons.referee.layout import NONE, Layout, Part, Touch
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_STEP = 1e-30
-"""Imaginary step of derivatives, which have no error of subtraction."""
 _DENSE = 300
 """Number of unknowns up to which matrices are solved as full ones."""
 
@@ -88,10 +85,11 @@ def element_before(mesh: Mesh, touch: Touch) -> int:
 def _add_parts(layout: Layout, z: Array, g: Array, k: Array) -> None:
     """Add ``c.(r_b - r_a - R_b + R_a)`` of the parts; at a contact ``r = x - offset(s) nu(phi)``."""
     local, sizes = layout.sides
-    given = layout.full(z)[local].T[..., None] + 1j * _STEP * np.eye(6)[:, None]
-    by = np.array(_at_side(given, sizes[..., None]))
+    given = layout.full(z)[local].T[..., None] + 1j * STEP * np.eye(6)[:, None]
+    angle = layout.pieces(np.arange(len(local)) // 2).angle(given[4])
+    by = np.array(_at_side(given, angle, sizes[..., None]))
     hessian = np.zeros((len(local), 6, 6))
-    hessian[:, 2:] = by.imag.swapaxes(0, 1) / _STEP
+    hessian[:, 2:] = by.imag.swapaxes(0, 1) / STEP
     hessian[:, :2, 2:] = hessian[:, 2:, :2].swapaxes(1, 2)
     np.add.at(g, local[:, 2:], by[..., 0].real.T)
     np.add.at(k, (local[:, :, None], local[:, None, :]), hessian)
@@ -100,23 +98,24 @@ def _add_parts(layout: Layout, z: Array, g: Array, k: Array) -> None:
         g[part.force : part.force + 2] += _apart(layout, part, extent, shifts)
 
 
-def _at_side(given: Any, sizes: Array) -> tuple[Any, ...]:
+def _at_side(given: Any, angle: Any, sizes: Array) -> tuple[Any, ...]:
     """Gradient of ``c.(r - R)`` at an end of a part by displacement (2), s and phi, at complex values."""
-    (c_x, c_y, _, _, s, phi), (sign, x, y, k0, turn, offset, slope) = given, sizes
-    n_x, n_y, cos, sin = x * c_x - y * c_y, y * c_x + x * c_y, np.cos(phi), np.sin(phi)
-    along = c_x * np.cos(k0 * s - turn / 2.0) + c_y * np.sin(k0 * s - turn / 2.0)
-    by_s, by_phi = -along - slope * (n_y * cos - n_x * sin), (offset + slope * s) * (n_x * cos + n_y * sin)
-    return sign * n_x, sign * n_y, sign * by_s, sign * by_phi
+    (x, y, _, _, s, phi), (sign, left, start, slope) = given, sizes
+    along, cos, sin = x * np.cos(angle) + y * np.sin(angle), np.cos(phi), np.sin(phi)
+    by_s, by_phi = (
+        -along - left * slope * (y * cos - x * sin),
+        left * (start + slope * s) * (x * cos + y * sin),
+    )
+    return sign * x, sign * y, sign * by_s, sign * by_phi
 
 
 def _apart(layout: Layout, part: Part, extent: Array, shifts: Array) -> Array:
-    """Return ``r_b - r_a - R_b + R_a`` in the beam's frame; it is exactly zero for an undeformed beam."""
+    """Return ``r_b - r_a - R_b + R_a``; it is exactly zero for an undeformed beam."""
     a, b = layout.stations[part.first], layout.stations[part.last]
-    apart = part.rod.axes.T @ (shifts[part.last] - shifts[part.first])
+    apart = shifts[part.last] - shifts[part.first]
     if a.touch is None and b.touch is None:
         return np.asarray(apart)
-    rest = part.rod.axes.T @ (b.reference - a.reference)
-    return np.asarray(apart + rest - part.rod.between(*extent))
+    return np.asarray(apart + b.reference - a.reference - part.piece.between(*extent)[:, 0])
 
 
 def _add_springs_and_loads(layout: Layout, z: Array, g: Array, k: Array) -> float:

@@ -1,13 +1,13 @@
 """A contact as rows of the equations: the direction of its face, slip or stick by Coulomb's law, and the couple of a face.
 
 With the direction t of the face and its angle phi, its left normal n, the part ``a = t . (r'_- + r'_+)/2`` of the mean tangent, the
-section's rotation theta from its undeformed direction, the natural curvature kappa0 and the whole one ``k = theta' + kappa0``, and
+section's rotation theta from its undeformed direction beta, the natural curvature kappa0 and the whole one ``k = theta' + kappa0``, and
 ``lever``, the radius of the circle whose envelope is the face, and ``roll = R`` to the right of the beam, minus these values to its left::
 
     n . (r'_- + r'_+)/2 = -offset'          direction of the face
     F_t = F . t,  F_n = side F . n           tangential and normal force on the beam, side = 1 for a node on the right
     m_- - m_+ = C = lever F_t                couple on the section, since F acts on the face
-    v = A s' + lever psi' + roll phi'        slip rate, A = a + lever k and psi = phi - theta - kappa0 s
+    v = A s' + lever psi' + roll phi'        slip rate, A = a + lever k and psi = phi - theta - beta
     slip:   F_t = sigma mu F_n,  sigma = sign v
     stick:  v = 0,  or (A + A*)/2 (s - s*) + lever (psi - psi*) + roll (phi - phi*) = c
 
@@ -44,7 +44,7 @@ class UnknownFrictionError(ValueError):
 
 @dataclass(frozen=True, kw_only=True)
 class Hold:
-    """The place at which a contact began to stick, with lengths in the scene's units."""
+    """The place at which a contact began to stick, with lengths in units of the layout."""
 
     load_parameter: float
     arc_position: float
@@ -106,29 +106,25 @@ def rows(layout: "Layout", touch: "Touch", z: Array, moment: float) -> Rows:
 def _rows(layout: "Layout", touch: "Touch", parts: "tuple[Part, Part]", given: Any) -> tuple[Any, ...]:
     """Evaluate the rows at complex values (8, n)."""
     theta, phi, m, s = given[0], given[5], given[6], given[7]
-    (before, behind), rod, grip = parts, parts[0].rod, touch.grip
-    mean = rod.tangent(before.piece, given[1:3], s, theta) + rod.tangent(behind.piece, given[3:5], s, theta)
-    mean = mean / 2.0
-    force = rod.axes @ (given[1:3] - given[3:5])
-    lever = touch.lever(s)
+    (piece, behind), face, grip = (part.piece for part in parts), touch.face, touch.grip
+    mean = (piece.tangent(given[1:3], s, theta) + behind.tangent(given[3:5], s, theta)) / 2.0
+    force, lever = given[1:3] - given[3:5], face.lever(s)
     cos, sin = np.cos(phi), np.sin(phi)
-    aligned = mean[1] * cos - mean[0] * sin + touch.slope
-    a = mean[0] * cos + mean[1] * sin if touch.slope else (mean[0] ** 2 + mean[1] ** 2) ** 0.5
-    x, y = (cos, sin) if touch.slope else mean / a
-    drag, push = force[0] * x + force[1] * y, touch.right * (force[1] * x - force[0] * y)
+    aligned = mean[1] * cos - mean[0] * sin + face.tilt
+    a = mean[0] * cos + mean[1] * sin if face.slope else (mean[0] ** 2 + mean[1] ** 2) ** 0.5
+    x, y = (cos, sin) if face.slope else mean / a
+    drag, push = force[0] * x + force[1] * y, face.left * (force[0] * y - force[1] * x)
     couple = lever * drag
-    stretch = a + lever * ((m - couple / 2.0) / rod.flexibility(s).EI + rod.curvature)
+    stretch = a + lever * ((m - couple / 2.0) / piece.flexibility(s)[0] + piece.curvature)
     if grip is None or grip.hold is None:
         slip = 0.0 if grip is None else grip.slip * grip.friction
         return drag - slip * push, couple, aligned, stretch
     hold = grip.hold
-    row = (stretch + hold.stretch) / 2.0 * (s - hold.arc_position / layout.length)
-    row = row - hold.area(layout.load_parameter) / layout.length
+    row = (stretch + hold.stretch) / 2.0 * (s - hold.arc_position) - hold.area(layout.load_parameter)
     if touch.angle >= 0:
-        if touch.slope:
-            lever = (lever + touch.lever(hold.arc_position / layout.length)) / 2.0
-        row = row + lever * _wrapped(phi - theta - rod.curvature * s - hold.shear)
-        row = row + touch.roll * (phi - hold.direction)
+        lever = (lever + face.lever(hold.arc_position)) / 2.0
+        row = row + lever * _wrapped(phi - theta - piece.angle(s) - hold.shear)
+        row = row - face.left * face.radius * (phi - hold.direction)
     return row, couple, aligned, stretch
 
 

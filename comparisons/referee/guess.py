@@ -140,18 +140,19 @@ def _rotation(layout: Layout, answer: AnswerState, own: list[tuple[Part, Array]]
     ``r' = d1 + (N/EA) d1 + (Q/GA) d2`` gives ``r' - n/GA = (1 + N/EA - N/GA) d1``. In strong shear the factor of d1 is negative; its
     sign is the one that agrees with N.
     """
-    beam, rod = layout.scene.beams[own[0][0].beam], own[0][0].rod
-    arc, line = answer.axes[beam.name]
-    pieces, extents = np.diff(line, axis=0) @ (1.0, 1.0j) / complex(*beam.direction), np.diff(arc)
+    rod, piece = own[0][0].rod, own[0][0].piece
+    arc, line = answer.axes[layout.scene.beams[own[0][0].beam].name]
+    pieces, extents = np.diff(line, axis=0) @ (1.0, 1.0j), np.diff(arc)
     long = (np.abs(pieces) > 0.0) & (extents > 0.0)
     if not long.any():
         return np.array([0.0, rod.length]), np.zeros(2)
-    s, way = (arc[:-1] + arc[1:])[long] / (2.0 * layout.length), pieces[long] / extents[long]
-    way = way * np.exp(-1.0j * rod.angle(s)) if rod.turn else way
-    theta, (_, stretch, shear) = np.angle(way), rod.flexibility(s)
+    s = (arc[:-1] + arc[1:])[long] / (2.0 * layout.length)
+    e = np.exp(1.0j * piece.angle(s))
+    way = pieces[long] / extents[long] / e
+    theta, (_, stretch, shear) = np.angle(way), piece.flexibility(s)
     for part, (first, last) in own if np.any(shear) else ():
-        x, y = rod.force(part.piece, part.constant(z), s)
-        force = (x + 1.0j * y) * np.exp(-1.0j * rod.angle(s))
+        x, y = part.piece.force(part.constant(z), s)
+        force = (x + 1.0j * y) / e
         along = way - shear * force
         size = np.abs(along)
         d1 = along / np.where(size > 0.0, size, 1.0)
@@ -179,10 +180,9 @@ def _set_displacements(layout: Layout, answer: AnswerState, turns: list[Rotation
             moved = (seen - beams[0].start) / layout.length - station.reference
             z[unknown[unknown >= 0]] = moved[unknown >= 0]
         elif touch.angle != NONE:
-            before, arc = layout.beside(touch)[0], float(z[touch.arc])
-            x, y = before.rod.axes[:, 0]
-            undeformed = math.atan2(y, x) + before.rod.angle(arc)
-            z[touch.angle] = undeformed + np.interp(arc, *turns[before.beam]) + math.asin(touch.slope)
+            before, arc = layout.beside(touch)[0], z[touch.arc]
+            turn = np.interp(arc, *turns[before.beam]) + math.asin(touch.face.tilt)
+            z[touch.angle] = before.piece.angle(arc)[0] + turn
 
 
 def _balance(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Array) -> None:
@@ -193,7 +193,7 @@ def _balance(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Arr
     moments, values = np.zeros((count, count, 2)), np.zeros(count)
     for n, part in enumerate(layout.parts):
         for number, sign in ((part.first, -1.0), (part.last, 1.0)):
-            balance[joined.get(number, number), :, n] += sign * part.rod.axes
+            balance[joined.get(number, number), :, n] += sign * np.eye(2)
         moments[n, n], values[n] = _moments(layout, n, answer, turns, z)
     stated = np.array([
         [k not in joined and (k in known or item.touch is not None or free >= 0) for free in item.numbers[:2]]
@@ -224,18 +224,15 @@ def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[i
 def _moments(
     layout: Layout, n: int, answer: AnswerState, turns: list[Rotations], z: Array
 ) -> tuple[Array, float]:
-    """Coefficients and right side of ``(r_b - r_a) x c = m_a - m_b + int r' x W ds`` in the beam's frame."""
+    """Coefficients and right side of ``(r_b - r_a) x c = m_a - m_b + int r' x W ds`` ."""
     part, (a, b) = layout.parts[n], layout.extents(z)[n]
-    x, y = part.rod.axes.T @ (layout.position(z, part.last) - layout.position(z, part.first))
+    x, y = layout.position(z, part.last) - layout.position(z, part.first)
     lever, step = np.array([-y, x]), (b - a) / 8.0
     ends = np.array([a, b - step])
     bent = np.diff([np.interp(ends + more, *turns[part.beam]) for more in (0.0, step)], axis=0)[0]
-    m_a, m_b = part.rod.flexibility(ends).EI * bent / step if step > 0.0 else (0.0, 0.0)
-    if not part.rod.loaded:
-        return lever, m_a - m_b
+    m_a, m_b = part.piece.flexibility(ends)[0] * bent / step if step > 0.0 else (0.0, 0.0)
     arc, line = answer.axes[layout.scene.beams[part.beam].name]
     s = np.linspace(a, b, _LOADED)
     way = np.diff([np.interp(s * layout.length, arc, column) for column in line.T]) / layout.length
-    x, y = part.rod.axes.T @ way
-    p, q = part.rod.force(part.piece, (0.0, 0.0), (s[:-1] + s[1:]) / 2.0)
-    return lever, m_a - m_b + float(y @ p - x @ q)
+    p, q = part.piece.force(0.0, (s[:-1] + s[1:]) / 2.0)
+    return lever, m_a - m_b + float(way[1] @ p - way[0] @ q)

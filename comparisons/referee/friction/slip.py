@@ -59,7 +59,8 @@ def slip_rate(now: Equilibrium, touch: Touch, *, behind: bool = False) -> float:
         return slipping
     theta, phi = float(rate[layout.stations[before.last].numbers[2]]), float(rate[touch.angle])
     theta += before.rod.curvature * float(rate[touch.arc])
-    return slipping + float(touch.lever(float(now.z[touch.arc]))) * (phi - theta) + touch.roll * phi
+    face = touch.face
+    return slipping + float(face.lever(now.z[touch.arc])) * (phi - theta) - face.left * face.radius * phi
 
 
 def relative_slip_rate(now: Equilibrium, touch: Touch, *, behind: bool = False) -> float:
@@ -79,9 +80,9 @@ def place(now: Equilibrium, touch: Touch) -> Hold:
     moment = float(now.system.ends[element_before(now.mesh, touch), 1])
     return Hold(
         load_parameter=now.load_parameter,
-        arc_position=float(z[touch.arc]) * layout.length,
+        arc_position=float(z[touch.arc]),
         stretch=rows(layout, touch, z, moment).stretch,
-        shear=phi - float(layout.motions(z)[before.last, 2]) - before.rod.curvature * float(z[touch.arc]),
+        shear=float(phi - layout.motions(z)[before.last, 2] - before.piece.angle(z[touch.arc])[0]),
         direction=phi,
     )
 
@@ -94,7 +95,6 @@ def roll(
     times, found = first + (last - first) * _PLACES, [near] * len(_PLACES)
     holds = {pair: hold for pair in begins if (hold := grips[pair].hold) is not None}
     areas = {pair: Polynomial([hold.area(first)], domain=span) for pair, hold in holds.items()}
-    length = near.layout.length
     for _ in range(_SWEEPS):
         own = {pair: replace(hold, areas=(*hold.areas, (first, areas[pair]))) for pair, hold in holds.items()}
         held = {**grips, **{pair: replace(grips[pair], hold=hold) for pair, hold in own.items()}}
@@ -108,7 +108,7 @@ def roll(
         rough = [
             _area(times[::2], trail[:, ::2])(last) - changes[pair](last) for pair, trail in trails.items()
         ]
-        if last - first > _LEAST and max(map(abs, rough)) > _APART * length:
+        if last - first > _LEAST and max(map(abs, rough)) > _APART:
             middle = float(times[len(times) // 2])
             half = roll(found[len(times) // 2], (first, middle), grips, begins)
             if half is None:
@@ -116,7 +116,7 @@ def roll(
             grips = {**grips, **{pair: replace(grips[pair], hold=hold) for pair, hold in half[0].items()}}
             return roll(found[-1], (middle, last), grips, half[1])
         before, areas = areas, {pair: change + holds[pair].area(first) for pair, change in changes.items()}
-        if all(np.abs((areas[pair] - before[pair])(times)).max() <= _SAME * length for pair in holds):
+        if all(np.abs((areas[pair] - before[pair])(times)).max() <= _SAME for pair in holds):
             ends = {pair: found[-1].layout.touch(pair) for pair in holds}
             return own, {pair: place(found[-1], touch) for pair, touch in ends.items()}
     return None
@@ -125,10 +125,9 @@ def roll(
 def _trail(hold: Hold, begin: Hold, found: list[Equilibrium], pair: str) -> Array:
     """Changes (4, n) of s, A, psi and the lever since the stick began, at the begin of an interval and at equilibria."""
     touches = [item.layout.touch(pair) for item in found]
-    unit, touch = found[0].layout.length, touches[0]
     places = [hold, begin, *(place(item, own) for item, own in zip(found, touches, strict=True))]
     rows = [
-        [item.arc_position, item.stretch, item.shear, unit * touch.lever(item.arc_position / unit)]
+        [item.arc_position, item.stretch, item.shear, touches[0].face.lever(item.arc_position)]
         for item in places
     ]
     trail = np.array(rows[1:]).T - np.array(rows[:1]).T
