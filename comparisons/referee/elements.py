@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
+from numpy.polynomial.polynomial import polyder, polyval
 from numpy.typing import NDArray
 
 from comparisons.referee.layout import Layout
@@ -127,12 +128,12 @@ def elements(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> tuple[Arra
 def _at_points(pieces: Piece, given: Any) -> Any:
     """Gradient of the energy in theta, theta_xi, c_x, c_y, half and s, and the strain energy, at complex values (6, ...) of these."""
     theta, bent, *c, half, s = given
-    (EI, a, b), (EI_s, a_s, b_s, *load) = pieces.flexibility(s), pieces.slopes(s)
-    N, Q, n, way = pieces.strained(np.array(c), s, theta)
+    EI, a, b, N, Q, n, way = pieces.strained(np.array(c), s, theta)
+    EI_s, EA_s, GA_s, *load = polyval(s, polyder(pieces.coefficients), tensor=False)
     stored, moment = (a * N**2 + b * Q**2) / 2.0, EI * bent / half
     f = (n * way).sum(axis=0) - stored
-    f_s = (a_s * N**2 + b_s * Q**2) / 2.0 - load[0] * way[0] - load[1] * way[1]
-    f_s = f_s + pieces.curvature * (way[0] * n[1] - way[1] * n[0])
+    f_s = pieces.curvature * (way[0] * n[1] - way[1] * n[0]) - load[0] * way[0] - load[1] * way[1]
+    f_s = f_s - (EA_s * (a * N) ** 2 + GA_s * (b * Q) ** 2) / 2.0
     by_half, by_s = -moment * bent / (2.0 * half) - f, EI_s * bent**2 / (2.0 * half) - half * f_s
     turned = -half * Q * (1.0 + (a - b) * N)
     return np.array([turned, moment, *(-half * way), by_half, by_s, moment * bent / 2.0 + half * stored])

@@ -9,7 +9,7 @@ the undeformed axis, ``R_b - R_a = l e`` of a straight part. The resultant W of 
 by parts of ``int n.r' - q.r ds`` leaves ``c.(r_b - r_a)``, and W(L) with the loads at the beam's end. With the forces as unknowns, large
 EA and GA cause neither round-off nor locking. Stationarity in an arc position means that ``H = m^2/2EI + m kappa0 + N + N^2/2EA + Q^2/2GA``
 is continuous at the contact, which is ``F.(r'_- + r'_+) = 0``, contact without friction. A contact with friction has other rows in place of
-this one: see `comparisons.referee.grip`.
+this one: see `comparisons.referee.touching`.
 """
 
 from typing import Any, NamedTuple
@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.elements import OUTER, STEP, Mesh, elements
-from comparisons.referee.grip import rows
 from comparisons.referee.layout import NONE, Layout, Part, Touch
+from comparisons.referee.touching import rows
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -64,16 +64,15 @@ def assemble(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> System:
     for touch in layout.touches:
         if touch.grip is not None:
             e = element_before(mesh, touch)
-            found = rows(layout, touch, z, own_gradient[e, 1])
+            numbers, (row, couple, direction, _), derivatives = rows(layout, touch, z, own_gradient[e, 1])
             by = np.zeros((3, len(g)))
-            by[:, found.numbers] = found.derivatives[:3]
-            np.add.at(by.T, local[e], np.outer(hessian[e, 1], found.derivatives[:3, 6]))
-            turn = found.numbers[0]
-            g[touch.arc], k[touch.arc] = found.row, by[0]
-            g[turn] -= found.couple
-            k[turn] -= by[1]
+            by[:, numbers] = derivatives[:3]
+            np.add.at(by.T, local[e], np.outer(hessian[e, 1], derivatives[:3, 6]))
+            g[touch.arc], k[touch.arc] = row, by[0]
+            g[numbers[0]] -= couple
+            k[numbers[0]] -= by[1]
             if touch.angle != NONE:
-                g[touch.angle], k[touch.angle] = found.direction, by[2]
+                g[touch.angle], k[touch.angle] = direction, by[2]
     return System(g[free], k[free, free], held, shift, lever, blocks, own_gradient[:, :2], energy)
 
 
@@ -221,7 +220,7 @@ def directions(layout: Layout, z: Array) -> Array | None:
         return None
     free = np.eye(len(z))
     for touch in turned:
-        numbers, *_, derivatives = rows(layout, touch, z, 0.0)
+        numbers, _, derivatives = rows(layout, touch, z, 0.0)
         change = np.zeros(len(free) + 1)
         np.add.at(change, numbers, derivatives[2])
         free[touch.angle] = -change[:-1] / change[touch.angle]

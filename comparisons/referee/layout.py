@@ -160,12 +160,9 @@ class Layout:
 
     @cached_property
     def _pieces(self) -> Piece:
-        return Piece(
-            *(
-                np.concatenate(item, axis=-1)
-                for item in zip(*(part.piece for part in self.parts), strict=True)
-            )
-        )
+        pieces = (part.piece for part in self.parts)
+        table, *others = (np.concatenate(item, axis=-1) for item in zip(*pieces, strict=True))
+        return Piece(table[: np.flatnonzero(table.any(axis=(1, 2)))[-1] + 1], *others)
 
     @property
     def grips(self) -> dict[str, Grip]:

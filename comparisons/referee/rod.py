@@ -16,7 +16,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder, polyint, polymul, polyval
+from numpy.polynomial.polynomial import polyint, polymul, polyval
 from numpy.typing import NDArray
 
 from comparisons.scene import BeamSpec, ContactSpec, Scene
@@ -36,8 +36,11 @@ def units_of(scene: Scene) -> Units:
 
 
 class Strained(NamedTuple):
-    """Forces N and Q, force n (2, ...) and ``r'`` minus the undeformed tangent (2, ...) at points of a rod."""
+    """Stiffness, flexibilities, forces N and Q, force n (2, ...) and ``r'`` minus the undeformed tangent (2, ...) at points of a rod."""
 
+    EI: Any
+    stretch: Any
+    shear: Any
     N: Any
     Q: Any
     n: Any
@@ -65,12 +68,6 @@ class Piece(NamedTuple):
         EI, EA, GA = polyval(s, self.coefficients[:, :3], tensor=False)
         return EI, 1.0 / EA, 1.0 / GA
 
-    def slopes(self, s: Any) -> tuple[Any, ...]:
-        """Return the derivatives of EI, 1/EA, 1/GA, W_x and W_y by the arc position."""
-        _, stretch, shear = self.flexibility(s)
-        EI, EA, GA, x, y = polyval(s, polyder(self.coefficients), tensor=False)
-        return EI, -EA * stretch**2, -GA * shear**2, x, y
-
     def between(self, a: Any, b: Any) -> Array:
         """Way (2, ...) of the undeformed axis from one arc position to another."""
         angle = self.angle((a + b) / 2.0)
@@ -83,12 +80,13 @@ class Piece(NamedTuple):
 
     def strained(self, c: Any, s: Any, theta: Any) -> Strained:
         """Return the forces, and ``r' = (1 + N/EA) d1 + (Q/GA) d2`` minus the undeformed tangent, which small rotations leave its digits."""
-        _, stretch, shear = self.flexibility(s)
-        n, angle, half = self.force(c, s), theta + self.angle(s), theta / 2.0
-        d1, d2 = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+        (EI, stretch, shear), n = self.flexibility(s), self.force(c, s)
+        angle, half = theta + self.angle(s), theta / 2.0
+        d1 = np.array([np.cos(angle), np.sin(angle)])
+        d2 = np.array([-d1[1], d1[0]])
         N, Q = (n * d1).sum(axis=0), (n * d2).sum(axis=0)
         turned = 2.0 * np.sin(half) * np.array([-np.sin(angle - half), np.cos(angle - half)])
-        return Strained(N, Q, n, turned + stretch * N * d1 + shear * Q * d2)
+        return Strained(EI, stretch, shear, N, Q, n, turned + stretch * N * d1 + shear * Q * d2)
 
     def tangent(self, c: Any, s: Any, theta: Any) -> Any:
         """Return ``r'`` (2, ...)."""

@@ -204,15 +204,15 @@ class Equilibrium:
         )
         pieces, c, at, turned = layout.pieces(part), constants[:, e], s[:, None], theta[:, None]
         begins = np.array([layout.position(z, layout.parts[k].first) for k in parts])[part - parts[0]]
-        N, Q, _, _ = pieces.strained(c, at, turned)
+        there = pieces.strained(c, at, turned)
         position = begins + (along + pieces.between(first[:, None], at)[..., 0]).T
         return Shape(
             position=np.array(layout.scene.beams[0].start) + layout.length * position,
             tangent=pieces.tangent(c, at, turned)[..., 0].T,
             rotation=theta,
-            moment=layout.force * layout.length * pieces.flexibility(at)[0][:, 0] * bent / half[e],
-            N=layout.force * N[:, 0],
-            Q=layout.force * Q[:, 0],
+            moment=layout.force * layout.length * there.EI[:, 0] * bent / half[e],
+            N=layout.force * there.N[:, 0],
+            Q=layout.force * there.Q[:, 0],
         )
 
     def tangents(self, touch: Touch) -> tuple[Array, Array]:

@@ -17,11 +17,12 @@ from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from comparisons.referee.equations import element_before
-from comparisons.referee.grip import Grip, Hold, rows
+from comparisons.referee.grip import Grip, Hold
 from comparisons.referee.layout import NONE, Touch
 from comparisons.referee.path import corners, reach, tangent
 from comparisons.referee.rod import largest
 from comparisons.referee.state import Equilibrium
+from comparisons.referee.touching import rows, wrapped
 
 Array = NDArray[np.float64]
 Holds = dict[str, Hold]
@@ -81,7 +82,7 @@ def place(now: Equilibrium, touch: Touch) -> Hold:
     return Hold(
         load_parameter=now.load_parameter,
         arc_position=float(z[touch.arc]),
-        stretch=rows(layout, touch, z, moment).stretch,
+        stretch=float(rows(layout, touch, z, moment)[1][3]),
         shear=float(phi - layout.motions(z)[before.last, 2] - before.piece.angle(z[touch.arc])[0]),
         direction=phi,
     )
@@ -131,7 +132,7 @@ def _trail(hold: Hold, begin: Hold, found: list[Equilibrium], pair: str) -> Arra
         for item in places
     ]
     trail = np.array(rows[1:]).T - np.array(rows[:1]).T
-    trail[2] -= 2.0 * np.pi * np.rint(trail[2] / (2.0 * np.pi))
+    trail[2] = wrapped(trail[2])
     return trail
 
 
