@@ -24,9 +24,6 @@ from comparisons.referee.touching import rows
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_DENSE = 300
-"""Number of unknowns up to which matrices are solved as full ones."""
-
 
 class System(NamedTuple):
     """The equations with the rows of friction, the elements' bubbles condensed."""
@@ -119,19 +116,12 @@ def _apart(layout: Layout, part: Part, extent: Array, shifts: Array) -> Array:
 
 def _add_springs_and_loads(layout: Layout, z: Array, g: Array, k: Array) -> float:
     """Add dead loads, springs to the ground, ``k u^2/2``, and those of hinges; return the energy of the springs."""
-    numbers, loads, springs = layout.tables
-    moved = layout.motions(z)
-    np.add.at(g, numbers, -loads)
-    np.add.at(g, numbers, springs * moved)
-    np.add.at(k, (numbers, numbers), springs)
-    energy = float((springs * moved**2).sum()) / 2.0
-    for end, joint, stiffness in layout.hinges:
-        turns = numbers[[end, joint], 2]
-        apart = moved[end, 2] - moved[joint, 2]
-        energy += float(stiffness * apart**2) / 2.0
-        np.add.at(g, turns, stiffness * apart * np.array([1.0, -1.0]))
-        np.add.at(k, (turns[:, None], turns), stiffness * np.array([[1.0, -1.0], [-1.0, 1.0]]))
-    return energy
+    numbers, loads, stiffness = layout.tables
+    moved = layout.motions(z).ravel()
+    forces = stiffness @ moved
+    np.add.at(g, numbers.ravel(), forces - loads.ravel())
+    np.add.at(k, np.ix_(numbers.ravel(), numbers.ravel()), stiffness)
+    return float(moved @ forces) / 2.0
 
 
 def solved(system: System, held: Ints | None = None) -> Array | None:
@@ -141,38 +131,21 @@ def solved(system: System, held: Ints | None = None) -> Array | None:
         hessian, gradient = hessian.copy(), gradient.copy()
         hessian[held], hessian[:, held], gradient[held] = 0.0, 0.0, 0.0
         hessian[held, held] = 1.0
-    row, column, entry = _entries(hessian)
-    if not np.all(np.isfinite(entry)) or len(set(row.tolist())) < len(hessian):
+    if not np.all(np.isfinite(hessian)) or not np.all(np.any(hessian, axis=1)):
         return None
     # EI, EA and forces differ by orders of magnitude
-    scale = _scales(row, column, entry)
-    right = scale * gradient
+    scale = _scales(hessian)
     try:
-        if len(hessian) <= _DENSE:
-            return np.asarray(-scale * np.linalg.solve(scale[:, None] * hessian * scale, right))
-        from scipy.sparse import coo_array
-        from scipy.sparse.linalg import splu
-
-        factors = splu(coo_array((scale[row] * entry * scale[column], (row, column))).tocsc())
-        return np.asarray(-scale * factors.solve(right))
-    except (np.linalg.LinAlgError, RuntimeError):
+        return np.asarray(-scale * np.linalg.solve(scale[:, None] * hessian * scale, scale * gradient))
+    except np.linalg.LinAlgError:
         return None
 
 
-def _entries(matrix: Array) -> tuple[Ints, Ints, Array]:
-    """Return rows, columns and values of the entries that are not zero."""
-    # faster than `nonzero` of the matrix itself, which has few such entries
-    number = np.flatnonzero(matrix != 0.0)
-    return *np.divmod(number, len(matrix)), matrix.ravel()[number]
-
-
-def _scales(row: Ints, column: Ints, entry: Array) -> Array:
+def _scales(matrix: Array) -> Array:
     """Return factors of rows and columns with which the largest entry of every row is about one."""
-    scale, size = np.ones(int(row[-1]) + 1), np.abs(entry)
+    scale, size = np.ones(len(matrix)), np.abs(matrix)
     for _ in range(3):
-        largest = np.zeros(len(scale))
-        np.maximum.at(largest, row, scale[row] * size * scale[column])
-        scale = scale / np.sqrt(largest)
+        scale = np.sqrt(scale / (size * scale).max(axis=1))
     return scale
 
 
@@ -185,26 +158,11 @@ def index_of(layout: Layout, z: Array, system: System) -> int:
     """
     if layout.grips:
         return -1
-    held, reduced = directions(layout, z), system.hessian
-    if held is not None:
-        reduced = held.T @ reduced @ held
-    scale = _scales(*_entries(reduced))
-    inside = np.linalg.eigvalsh(system.blocks)
-    negatives = _negatives(scale[:, None] * reduced * scale) + int((inside < 0.0).sum())
-    return negatives - 2 * len(layout.parts)
-
-
-def _negatives(matrix: Array) -> int:
-    """Number of negative eigenvalues; of large matrices by Sylvester's law of inertia from ``L D L^T``."""
-    if len(matrix) <= _DENSE:
-        return int((np.linalg.eigvalsh(matrix) < 0.0).sum())
-    from scipy.linalg import ldl
-
-    pivots = ldl(matrix)[1]
-    # a block of two pivots has one eigenvalue of either sign
-    blocks = np.diag(pivots, 1) != 0.0
-    single = ~(np.append(blocks, False) | np.append(False, blocks))
-    return int((np.diag(pivots)[single] < 0.0).sum() + blocks.sum())
+    free = directions(layout, z)
+    reduced = free.T @ system.hessian @ free
+    scale = _scales(reduced)
+    eigenvalues = np.linalg.eigvalsh(scale[:, None] * reduced * scale), np.linalg.eigvalsh(system.blocks)
+    return sum(int((values < 0.0).sum()) for values in eigenvalues) - 2 * len(layout.parts)
 
 
 def orientation_of(system: System) -> int:
@@ -213,12 +171,9 @@ def orientation_of(system: System) -> int:
     return int(np.prod(np.sign(signs)))
 
 
-def directions(layout: Layout, z: Array) -> Array | None:
-    """Admissible variations as columns, None if all are; the angles phi follow with the directions of the faces."""
-    turned = [touch for touch in layout.touches if touch.angle != NONE]
-    if not turned:
-        return None
-    free = np.eye(len(z))
+def directions(layout: Layout, z: Array) -> Array:
+    """Admissible variations as columns; the angles phi follow with the directions of the faces."""
+    turned, free = [touch for touch in layout.touches if touch.angle != NONE], np.eye(len(z))
     for touch in turned:
         numbers, _, derivatives = rows(layout, touch, z, 0.0)
         change = np.zeros(len(free) + 1)

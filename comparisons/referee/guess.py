@@ -20,10 +20,6 @@ PULL = 1e-9
 """Largest contact force that is round-off, over EI/L^2 of the touched beam, for the models' contacts at a release."""
 SHORTEST = 1e-9
 """Length of a part over the longest beam up to which two stations are at one place."""
-_LOADED = 65
-"""Points of a part at which the moment of the load along it is evaluated."""
-_CLOSED_LOOP = 1e-3
-"""Weight of the parts' moment balance, which depends on the inaccurate curvature of the axis; it only completes the force balance."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -98,7 +94,7 @@ def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotati
         z[touch.arc] = answer.arcs[touch.spec.pair] / layout.length
     turns = _rotations(layout, answer, z)
     _set_displacements(layout, answer, turns, z)
-    _balance(layout, answer, turns, z)
+    _balance(layout, answer, z)
     turns = _rotations(layout, answer, z)
     for part, arcs in zip(layout.parts, layout.extents(z), strict=True):
         for number, arc in zip((part.first, part.last), arcs, strict=True):
@@ -185,29 +181,26 @@ def _set_displacements(layout: Layout, answer: AnswerState, turns: list[Rotation
             z[touch.angle] = before.piece.angle(arc)[0] + turn
 
 
-def _balance(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Array) -> None:
+def _balance(layout: Layout, answer: AnswerState, z: Array) -> None:
     """Set the forces of the parts by a least-squares balance with the answer's contact forces, reactions and loads."""
     acting, known = _acting(layout, answer, z)
-    joined, count = {hinge.end: hinge.joint for hinge in layout.hinges}, len(layout.parts)
-    balance = np.zeros((len(layout.stations), 2, count, 2))
-    moments, values = np.zeros((count, count, 2)), np.zeros(count)
+    joined = {hinge.end: hinge.joint for hinge in layout.hinges}
+    balance = np.zeros((len(layout.stations), len(layout.parts)))
     for n, part in enumerate(layout.parts):
         for number, sign in ((part.first, -1.0), (part.last, 1.0)):
-            balance[joined.get(number, number), :, n] += sign * np.eye(2)
-        moments[n, n], values[n] = _moments(layout, n, answer, turns, z)
-    stated = np.array([
-        [k not in joined and (k in known or item.touch is not None or free >= 0) for free in item.numbers[:2]]
-        for k, item in enumerate(layout.stations)
-    ])  # fmt: skip
-    rows = np.concatenate([balance[stated], _CLOSED_LOOP * moments]).reshape(-1, 2 * count)
-    right = np.concatenate([acting[stated], _CLOSED_LOOP * values])
-    z[layout.forces] = np.linalg.lstsq(rows, right, rcond=None)[0]
+            balance[joined.get(number, number), n] += sign
+    for axis, forces in enumerate(layout.forces.reshape(-1, 2).T):
+        stated = [
+            k not in joined and (k in known or item.touch is not None or item.numbers[axis] >= 0)
+            for k, item in enumerate(layout.stations)
+        ]
+        z[forces] = np.linalg.lstsq(balance[stated], acting[stated, axis], rcond=None)[0]
 
 
 def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[int]]:
     """External forces (stations, 2), of ends behind a hinge at the joint, and the stations whose reactions the answer has."""
-    _, loads, springs = layout.tables
-    acting = (loads - springs * layout.motions(z))[:, :2]
+    _, loads, stiffness = layout.tables
+    acting = loads[:, :2] - (stiffness @ layout.motions(z).ravel()).reshape(loads.shape)[:, :2]
     for hinge in layout.hinges:
         acting[hinge.joint] += acting[hinge.end]
     where = {end: k for k, item in enumerate(layout.stations) for end in item.joint}
@@ -219,20 +212,3 @@ def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[i
         if "." in touch.spec.node:
             acting[where[touch.spec.node]] -= force
     return acting, {where[end] for end in answer.reactions}
-
-
-def _moments(
-    layout: Layout, n: int, answer: AnswerState, turns: list[Rotations], z: Array
-) -> tuple[Array, float]:
-    """Coefficients and right side of ``(r_b - r_a) x c = m_a - m_b + int r' x W ds`` ."""
-    part, (a, b) = layout.parts[n], layout.extents(z)[n]
-    x, y = layout.position(z, part.last) - layout.position(z, part.first)
-    lever, step = np.array([-y, x]), (b - a) / 8.0
-    ends = np.array([a, b - step])
-    bent = np.diff([np.interp(ends + more, *turns[part.beam]) for more in (0.0, step)], axis=0)[0]
-    m_a, m_b = part.piece.flexibility(ends)[0] * bent / step if step > 0.0 else (0.0, 0.0)
-    arc, line = answer.axes[layout.scene.beams[part.beam].name]
-    s = np.linspace(a, b, _LOADED)
-    way = np.diff([np.interp(s * layout.length, arc, column) for column in line.T]) / layout.length
-    p, q = part.piece.force(0.0, (s[:-1] + s[1:]) / 2.0)
-    return lever, m_a - m_b + float(way[1] @ p - way[0] @ q)

@@ -147,12 +147,16 @@ class Layout:
 
     @cached_property
     def tables(self) -> tuple[Ints, Array, Array]:
-        """Numbers, loads and springs (stations, 3) of the stations."""
-        return (
-            np.array([item.numbers for item in self.stations]),
-            np.array([item.load for item in self.stations]),
-            np.array([item.springs for item in self.stations]),
+        """Numbers and loads (stations, 3) of the stations, and stiffness (3 stations, 3 stations) of springs and hinges."""
+        numbers, loads, springs = (
+            np.array([getattr(item, name) for item in self.stations])
+            for name in ("numbers", "load", "springs")
         )
+        stiffness = np.diag(springs.ravel())
+        for end, joint, stiff in self.hinges:
+            pair = 3 * np.array([end, joint]) + 2
+            stiffness[np.ix_(pair, pair)] += stiff * np.array([[1.0, -1.0], [-1.0, 1.0]])
+        return numbers, loads, stiffness
 
     def pieces(self, parts: Ints) -> Piece:
         """Pieces (e, 1) of the rods in which the parts (e,) are."""
