@@ -112,13 +112,16 @@ def elements(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> tuple[Arra
     to[..., 0, turn], to[..., 1, turn] = VALUES, SLOPES
     to[..., 2, 2] = to[..., 3, 3] = 1.0
     to[..., 4, 4], to[..., 4, 5], to[..., 5, 4], to[..., 5, 5] = -share / 2.0, share / 2.0, 1.0 - x, x
-    given = np.broadcast_arrays(
-        coefficients @ VALUES.T, coefficients @ SLOPES.T, *z[mesh.local[:, 2:4]].T[..., None],
-        share * extent / 2.0, ends[:, :1] + extent * x,
-    )  # fmt: skip
-    steps = np.stack(given)[..., None] + 1j * STEP * np.eye(6)[:, None, None]
+    given = np.empty((6, *x.shape))
+    given[0], given[1], given[2:4] = (
+        coefficients @ VALUES.T,
+        coefficients @ SLOPES.T,
+        z[mesh.local[:, 2:4]].T[..., None],
+    )
+    given[4], given[5] = share * extent / 2.0, ends[:, :1] + extent * x
+    steps = given[..., None] + 1j * STEP * np.eye(6)[:, None, None]
     found = _at_points(layout.pieces(mesh.part), steps.reshape(6, len(x), -1)).reshape(7, *steps.shape[1:])
-    first, second = (np.moveaxis(item, 0, 2) for item in (found[:6, ..., 0].real, found[:6].imag / STEP))
+    first, second = found[:6, ..., 0].real.transpose(1, 2, 0), found[:6].imag.transpose(1, 2, 0, 3) / STEP
     gradient = np.einsum("egi,egis->es", first * WEIGHTS[:, None], to)
     rows, weighted = (len(x), -1, size), second * WEIGHTS[:, None, None]
     hessian = to.reshape(rows).swapaxes(1, 2) @ (weighted @ to).reshape(rows)

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.elements import OUTER, STEP, Mesh, elements
-from comparisons.referee.layout import NONE, Layout, Part, Touch
+from comparisons.referee.layout import NONE, Layout, Touch
 from comparisons.referee.touching import rows
 
 Array = NDArray[np.float64]
@@ -89,9 +89,11 @@ def _add_parts(layout: Layout, z: Array, g: Array, k: Array) -> None:
     hessian[:, :2, 2:] = hessian[:, 2:, :2].swapaxes(1, 2)
     np.add.at(g, local[:, 2:], by[..., 0].real.T)
     np.add.at(k, (local[:, :, None], local[:, None, :]), hessian)
-    shifts = layout.shifts(z)
-    for part, extent in zip(layout.parts, layout.extents(z), strict=True):
-        g[part.force : part.force + 2] += _apart(layout, part, extent, shifts)
+    (first, last), rest, touched = layout.chords
+    ways, (begin, end) = layout.shifts(z), layout.extents(z).T[..., None]
+    # exactly zero for an undeformed beam without contacts
+    rest = np.where(touched, rest - layout.pieces(np.arange(len(rest))).between(begin, end)[..., 0].T, 0.0)
+    g[layout.forces] += (ways[last] - ways[first] + rest).ravel()
 
 
 def _at_side(given: Any, angle: Any, sizes: Array) -> tuple[Any, ...]:
@@ -103,15 +105,6 @@ def _at_side(given: Any, angle: Any, sizes: Array) -> tuple[Any, ...]:
         left * (start + slope * s) * (x * cos + y * sin),
     )
     return sign * x, sign * y, sign * by_s, sign * by_phi
-
-
-def _apart(layout: Layout, part: Part, extent: Array, shifts: Array) -> Array:
-    """Return ``r_b - r_a - R_b + R_a``; it is exactly zero for an undeformed beam."""
-    a, b = layout.stations[part.first], layout.stations[part.last]
-    apart = shifts[part.last] - shifts[part.first]
-    if a.touch is None and b.touch is None:
-        return np.asarray(apart)
-    return np.asarray(apart + b.reference - a.reference - part.piece.between(*extent)[:, 0])
 
 
 def _add_springs_and_loads(layout: Layout, z: Array, g: Array, k: Array) -> float:

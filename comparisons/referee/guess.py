@@ -92,10 +92,9 @@ def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotati
     z = np.zeros(layout.unknowns)
     for touch in layout.touches:
         z[touch.arc] = answer.arcs[touch.spec.pair] / layout.length
-    turns = _rotations(layout, answer, z)
+    turns = _rotations(layout, answer)
     _set_displacements(layout, answer, turns, z)
     _balance(layout, answer, z)
-    turns = _rotations(layout, answer, z)
     for part, arcs in zip(layout.parts, layout.extents(z), strict=True):
         for number, arc in zip((part.first, part.last), arcs, strict=True):
             unknown = layout.stations[number].numbers[2]
@@ -104,18 +103,18 @@ def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotati
     return z, turns
 
 
-def _rotations(layout: Layout, answer: AnswerState, z: Array) -> list[Rotations]:
+def _rotations(layout: Layout, answer: AnswerState) -> list[Rotations]:
     """Rotations of all beams, with multiples of 2 pi, so that beams agree with prescribed rotations and, at joints, with each other."""
     known: dict[int, float] = {
         k: float(layout.given[item.numbers[2]])
         for k, item in enumerate(layout.stations)
         if item.numbers[2] < 0
     }
-    own: list[list[tuple[Part, Array]]] = [[] for _ in layout.scene.beams]
-    for part, extent in zip(layout.parts, layout.extents(z), strict=True):
-        own[part.beam].append((part, extent))
-    turns = [_rotation(layout, answer, parts, z) for parts in own]
-    ends = [(parts[0][0].first, parts[-1][0].last) for parts in own]
+    own: list[list[Part]] = [[] for _ in layout.scene.beams]
+    for part in layout.parts:
+        own[part.beam].append(part)
+    turns = [_rotation(layout, answer, parts[0]) for parts in own]
+    ends = [(parts[0].first, parts[-1].last) for parts in own]
     left = list(range(len(turns)))
     while left:
         number = next((b for b in left if any(k in known for k in ends[b])), left[0])
@@ -130,35 +129,18 @@ def _rotations(layout: Layout, answer: AnswerState, z: Array) -> list[Rotations]
     return turns
 
 
-def _rotation(layout: Layout, answer: AnswerState, own: list[tuple[Part, Array]], z: Array) -> Rotations:
-    """Angles of a beam's chords from the undeformed direction, less the shear of the forces in z, extrapolated to the ends.
-
-    ``r' = d1 + (N/EA) d1 + (Q/GA) d2`` gives ``r' - n/GA = (1 + N/EA - N/GA) d1``. In strong shear the factor of d1 is negative; its
-    sign is the one that agrees with N.
-    """
-    rod, piece = own[0][0].rod, own[0][0].piece
-    arc, line = answer.axes[layout.scene.beams[own[0][0].beam].name]
-    pieces, extents = np.diff(line, axis=0) @ (1.0, 1.0j), np.diff(arc)
-    long = (np.abs(pieces) > 0.0) & (extents > 0.0)
+def _rotation(layout: Layout, answer: AnswerState, part: Part) -> Rotations:
+    """Angles of the chords of a beam from the undeformed direction, extrapolated to the ends."""
+    length, (arc, line) = part.rod.length, answer.axes[layout.scene.beams[part.beam].name]
+    chords, extents = np.diff(line, axis=0) @ (1.0, 1.0j), np.diff(arc)
+    long = (np.abs(chords) > 0.0) & (extents > 0.0)
     if not long.any():
-        return np.array([0.0, rod.length]), np.zeros(2)
+        return np.array([0.0, length]), np.zeros(2)
     s = (arc[:-1] + arc[1:])[long] / (2.0 * layout.length)
-    e = np.exp(1.0j * piece.angle(s))
-    way = pieces[long] / extents[long] / e
-    theta, (_, stretch, shear) = np.angle(way), piece.flexibility(s)
-    for part, (first, last) in own if np.any(shear) else ():
-        x, y = part.piece.force(part.constant(z), s)
-        force = (x + 1.0j * y) / e
-        along = way - shear * force
-        size = np.abs(along)
-        d1 = along / np.where(size > 0.0, size, 1.0)
-        factor = (stretch - shear) * (d1 * force.conjugate()).real
-        d1 = np.where(np.abs(1.0 + factor - size) <= np.abs(1.0 - factor + size), d1, -d1)
-        theta = np.where((s >= first) & (s <= last) & (size > 0.0), np.angle(d1), theta)
-    theta = np.unwrap(theta)
+    theta = np.unwrap(np.angle(chords[long] * np.exp(-1.0j * part.piece.angle(s))))
     slope = np.append(np.diff(theta) / np.diff(s), 0.0)[[0, max(len(s) - 2, 0)]]
-    ends = theta[[0, -1]] + slope * ([0.0, rod.length] - s[[0, -1]])
-    return np.array([0.0, *s, rod.length]), np.array([ends[0], *theta, ends[1]])
+    ends = theta[[0, -1]] + slope * ([0.0, length] - s[[0, -1]])
+    return np.array([0.0, *s, length]), np.array([ends[0], *theta, ends[1]])
 
 
 def _set_displacements(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Array) -> None:

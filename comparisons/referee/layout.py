@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.grip import Grip
-from comparisons.referee.rod import Face, Piece, Rod, face_of, rod_of, units_of
+from comparisons.referee.rod import Face, Piece, Rod, face_of, rod_of, trimmed, units_of
 from comparisons.scene import ContactSpec, Scene
 
 Array = NDArray[np.float64]
@@ -166,7 +166,7 @@ class Layout:
     def _pieces(self) -> Piece:
         pieces = (part.piece for part in self.parts)
         table, *others = (np.concatenate(item, axis=-1) for item in zip(*pieces, strict=True))
-        return Piece(table[: np.flatnonzero(table.any(axis=(1, 2)))[-1] + 1], *others)
+        return Piece(trimmed(table), *others)
 
     @property
     def grips(self) -> dict[str, Grip]:
@@ -214,6 +214,14 @@ class Layout:
     @cached_property
     def _ends(self) -> Ints:
         return np.array([part.arcs for part in self.parts])
+
+    @cached_property
+    def chords(self) -> tuple[Ints, Array, Array]:
+        """Numbers (2, parts) of the stations at both ends of the parts, ways (parts, 2) between these, and whether a contact is there (parts, 1)."""
+        ends = np.array([(part.first, part.last) for part in self.parts]).T
+        first, last = np.array([item.reference for item in self.stations])[ends]
+        touched = np.isin(ends, [k for k, _ in self.touched])
+        return ends, last - first, (touched[0] | touched[1])[:, None]
 
     @cached_property
     def sides(self) -> tuple[Ints, Array]:

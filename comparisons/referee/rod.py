@@ -80,13 +80,16 @@ class Piece(NamedTuple):
 
     def strained(self, c: Any, s: Any, theta: Any) -> Strained:
         """Return the forces, and ``r' = (1 + N/EA) d1 + (Q/GA) d2`` minus the undeformed tangent, which small rotations leave its digits."""
-        (EI, stretch, shear), n = self.flexibility(s), self.force(c, s)
-        angle, half = theta + self.angle(s), theta / 2.0
-        d1 = np.array([np.cos(angle), np.sin(angle)])
-        d2 = np.array([-d1[1], d1[0]])
-        N, Q = (n * d1).sum(axis=0), (n * d2).sum(axis=0)
-        turned = 2.0 * np.sin(half) * np.array([-np.sin(angle - half), np.cos(angle - half)])
-        return Strained(EI, stretch, shear, N, Q, n, turned + stretch * N * d1 + shear * Q * d2)
+        EI, EA, GA, *W = polyval(s, self.coefficients, tensor=False)
+        stretch, shear, n, half = 1.0 / EA, 1.0 / GA, c - W, theta / 2.0
+        angle, chord = theta + self.angle(s), 2.0 * np.sin(half)
+        x, y = np.cos(angle), np.sin(angle)
+        N, Q = n[0] * x + n[1] * y, n[1] * x - n[0] * y
+        along, across = stretch * N, shear * Q
+        way = np.array([
+            along * x - across * y - chord * np.sin(angle - half), along * y + across * x + chord * np.cos(angle - half)
+        ])  # fmt: skip
+        return Strained(EI, stretch, shear, N, Q, n, way)
 
     def tangent(self, c: Any, s: Any, theta: Any) -> Any:
         """Return ``r'`` (2, ...)."""
@@ -108,6 +111,11 @@ class Rod:
     def curvature(self) -> float:
         """Curvature kappa0 of the undeformed axis."""
         return float(self.pieces[0].curvature[0])
+
+
+def trimmed(table: Array) -> Array:
+    """Coefficients (k, 5, ...) without the highest powers, if these are zero."""
+    return table[: 1 + np.flatnonzero(np.any(table, axis=(1, 2)))[-1]]
 
 
 def rod_of(scene: Scene, beam: BeamSpec, t: float, units: Units) -> Rod:
