@@ -61,7 +61,7 @@ def assemble(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> System:
     for touch in layout.touches:
         if touch.grip is not None:
             e = element_before(mesh, touch)
-            numbers, (row, couple, direction, _), derivatives = rows(layout, touch, z, own_gradient[e, 1])
+            numbers, (row, couple, direction, *_), derivatives = rows(layout, touch, z, own_gradient[e, 1])
             by = np.zeros((3, len(g)))
             by[:, numbers] = derivatives[:3]
             np.add.at(by.T, local[e], np.outer(hessian[e, 1], derivatives[:3, 6]))

@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 
 
 def rows(layout: Layout, touch: Touch, z: Array, moment: float) -> tuple[list[int], Array, Array]:
-    """Return numbers; row of friction, couple, row of the direction and A; and their derivatives (4, 8) by the numbers."""
+    """Return numbers; row of friction, couple, row of the direction, A and psi; and their derivatives (5, 8) by the numbers."""
     before, behind = layout.beside(touch)
     turn = int(layout.stations[before.last].numbers[2])
     forces = [before.force, before.force + 1, behind.force, behind.force + 1]
@@ -51,14 +51,15 @@ def rows(layout: Layout, touch: Touch, z: Array, moment: float) -> tuple[list[in
     drag, push = force[0] * x + force[1] * y, face.left * (force[0] * y - force[1] * x)
     couple = lever * drag
     stretch = a + lever * ((m - couple / 2.0) / piece.flexibility(s)[0] + piece.curvature)
+    shear = phi - theta - piece.angle(s)
     row, hold = drag - grip.slip * grip.friction * push, grip.hold
     if hold is not None:
         row = (stretch + hold.stretch) / 2.0 * (s - hold.arc_position) - hold.area(layout.load_parameter)
         if touch.angle >= 0:
             lever = (lever + face.lever(hold.arc_position)) / 2.0
-            row = row + lever * wrapped(phi - theta - piece.angle(s) - hold.shear)
+            row = row + lever * wrapped(shear - hold.shear)
             row = row - face.left * face.radius * (phi - hold.direction)
-    values = np.array([row, couple, aligned, stretch])
+    values = np.array([row, couple, aligned, stretch, shear])
     return numbers, values[:, 0].real, values.imag / STEP
 
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from comparisons.referee.equations import element_before
 from comparisons.referee.grip import Grip, Hold
-from comparisons.referee.layout import NONE, Touch
+from comparisons.referee.layout import Touch
 from comparisons.referee.path import corners, reach, tangent
 from comparisons.referee.rod import largest
 from comparisons.referee.state import Equilibrium
@@ -52,16 +52,10 @@ def _rates(now: Equilibrium, behind: bool) -> Array:
 
 
 def slip_rate(now: Equilibrium, touch: Touch, *, behind: bool = False) -> float:
-    """Slip rate of a contact with friction, ahead or behind, in units of the layout."""
-    layout, rate = now.layout, _rates(now, behind)
-    before, _ = layout.beside(touch)
-    slipping = place(now, touch).stretch * float(rate[touch.arc])
-    if touch.angle == NONE:
-        return slipping
-    theta, phi = float(rate[layout.stations[before.last].numbers[2]]), float(rate[touch.angle])
-    theta += before.rod.curvature * float(rate[touch.arc])
-    face = touch.face
-    return slipping + float(face.lever(now.z[touch.arc])) * (phi - theta) - face.left * face.radius * phi
+    """Slip rate of a contact with friction, ahead or behind, in units of the layout: the derivative of the row of a stick that begins here."""
+    held = replace(touch, grip=Grip(friction=0.0, slip=0, hold=place(now, touch)))
+    numbers, _, derivatives = rows(now.layout, held, now.z, _moment(now, touch))
+    return float(derivatives[0] @ np.append(_rates(now, behind), 0.0)[numbers])
 
 
 def relative_slip_rate(now: Equilibrium, touch: Touch, *, behind: bool = False) -> float:
@@ -75,17 +69,16 @@ def relative_slip_rate(now: Equilibrium, touch: Touch, *, behind: bool = False) 
 
 def place(now: Equilibrium, touch: Touch) -> Hold:
     """The place of a contact with friction, at which it may begin to stick."""
-    layout, z = now.layout, now.z
-    before, _ = layout.beside(touch)
-    phi = 0.0 if touch.angle == NONE else float(z[touch.angle])
-    moment = float(now.system.ends[element_before(now.mesh, touch), 1])
+    _, (*_, stretch, shear), _ = rows(now.layout, touch, now.z, _moment(now, touch))
     return Hold(
-        load_parameter=now.load_parameter,
-        arc_position=float(z[touch.arc]),
-        stretch=float(rows(layout, touch, z, moment)[1][3]),
-        shear=float(phi - layout.motions(z)[before.last, 2] - before.piece.angle(z[touch.arc])[0]),
-        direction=phi,
-    )
+        load_parameter=now.load_parameter, arc_position=float(now.z[touch.arc]), stretch=stretch, shear=shear,
+        direction=float(now.layout.full(now.z)[touch.angle]),
+    )  # fmt: skip
+
+
+def _moment(now: Equilibrium, touch: Touch) -> float:
+    """Moment before a contact."""
+    return float(now.system.ends[element_before(now.mesh, touch), 1])
 
 
 def roll(
