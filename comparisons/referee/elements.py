@@ -16,7 +16,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss, legvander
+from numpy.polynomial.legendre import leggauss, legint, legvander
 from numpy.polynomial.polynomial import polyder, polyval
 from numpy.typing import NDArray
 
@@ -39,10 +39,9 @@ def shapes(xi: Array) -> tuple[Array, Array]:
     """Return the shape functions and their derivatives in xi, each (..., p + 1), beginning with the two linear functions."""
     legendre = legvander(xi, DEGREE)
     j = np.arange(2, DEGREE + 1)
-    half = np.full(np.shape(xi), 0.5)
     bubbles = (legendre[..., 2:] - legendre[..., :-2]) / (2.0 * j - 1.0)
-    values = np.concatenate([(0.5 - xi / 2.0)[..., None], (0.5 + xi / 2.0)[..., None], bubbles], axis=-1)
-    slopes = np.concatenate([-half[..., None], half[..., None], legendre[..., 1:-1]], axis=-1)
+    values = np.concatenate([legendre[..., :2] @ [[0.5, 0.5], [-0.5, 0.5]], bubbles], axis=-1)
+    slopes = np.concatenate([legendre[..., :1] @ [[-0.5, 0.5]], legendre[..., 1:-1]], axis=-1)
     return values, slopes
 
 
@@ -51,15 +50,13 @@ VALUES, SLOPES = shapes(GAUSS)
 """Shape functions and derivatives at the Gauss points, (points, p + 1)."""
 AMPLITUDE = 2.0 / (2.0 * np.arange(2, DEGREE + 1) - 1.0)
 """Bounds of the bubbles j = 2..p."""
-_COEFFICIENTS = np.linalg.inv(legvander(GAUSS, _POINTS - 1))
+_INTEGRALS = legint(np.linalg.inv(legvander(GAUSS, _POINTS - 1)), lbnd=-1)
+"""From values at the Gauss points to the coefficients of the integral from -1."""
 
 
 def up_to(xi: Array) -> Array:
     """Return the matrix (m, points) from values at the Gauss points to the integrals from -1 to xi (m,)."""
-    table = legvander(xi, _POINTS)
-    j = np.arange(1, _POINTS)
-    integrals = np.column_stack([xi + 1.0, (table[:, 2:] - table[:, :-2]) / (2.0 * j + 1.0)])
-    return np.asarray(integrals @ _COEFFICIENTS)
+    return np.asarray(legvander(xi, _POINTS) @ _INTEGRALS)
 
 
 class Mesh(NamedTuple):

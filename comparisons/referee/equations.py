@@ -117,24 +117,7 @@ def _add_springs_and_loads(layout: Layout, z: Array, g: Array, k: Array) -> floa
     return float(moved @ forces) / 2.0
 
 
-def solved(system: System, held: Ints | None = None) -> Array | None:
-    """Newton correction of the unknowns outside the elements, with those `held` fixed; None if singular."""
-    hessian, gradient = system.hessian, system.gradient
-    if held is not None and len(held):
-        hessian, gradient = hessian.copy(), gradient.copy()
-        hessian[held], hessian[:, held], gradient[held] = 0.0, 0.0, 0.0
-        hessian[held, held] = 1.0
-    if not np.all(np.isfinite(hessian)) or not np.all(np.any(hessian, axis=1)):
-        return None
-    # EI, EA and forces differ by orders of magnitude
-    scale = _scales(hessian)
-    try:
-        return np.asarray(-scale * np.linalg.solve(scale[:, None] * hessian * scale, scale * gradient))
-    except np.linalg.LinAlgError:
-        return None
-
-
-def _scales(matrix: Array) -> Array:
+def scales(matrix: Array) -> Array:
     """Return factors of rows and columns with which the largest entry of every row is about one."""
     scale, size = np.ones(len(matrix)), np.abs(matrix)
     for _ in range(3):
@@ -153,7 +136,7 @@ def index_of(layout: Layout, z: Array, system: System) -> int:
         return -1
     free = directions(layout, z)
     reduced = free.T @ system.hessian @ free
-    scale = _scales(reduced)
+    scale = scales(reduced)
     eigenvalues = np.linalg.eigvalsh(scale[:, None] * reduced * scale), np.linalg.eigvalsh(system.blocks)
     return sum(int((values < 0.0).sum()) for values in eigenvalues) - 2 * len(layout.parts)
 
