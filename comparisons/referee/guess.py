@@ -93,13 +93,17 @@ def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotati
     for touch in layout.touches:
         z[touch.arc] = answer.arcs[touch.spec.pair] / layout.length
     turns = _rotations(layout, answer)
-    _set_displacements(layout, answer, turns, z)
-    _balance(layout, answer, z)
     for part, arcs in zip(layout.parts, layout.extents(z), strict=True):
-        for number, arc in zip((part.first, part.last), arcs, strict=True):
-            unknown = layout.stations[number].numbers[2]
-            if unknown >= 0:
-                z[unknown] = np.interp(arc, *turns[part.beam])
+        axis, line = answer.axes[layout.scene.beams[part.beam].name]
+        for number, s in zip((part.first, part.last), arcs, strict=True):
+            station, theta = layout.stations[number], np.interp(s, *turns[part.beam])
+            seen = np.array([np.interp(s * layout.length, axis, way) for way in line.T])
+            moved = (seen - layout.scene.beams[0].start) / layout.length - station.reference
+            free = (station.numbers >= 0) & [station.touch is None, station.touch is None, True]
+            z[station.numbers[free]] = np.append(moved, theta)[free]
+            if station.touch is not None and station.touch.angle != NONE:
+                z[station.touch.angle] = part.piece.angle(s)[0] + theta + math.asin(station.touch.face.tilt)
+    _balance(layout, answer, z)
     return z, turns
 
 
@@ -141,26 +145,6 @@ def _rotation(layout: Layout, answer: AnswerState, part: Part) -> Rotations:
     slope = np.append(np.diff(theta) / np.diff(s), 0.0)[[0, max(len(s) - 2, 0)]]
     ends = theta[[0, -1]] + slope * ([0.0, length] - s[[0, -1]])
     return np.array([0.0, *s, length]), np.array([ends[0], *theta, ends[1]])
-
-
-def _set_displacements(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Array) -> None:
-    """Set the displacements of the stations and the normals of the contacts."""
-    beams = layout.scene.beams
-    for number, station in enumerate(layout.stations):
-        touch, unknown = station.touch, station.numbers[:2]
-        if touch is None:
-            if station.arc is None:
-                seen = end_of((station.joint or station.ends)[0], answer.axes.__getitem__)
-            else:
-                part = next(item for item in layout.parts if item.first == number)
-                arcs, line = answer.axes[beams[part.beam].name]
-                seen = np.array([np.interp(station.arc * layout.length, arcs, way) for way in line.T])
-            moved = (seen - beams[0].start) / layout.length - station.reference
-            z[unknown[unknown >= 0]] = moved[unknown >= 0]
-        elif touch.angle != NONE:
-            before, arc = layout.beside(touch)[0], z[touch.arc]
-            turn = np.interp(arc, *turns[before.beam]) + math.asin(touch.face.tilt)
-            z[touch.angle] = before.piece.angle(arc)[0] + turn
 
 
 def _balance(layout: Layout, answer: AnswerState, z: Array) -> None:
