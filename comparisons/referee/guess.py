@@ -169,12 +169,11 @@ def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[i
     acting = loads[:, :2] - (stiffness @ layout.motions(z).ravel()).reshape(loads.shape)[:, :2]
     for hinge in layout.hinges:
         acting[hinge.joint] += acting[hinge.end]
-    where = {end: k for k, item in enumerate(layout.stations) for end in item.joint}
     for end, (x, y, _) in answer.reactions.items():
-        acting[where[end]] += np.array([x, y]) / layout.force
+        acting[layout.joint(end)] += np.array([x, y]) / layout.force
     for k, touch in layout.touched:
         force = np.nan_to_num(np.array(answer.forces[touch.spec.pair])) / layout.force
         acting[k] += force
         if "." in touch.spec.node:
-            acting[where[touch.spec.node]] -= force
-    return acting, {where[end] for end in answer.reactions}
+            acting[layout.joint(touch.spec.node)] -= force
+    return acting, {layout.joint(end) for end in answer.reactions}

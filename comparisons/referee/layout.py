@@ -68,8 +68,6 @@ class Station:
     """Ends of beams that are rigidly attached."""
     joint: tuple[str, ...] = ()
     """Ends of all beams at a joint, with those behind a hinge; empty for other stations."""
-    arc: float | None = None
-    """Arc position of a place inside a beam."""
 
     def turning(self, rotation: int, **more: Any) -> "Station":
         """Return a station at the same place with a rotation of its own."""
@@ -203,9 +201,10 @@ class Layout:
                 ways[k] -= away * np.array([-np.sin(phi), np.cos(phi)])
         return ways
 
-    def position(self, z: Array, station: int) -> Array:
-        """Position (2,) of the axis at a station."""
-        return np.asarray(self.stations[station].reference + self.shifts(z)[station])
+    @cached_property
+    def references(self) -> Array:
+        """Undeformed positions (stations, 2)."""
+        return np.array([item.reference for item in self.stations])
 
     def extents(self, z: Array) -> Array:
         """Arc positions (parts, 2) at the starts and the ends of all parts."""
@@ -219,7 +218,7 @@ class Layout:
     def chords(self) -> tuple[Ints, Array, Array]:
         """Numbers (2, parts) of the stations at both ends of the parts, ways (parts, 2) between these, and whether a contact is there (parts, 1)."""
         ends = np.array([(part.first, part.last) for part in self.parts]).T
-        first, last = np.array([item.reference for item in self.stations])[ends]
+        first, last = self.references[ends]
         touched = np.isin(ends, [k for k, _ in self.touched])
         return ends, last - first, (touched[0] | touched[1])[:, None]
 
@@ -282,9 +281,7 @@ def lay_out(
             )
             on_beam[beam.name].append((s * length, len(stations), numbers.fixed(s)))
             place = _place(scene, beam.place(s / rod.length), length)
-            stations.append(
-                Station(reference=place, numbers=np.array(numbers.free(3)), load=loads / unit, arc=s)
-            )
+            stations.append(Station(reference=place, numbers=np.array(numbers.free(3)), load=loads / unit))
     ends = {end: number for number, station in enumerate(stations) for end in station.ends}
     parts: list[Part] = []
     for number, (beam, rod) in enumerate(zip(scene.beams, rods, strict=True)):
@@ -292,7 +289,7 @@ def lay_out(
         chain = [begin, *sorted(on_beam[beam.name]), (beam.length, end, numbers.fixed(rod.length))]
         piece = 0
         for (_, first, arc), (_, last, arc_after) in pairwise(chain):
-            piece += stations[first].arc is not None
+            piece += arc < NONE  # a place inside the beam, whose arc position is prescribed
             constant = numbers.free(2)[0]
             parts.append(Part(number, first, last, (arc, arc_after), constant, rod, rod.pieces[piece]))
     return Layout(

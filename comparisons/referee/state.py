@@ -203,7 +203,7 @@ class Equilibrium:
             + half[e] * (up_to(xi) * inner[:, e]).sum(axis=2)
         )
         pieces, c, at, turned = layout.pieces(part), constants[:, e], s[:, None], theta[:, None]
-        begins = np.array([layout.position(z, layout.parts[k].first) for k in parts])[part - parts[0]]
+        begins = (layout.references + layout.shifts(z))[layout.chords[0][0, part]]
         there = pieces.strained(c, at, turned)
         position = begins + (along + pieces.between(first[:, None], at)[..., 0]).T
         return Shape(
