@@ -33,6 +33,7 @@ STEP = 1e-30
 """Imaginary step of derivatives, which have no error of subtraction."""
 OUTER = 6
 """Unknowns of an element outside its bubbles: two rotations, c, s_a and s_b."""
+_TURN = [0, 1, *range(OUTER, OUTER + DEGREE - 1)]
 
 
 def shapes(xi: Array) -> tuple[Array, Array]:
@@ -72,6 +73,10 @@ class Mesh(NamedTuple):
     """Numbers (e, 6) of `theta_a, theta_b, c_x, c_y, s_a, s_b`."""
     unknowns: int
     """Number of unknowns including the vertices inside the parts, without the bubbles."""
+    points: Array
+    """Gauss points (e, g) as fractions of the part."""
+    to: Array
+    """From the unknowns of an element to theta, theta_xi, c_x, c_y, half and s at its points, (e, g, 6, p + 5)."""
 
 
 def mesh_of(layout: Layout, grids: list[Array]) -> Mesh:
@@ -83,14 +88,20 @@ def mesh_of(layout: Layout, grids: list[Array]) -> Mesh:
         chain = [begin, *range(count, count + len(grid) - 2), end]
         local += [(*ends, item.force, item.force + 1, *item.arcs) for ends in pairwise(chain)]
         count += len(grid) - 2
+    start, share = (
+        np.concatenate(items) for items in zip(*((grid[:-1], np.diff(grid)) for grid in grids), strict=True)
+    )
+    half = share[:, None] / 2.0
+    points = start[:, None] + half * (1.0 + GAUSS)
+    to = np.zeros((*points.shape, 6, OUTER + DEGREE - 1))
+    to[..., 0, _TURN], to[..., 1, _TURN] = VALUES, SLOPES
+    to[..., 2, 2] = to[..., 3, 3] = 1.0
+    to[..., 4, 4], to[..., 4, 5], to[..., 5, 4], to[..., 5, 5] = -half, half, 1.0 - points, points
     return Mesh(
         grids=grids,
         part=np.repeat(np.arange(len(grids)), [len(grid) - 1 for grid in grids]),
-        start=np.concatenate([grid[:-1] for grid in grids]),
-        share=np.concatenate([np.diff(grid) for grid in grids]),
-        local=np.array(local),
-        unknowns=count,
-    )
+        start=start, share=share, local=np.array(local), unknowns=count, points=points, to=to,
+    )  # fmt: skip
 
 
 def rotations(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> Array:
@@ -100,27 +111,24 @@ def rotations(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> Array:
 
 def elements(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> tuple[Array, Array, Array]:
     """Gradient (e, p + 5) and Hessian of the energy in `theta_a, theta_b, c_x, c_y, s_a, s_b` and the bubbles; strain energy (e,)."""
-    ends, share = layout.extents(z)[mesh.part], mesh.share[:, None]
-    extent, x = np.diff(ends), mesh.start[:, None] + share * (1.0 + GAUSS) / 2.0
-    coefficients = rotations(layout, mesh, z, bubbles)
-    # from the unknowns of an element to theta, theta_xi, c_x, c_y, half and s
-    size = coefficients.shape[1] + 4
-    turn, to = np.r_[0, 1, OUTER:size], np.zeros((*x.shape, 6, size))
-    to[..., 0, turn], to[..., 1, turn] = VALUES, SLOPES
-    to[..., 2, 2] = to[..., 3, 3] = 1.0
-    to[..., 4, 4], to[..., 4, 5], to[..., 5, 4], to[..., 5, 5] = -share / 2.0, share / 2.0, 1.0 - x, x
-    given = np.empty((6, *x.shape))
+    ends, x, to, coefficients = (
+        layout.extents(z)[mesh.part],
+        mesh.points,
+        mesh.to,
+        rotations(layout, mesh, z, bubbles),
+    )
+    extent, given = np.diff(ends), np.empty((6, *x.shape))
     given[0], given[1], given[2:4] = (
         coefficients @ VALUES.T,
         coefficients @ SLOPES.T,
         z[mesh.local[:, 2:4]].T[..., None],
     )
-    given[4], given[5] = share * extent / 2.0, ends[:, :1] + extent * x
+    given[4], given[5] = mesh.share[:, None] * extent / 2.0, ends[:, :1] + extent * x
     steps = given[..., None] + 1j * STEP * np.eye(6)[:, None, None]
     found = _at_points(layout.pieces(mesh.part), steps.reshape(6, len(x), -1)).reshape(7, *steps.shape[1:])
     first, second = found[:6, ..., 0].real.transpose(1, 2, 0), found[:6].imag.transpose(1, 2, 0, 3) / STEP
     gradient = np.einsum("egi,egis->es", first * WEIGHTS[:, None], to)
-    rows, weighted = (len(x), -1, size), second * WEIGHTS[:, None, None]
+    rows, weighted = (len(x), -1, to.shape[-1]), second * WEIGHTS[:, None, None]
     hessian = to.reshape(rows).swapaxes(1, 2) @ (weighted @ to).reshape(rows)
     return gradient, hessian, found[6, ..., 0].real @ WEIGHTS
 

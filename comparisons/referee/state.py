@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.elements import AMPLITUDE, GAUSS, VALUES, WEIGHTS, Mesh, rotations, shapes, up_to
+from comparisons.referee.elements import AMPLITUDE, VALUES, WEIGHTS, Mesh, rotations, shapes, up_to
 from comparisons.referee.equations import System, assemble, index_of
 from comparisons.referee.layout import NONE, Layout, Touch
 from comparisons.referee.rod import cross
@@ -192,7 +192,7 @@ class Equilibrium:
         of, e = mesh.part[mine], e - mine.start
         extent = np.diff(extents)[of, 0]
         half = mesh.share[mine] * extent / 2.0
-        points = (extents[of, 0] + extent * mesh.start[mine] + half)[:, None] + half[:, None] * GAUSS
+        points = extents[of, :1] + extent[:, None] * mesh.points[mine]
         constants = z[mesh.local[mine, 2:4]].T[..., None]
         rotation = rotations(layout, mesh, z, self.bubbles)[mine]
         inner = layout.pieces(of).strained(constants, points, rotation @ VALUES.T).way
