@@ -261,9 +261,7 @@ def lay_out(
     stations, hinges = _joints(scene, load_parameter, rods, length, unit, numbers)
     at = {end: station for station in stations for end in station.joint}
     on_beam: dict[str, list[tuple[float, int, int]]] = {beam.name: [] for beam in scene.beams}
-    for spec in scene.contacts:
-        if spec.pair not in closed:
-            continue
+    for spec in (item for item in scene.contacts if item.pair in closed):
         face = face_of(scene, spec, length)
         turn, arc, angle = *numbers.free(2), numbers.free(1)[0] if face.start else NONE
         touch = Touch(spec=spec, arc=arc, angle=angle, face=face, grip=grips.get(spec.pair))
@@ -275,10 +273,9 @@ def lay_out(
         stations.append(node.turning(turn, touch=touch))
     for beam, rod in zip(scene.beams, rods, strict=True):
         inside = [item for item in scene.load_histories if item.load.beam == beam.name and item.load.at]
-        for s in map(float, rod.breaks[1:-1]):
-            loads = _total(
-                item.at(load_parameter) for item in inside if (item.load.at or 0.0) * rod.length == s
-            )
+        for s in rod.breaks[1:-1]:
+            here = (item for item in inside if (item.load.at or 0.0) * rod.length == s)
+            loads = _total(item.at(load_parameter) for item in here)
             on_beam[beam.name].append((s * length, len(stations), numbers.fixed(s)))
             place = _place(scene, beam.place(s / rod.length), length)
             stations.append(Station(reference=place, numbers=np.array(numbers.free(3)), load=loads / unit))
@@ -323,10 +320,8 @@ def _joints(
     stations: list[Station] = []
     for point, ends in names.items():
         own = tuple(end for end in ends if end not in hinged)
-        motion: tuple[float | None, ...] = (None, None, None)
-        for support in scene.all_supports:
-            if support.node in ends:
-                motion = scene.prescribed_motions[support.node].at(t)
+        held = [support.node for support in scene.all_supports if support.node in ends]
+        motion = scene.prescribed_motions[held[-1]].at(t) if held else (None, None, None)
         springs = _total((*item.stiffness, item.rotation) for item in scene.springs if item.node in ends)
         turns = bool(own or springs[2] or any(hinged.get(end) for end in ends))
         loads = _total(item.at(t) for item in scene.load_histories if item.load.node in ends)
