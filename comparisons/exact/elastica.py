@@ -17,7 +17,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
-from scipy.special import elliprd, elliprf
+from scipy.special import beta, betainc
 
 from comparisons.exact.contact import Cantilever
 from comparisons.exact.path import Event, Outcome, RodPath, Row, changed, collected, require, vertices
@@ -27,21 +27,10 @@ Array = NDArray[np.float64]
 
 
 def _integrals(u: NDArray[np.float64] | float) -> tuple[Array, Array, Array]:
-    """Return `I0, I1, I2` for `0 <= u <= pi` by Carlson's symmetric elliptic integrals of `z = sqrt(sin u)`."""
-    sine = np.abs(np.sin(u))
-    below = np.cos(u) ** 2 / (1.0 + sine)
-    z = np.sqrt(sine)
-    first, second = (
-        2.0 * z * elliprf(below, 1.0 + sine, 1.0),
-        2.0 / 3.0 * z**3 * elliprd(below, 1.0 + sine, 1.0),
-    )
-    whole_first, whole_second = 4.0 * elliprf(0.0, 2.0, 1.0), 4.0 / 3.0 * elliprd(0.0, 2.0, 1.0)
-    beyond = np.asarray(u) > np.pi / 2
-    return (
-        np.where(beyond, whole_first - first, first),
-        2.0 * z,
-        np.where(beyond, whole_second - second, second),
-    )
+    """Return `I0, I1, I2` for `0 <= u <= pi` by incomplete beta functions of `sin^2(u/2)`."""
+    half, sine = np.sin(np.asarray(u) / 2.0) ** 2, np.abs(np.sin(u))
+    first, second = (beta(a, a) * betainc(a, a, half) for a in (0.25, 0.75))
+    return first / np.sqrt(2.0), 2.0 * np.sqrt(sine), second * np.sqrt(2.0)
 
 
 def _polar_angle(tc: float) -> float:

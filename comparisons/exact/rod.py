@@ -29,9 +29,9 @@ _ALLOWED_FLOW, _ALLOWED_AREA = 1e-6, 1e-11
 """Differences of work and dissipation, and of c in a stick."""
 _SAME, _SWEEPS = 1e-15, 20
 """Largest change of c in the last of so many sweeps at most."""
-_TOGETHER, _AT_ONCE, _EDGE = 1e-9, 1e-14, 1e-12
+_TOGETHER, _AT_ONCE, _EDGE, _STIFF = 1e-9, 1e-14, 1e-12, 2e-17
 """Load parameters nearer than the first are one event (a pin that leaves square to the rod ends its slip where it leaves), nearer
-than the second are one; a margin within the third is at its edge."""
+than the second are one; a margin within the third, or the fourth over the flexibility, up to the first, is at its edge."""
 _TOUCH = 1e-12
 """Distance, in lengths of the rod, below which the pin touches."""
 _FIRST_STEP, _SMALLEST_STEP = 0.05, 1e-11
@@ -78,6 +78,7 @@ class Follower:
         touches = not rod.friction and height >= -_TOUCH and x <= 1.0 + _TOUCH
         self.rod, self.state = rod, Outcome.CONTACT if touches else Outcome.OPEN
         self.t, self.z, self.phase = 0.0, np.array([0.0, 0.0, 0.0, x]), Phase(1, 0.0, Held(1.0, 1.0, 0.0))
+        self.edge = max(_EDGE, min(_STIFF / (rod.flexibility.stretch or 1.0), _TOGETHER))
         self.energies = np.zeros(2)
         self.events: list[Event] = []
         self.iterations = 0
@@ -153,7 +154,7 @@ class Follower:
         """Pass a corner of the pin's path; on the edge of the cone a slip goes on or begins, or the pin sticks."""
         here = self._linear().here
         edge = self.phase.sense or int(np.sign(here.tangential))
-        if self.rod.friction * here.normal - edge * here.tangential <= _EDGE:
+        if self.rod.friction * here.normal - edge * here.tangential <= self.edge:
             self._decide((edge, 0))
 
     def _decide(self, senses: Iterable[int]) -> None:
@@ -205,7 +206,7 @@ class Follower:
             return False
         (phase, nodes), ending = swept, None
         for before, after in zip([start, *nodes], nodes, strict=False):
-            if np.any(after.margins < -_EDGE):
+            if np.any(after.margins < -self.edge):
                 event = self._event(phase, start, before, after)
                 if event is None:
                     return False
@@ -284,16 +285,16 @@ class Follower:
         def margin(t: float, k: int) -> float:
             share = (t - before.t) / (after.t - before.t)
             node = self._node(phase, t, before.z + share * (after.z - before.z))
-            return float(node.margins[k]) if node is not None else np.nan
+            return float(node.margins[k]) + self.edge - _EDGE if node is not None else np.nan
 
         roots: list[tuple[float, Ending]] = []
         for ending in Ending:
-            if after.margins[ending] >= -_EDGE:
+            if after.margins[ending] >= -self.edge:
                 continue
             goes_on = start.t - phase.since > _TOGETHER or ending is Ending.SLIP_OFF or not self.rod.friction
-            if before is start and start.margins[ending] <= _EDGE and goes_on:
+            if before is start and start.margins[ending] <= self.edge and goes_on:
                 return start.t, ending
-            if before.margins[ending] <= _EDGE:
+            if before.margins[ending] <= self.edge:
                 return None
             try:
                 roots.append((float(brentq(margin, before.t, after.t, args=(ending,), xtol=1e-15)), ending))

@@ -44,16 +44,10 @@ def rule(points: int) -> tuple[Array, Array]:
 
 
 def integrals(fractions: Array) -> Array:
-    """Return the matrix from values at the Gauss points to the integrals from 0 to fractions (k,), shape (POINTS, k).
-
-    Legendre's polynomial `P_k` has the integral `(P_k+1 - P_k-1)/(2 k + 1)`.
-    """
-    nodes, w = legendre.leggauss(POINTS)
-    degree, x = np.arange(POINTS), 2.0 * fractions - 1.0
-    coefficients = (2 * degree[:, None] + 1) / 2.0 * legendre.legvander(nodes, POINTS - 1).T * w
-    P = legendre.legvander(x, POINTS)
-    primitive = np.column_stack([x + 1.0, (P[:, 2:] - P[:, :-2]) / (2 * np.arange(1, POINTS) + 1)])
-    return np.asarray(primitive @ coefficients / 2.0).T
+    """Return the matrix from values at the Gauss points to the integrals from 0 to fractions (k,), shape (POINTS, k)."""
+    nodes, _ = legendre.leggauss(POINTS)
+    primitives = legendre.legint(np.linalg.inv(legendre.legvander(nodes, POINTS - 1)), lbnd=-1)
+    return np.asarray(legendre.legvander(2.0 * fractions - 1.0, POINTS) @ primitives / 2.0).T
 
 
 GAUSS, WEIGHTS = rule(POINTS)

@@ -1,7 +1,6 @@
 """Energy of the rods with its exact gradient and Hessian; the unknowns inside the elements are condensed.
 
-With the force ``n = c - W(s)`` of a part in the frame of the undeformed tangent e, ``N = n_x cos th + n_y sin th`` and ``Q = -n_x sin th +
-n_y cos th``:
+With the force ``n = c - W(s)`` of a part, the undeformed tangent e and the section's directions d and d2, ``N = n.d`` and ``Q = n.d2``:
 
     Pi = sum_parts c.(r_b - r_a - R_b + R_a) + int EI th'^2/2 - (n.(d - e) + N^2/2EA + Q^2/2GA) ds  -  loads  +  springs
 
@@ -10,7 +9,7 @@ the undeformed axis, ``R_b - R_a = l e`` of a straight part. The resultant W of 
 by parts of ``int n.r' - q.r ds`` leaves ``c.(r_b - r_a)``, and W(L) with the loads at the beam's end. With the forces as unknowns, large
 EA and GA cause neither round-off nor locking. Stationarity in an arc position means that ``H = m^2/2EI + m kappa0 + N + N^2/2EA + Q^2/2GA``
 is continuous at the contact, which is ``F.(r'_- + r'_+) = 0``, contact without friction. A contact with friction has other rows in place of
-this one: see `comparisons.referee.grip`.
+this one: see `comparisons.referee.touching`.
 """
 
 from typing import Any, NamedTuple
@@ -18,17 +17,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.elements import OUTER, Mesh, elements
-from comparisons.referee.grip import rows
-from comparisons.referee.layout import NONE, Layout, Part, Touch
+from comparisons.referee.elements import OUTER, STEP, Mesh, elements
+from comparisons.referee.layout import NONE, Layout, Touch
+from comparisons.referee.touching import rows
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
-
-_STEP = 1e-30
-"""Imaginary step of derivatives, which have no error of subtraction."""
-_DENSE = 300
-"""Number of unknowns up to which matrices are solved as full ones."""
 
 
 class System(NamedTuple):
@@ -67,16 +61,15 @@ def assemble(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> System:
     for touch in layout.touches:
         if touch.grip is not None:
             e = element_before(mesh, touch)
-            found = rows(layout, touch, z, own_gradient[e, 1])
+            numbers, (row, couple, direction, *_), derivatives = rows(layout, touch, z, own_gradient[e, 1])
             by = np.zeros((3, len(g)))
-            by[:, found.numbers] = found.derivatives[:3]
-            np.add.at(by.T, local[e], np.outer(hessian[e, 1], found.derivatives[:3, 6]))
-            turn = found.numbers[0]
-            g[touch.arc], k[touch.arc] = found.row, by[0]
-            g[turn] -= found.couple
-            k[turn] -= by[1]
+            by[:, numbers] = derivatives[:3]
+            np.add.at(by.T, local[e], np.outer(hessian[e, 1], derivatives[:3, 6]))
+            g[touch.arc], k[touch.arc] = row, by[0]
+            g[numbers[0]] -= couple
+            k[numbers[0]] -= by[1]
             if touch.angle != NONE:
-                g[touch.angle], k[touch.angle] = found.direction, by[2]
+                g[touch.angle], k[touch.angle] = direction, by[2]
     return System(g[free], k[free, free], held, shift, lever, blocks, own_gradient[:, :2], energy)
 
 
@@ -88,93 +81,47 @@ def element_before(mesh: Mesh, touch: Touch) -> int:
 def _add_parts(layout: Layout, z: Array, g: Array, k: Array) -> None:
     """Add ``c.(r_b - r_a - R_b + R_a)`` of the parts; at a contact ``r = x - offset(s) nu(phi)``."""
     local, sizes = layout.sides
-    given = layout.full(z)[local].T[..., None] + 1j * _STEP * np.eye(6)[:, None]
-    by = np.array(_at_side(given, sizes[..., None]))
+    given = layout.full(z)[local].T[..., None] + 1j * STEP * np.eye(6)[:, None]
+    angle = layout.pieces(np.arange(len(local)) // 2).angle(given[4])
+    by = np.array(_at_side(given, angle, sizes[..., None]))
     hessian = np.zeros((len(local), 6, 6))
-    hessian[:, 2:] = by.imag.swapaxes(0, 1) / _STEP
+    hessian[:, 2:] = by.imag.swapaxes(0, 1) / STEP
     hessian[:, :2, 2:] = hessian[:, 2:, :2].swapaxes(1, 2)
     np.add.at(g, local[:, 2:], by[..., 0].real.T)
     np.add.at(k, (local[:, :, None], local[:, None, :]), hessian)
-    shifts = layout.shifts(z)
-    for part, extent in zip(layout.parts, layout.extents(z), strict=True):
-        g[part.force : part.force + 2] += _apart(layout, part, extent, shifts)
+    (first, last), rest, touched = layout.chords
+    ways, (begin, end) = layout.shifts(z), layout.extents(z).T[..., None]
+    # exactly zero for an undeformed beam without contacts
+    rest = np.where(touched, rest - layout.pieces(np.arange(len(rest))).between(begin, end)[..., 0].T, 0.0)
+    g[layout.forces] += (ways[last] - ways[first] + rest).ravel()
 
 
-def _at_side(given: Any, sizes: Array) -> tuple[Any, ...]:
+def _at_side(given: Any, angle: Any, sizes: Array) -> tuple[Any, ...]:
     """Gradient of ``c.(r - R)`` at an end of a part by displacement (2), s and phi, at complex values."""
-    (c_x, c_y, _, _, s, phi), (sign, x, y, k0, turn, offset, slope) = given, sizes
-    n_x, n_y, cos, sin = x * c_x - y * c_y, y * c_x + x * c_y, np.cos(phi), np.sin(phi)
-    along = c_x * np.cos(k0 * s - turn / 2.0) + c_y * np.sin(k0 * s - turn / 2.0)
-    by_s, by_phi = -along - slope * (n_y * cos - n_x * sin), (offset + slope * s) * (n_x * cos + n_y * sin)
-    return sign * n_x, sign * n_y, sign * by_s, sign * by_phi
-
-
-def _apart(layout: Layout, part: Part, extent: Array, shifts: Array) -> Array:
-    """Return ``r_b - r_a - R_b + R_a`` in the beam's frame; it is exactly zero for an undeformed beam."""
-    a, b = layout.stations[part.first], layout.stations[part.last]
-    apart = part.rod.axes.T @ (shifts[part.last] - shifts[part.first])
-    if a.touch is None and b.touch is None:
-        return np.asarray(apart)
-    rest = part.rod.axes.T @ (b.reference - a.reference)
-    return np.asarray(apart + rest - part.rod.between(*extent))
+    (x, y, _, _, s, phi), (sign, left, start, slope) = given, sizes
+    along, cos, sin = x * np.cos(angle) + y * np.sin(angle), np.cos(phi), np.sin(phi)
+    by_s, by_phi = (
+        -along - left * slope * (y * cos - x * sin),
+        left * (start + slope * s) * (x * cos + y * sin),
+    )
+    return sign * x, sign * y, sign * by_s, sign * by_phi
 
 
 def _add_springs_and_loads(layout: Layout, z: Array, g: Array, k: Array) -> float:
     """Add dead loads, springs to the ground, ``k u^2/2``, and those of hinges; return the energy of the springs."""
-    numbers, loads, springs = layout.tables
-    moved = layout.motions(z)
-    np.add.at(g, numbers, -loads)
-    np.add.at(g, numbers, springs * moved)
-    np.add.at(k, (numbers, numbers), springs)
-    energy = float((springs * moved**2).sum()) / 2.0
-    for end, joint, stiffness in layout.hinges:
-        turns = numbers[[end, joint], 2]
-        apart = moved[end, 2] - moved[joint, 2]
-        energy += float(stiffness * apart**2) / 2.0
-        np.add.at(g, turns, stiffness * apart * np.array([1.0, -1.0]))
-        np.add.at(k, (turns[:, None], turns), stiffness * np.array([[1.0, -1.0], [-1.0, 1.0]]))
-    return energy
+    numbers, loads, stiffness = layout.tables
+    moved = layout.motions(z).ravel()
+    forces = stiffness @ moved
+    np.add.at(g, numbers.ravel(), forces - loads.ravel())
+    np.add.at(k, np.ix_(numbers.ravel(), numbers.ravel()), stiffness)
+    return float(moved @ forces) / 2.0
 
 
-def solved(system: System, held: Ints | None = None) -> Array | None:
-    """Newton correction of the unknowns outside the elements, with those `held` fixed; None if singular."""
-    hessian, gradient = system.hessian, system.gradient
-    if held is not None and len(held):
-        hessian, gradient = hessian.copy(), gradient.copy()
-        hessian[held], hessian[:, held], gradient[held] = 0.0, 0.0, 0.0
-        hessian[held, held] = 1.0
-    row, column, entry = _entries(hessian)
-    if not np.all(np.isfinite(entry)) or len(set(row.tolist())) < len(hessian):
-        return None
-    # EI, EA and forces differ by orders of magnitude
-    scale = _scales(row, column, entry)
-    right = scale * gradient
-    try:
-        if len(hessian) <= _DENSE:
-            return np.asarray(-scale * np.linalg.solve(scale[:, None] * hessian * scale, right))
-        from scipy.sparse import coo_array
-        from scipy.sparse.linalg import splu
-
-        factors = splu(coo_array((scale[row] * entry * scale[column], (row, column))).tocsc())
-        return np.asarray(-scale * factors.solve(right))
-    except (np.linalg.LinAlgError, RuntimeError):
-        return None
-
-
-def _entries(matrix: Array) -> tuple[Ints, Ints, Array]:
-    """Return rows, columns and values of the entries that are not zero."""
-    # faster than `nonzero` of the matrix itself, which has few such entries
-    number = np.flatnonzero(matrix != 0.0)
-    return *np.divmod(number, len(matrix)), matrix.ravel()[number]
-
-
-def _scales(row: Ints, column: Ints, entry: Array) -> Array:
+def scales(matrix: Array) -> Array:
     """Return factors of rows and columns with which the largest entry of every row is about one."""
-    scale, size = np.ones(int(row[-1]) + 1), np.abs(entry)
+    scale, size = np.ones(len(matrix)), np.abs(matrix)
     for _ in range(3):
-        largest = np.zeros(len(scale))
-        np.maximum.at(largest, row, scale[row] * size * scale[column])
-        scale = scale / np.sqrt(largest)
+        scale = np.sqrt(scale / (size * scale).max(axis=1))
     return scale
 
 
@@ -187,26 +134,11 @@ def index_of(layout: Layout, z: Array, system: System) -> int:
     """
     if layout.grips:
         return -1
-    held, reduced = directions(layout, z), system.hessian
-    if held is not None:
-        reduced = held.T @ reduced @ held
-    scale = _scales(*_entries(reduced))
-    inside = np.linalg.eigvalsh(system.blocks)
-    negatives = _negatives(scale[:, None] * reduced * scale) + int((inside < 0.0).sum())
-    return negatives - 2 * len(layout.parts)
-
-
-def _negatives(matrix: Array) -> int:
-    """Number of negative eigenvalues; of large matrices by Sylvester's law of inertia from ``L D L^T``."""
-    if len(matrix) <= _DENSE:
-        return int((np.linalg.eigvalsh(matrix) < 0.0).sum())
-    from scipy.linalg import ldl
-
-    pivots = ldl(matrix)[1]
-    # a block of two pivots has one eigenvalue of either sign
-    blocks = np.diag(pivots, 1) != 0.0
-    single = ~(np.append(blocks, False) | np.append(False, blocks))
-    return int((np.diag(pivots)[single] < 0.0).sum() + blocks.sum())
+    free = directions(layout, z)
+    reduced = free.T @ system.hessian @ free
+    scale = scales(reduced)
+    eigenvalues = np.linalg.eigvalsh(scale[:, None] * reduced * scale), np.linalg.eigvalsh(system.blocks)
+    return sum(int((values < 0.0).sum()) for values in eigenvalues) - 2 * len(layout.parts)
 
 
 def orientation_of(system: System) -> int:
@@ -215,14 +147,11 @@ def orientation_of(system: System) -> int:
     return int(np.prod(np.sign(signs)))
 
 
-def directions(layout: Layout, z: Array) -> Array | None:
-    """Admissible variations as columns, None if all are; the angles phi follow with the directions of the faces."""
-    turned = [touch for touch in layout.touches if touch.angle != NONE]
-    if not turned:
-        return None
-    free = np.eye(len(z))
+def directions(layout: Layout, z: Array) -> Array:
+    """Admissible variations as columns; the angles phi follow with the directions of the faces."""
+    turned, free = [touch for touch in layout.touches if touch.angle != NONE], np.eye(len(z))
     for touch in turned:
-        numbers, *_, derivatives = rows(layout, touch, z, 0.0)
+        numbers, _, derivatives = rows(layout, touch, z, 0.0)
         change = np.zeros(len(free) + 1)
         np.add.at(change, numbers, derivatives[2])
         free[touch.angle] = -change[:-1] / change[touch.angle]

@@ -20,10 +20,6 @@ PULL = 1e-9
 """Largest contact force that is round-off, over EI/L^2 of the touched beam, for the models' contacts at a release."""
 SHORTEST = 1e-9
 """Length of a part over the longest beam up to which two stations are at one place."""
-_LOADED = 65
-"""Points of a part at which the moment of the load along it is evaluated."""
-_CLOSED_LOOP = 1e-3
-"""Weight of the parts' moment balance, which depends on the inaccurate curvature of the axis; it only completes the force balance."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -96,30 +92,33 @@ def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotati
     z = np.zeros(layout.unknowns)
     for touch in layout.touches:
         z[touch.arc] = answer.arcs[touch.spec.pair] / layout.length
-    turns = _rotations(layout, answer, z)
-    _set_displacements(layout, answer, turns, z)
-    _balance(layout, answer, turns, z)
-    turns = _rotations(layout, answer, z)
+    turns = _rotations(layout, answer)
     for part, arcs in zip(layout.parts, layout.extents(z), strict=True):
-        for number, arc in zip((part.first, part.last), arcs, strict=True):
-            unknown = layout.stations[number].numbers[2]
-            if unknown >= 0:
-                z[unknown] = np.interp(arc, *turns[part.beam])
+        axis, line = answer.axes[layout.scene.beams[part.beam].name]
+        for number, s in zip((part.first, part.last), arcs, strict=True):
+            station, theta = layout.stations[number], np.interp(s, *turns[part.beam])
+            seen = np.array([np.interp(s * layout.length, axis, way) for way in line.T])
+            moved = (seen - layout.scene.beams[0].start) / layout.length - station.reference
+            free = (station.numbers >= 0) & [station.touch is None, station.touch is None, True]
+            z[station.numbers[free]] = np.append(moved, theta)[free]
+            if station.touch is not None and station.touch.angle != NONE:
+                z[station.touch.angle] = part.piece.angle(s)[0] + theta + math.asin(station.touch.face.tilt)
+    _balance(layout, answer, z)
     return z, turns
 
 
-def _rotations(layout: Layout, answer: AnswerState, z: Array) -> list[Rotations]:
+def _rotations(layout: Layout, answer: AnswerState) -> list[Rotations]:
     """Rotations of all beams, with multiples of 2 pi, so that beams agree with prescribed rotations and, at joints, with each other."""
     known: dict[int, float] = {
         k: float(layout.given[item.numbers[2]])
         for k, item in enumerate(layout.stations)
         if item.numbers[2] < 0
     }
-    own: list[list[tuple[Part, Array]]] = [[] for _ in layout.scene.beams]
-    for part, extent in zip(layout.parts, layout.extents(z), strict=True):
-        own[part.beam].append((part, extent))
-    turns = [_rotation(layout, answer, parts, z) for parts in own]
-    ends = [(parts[0][0].first, parts[-1][0].last) for parts in own]
+    own: list[list[Part]] = [[] for _ in layout.scene.beams]
+    for part in layout.parts:
+        own[part.beam].append(part)
+    turns = [_rotation(layout, answer, parts[0]) for parts in own]
+    ends = [(parts[0].first, parts[-1].last) for parts in own]
     left = list(range(len(turns)))
     while left:
         number = next((b for b in left if any(k in known for k in ends[b])), left[0])
@@ -134,108 +133,47 @@ def _rotations(layout: Layout, answer: AnswerState, z: Array) -> list[Rotations]
     return turns
 
 
-def _rotation(layout: Layout, answer: AnswerState, own: list[tuple[Part, Array]], z: Array) -> Rotations:
-    """Angles of a beam's chords from the undeformed direction, less the shear of the forces in z, extrapolated to the ends.
-
-    ``r' = d1 + (N/EA) d1 + (Q/GA) d2`` gives ``r' - n/GA = (1 + N/EA - N/GA) d1``. In strong shear the factor of d1 is negative; its
-    sign is the one that agrees with N.
-    """
-    beam, rod = layout.scene.beams[own[0][0].beam], own[0][0].rod
-    arc, line = answer.axes[beam.name]
-    pieces, extents = np.diff(line, axis=0) @ (1.0, 1.0j) / complex(*beam.direction), np.diff(arc)
-    long = (np.abs(pieces) > 0.0) & (extents > 0.0)
+def _rotation(layout: Layout, answer: AnswerState, part: Part) -> Rotations:
+    """Angles of the chords of a beam from the undeformed direction, extrapolated to the ends."""
+    length, (arc, line) = part.rod.length, answer.axes[layout.scene.beams[part.beam].name]
+    chords, extents = np.diff(line, axis=0) @ (1.0, 1.0j), np.diff(arc)
+    long = (np.abs(chords) > 0.0) & (extents > 0.0)
     if not long.any():
-        return np.array([0.0, rod.length]), np.zeros(2)
-    s, way = (arc[:-1] + arc[1:])[long] / (2.0 * layout.length), pieces[long] / extents[long]
-    way = way * np.exp(-1.0j * rod.angle(s)) if rod.turn else way
-    theta, (_, stretch, shear) = np.angle(way), rod.flexibility(s)
-    for part, (first, last) in own if np.any(shear) else ():
-        x, y = rod.force(part.piece, part.constant(z), s)
-        force = (x + 1.0j * y) * np.exp(-1.0j * rod.angle(s))
-        along = way - shear * force
-        size = np.abs(along)
-        d1 = along / np.where(size > 0.0, size, 1.0)
-        factor = (stretch - shear) * (d1 * force.conjugate()).real
-        d1 = np.where(np.abs(1.0 + factor - size) <= np.abs(1.0 - factor + size), d1, -d1)
-        theta = np.where((s >= first) & (s <= last) & (size > 0.0), np.angle(d1), theta)
-    theta = np.unwrap(theta)
+        return np.array([0.0, length]), np.zeros(2)
+    s = (arc[:-1] + arc[1:])[long] / (2.0 * layout.length)
+    theta = np.unwrap(np.angle(chords[long] * np.exp(-1.0j * part.piece.angle(s))))
     slope = np.append(np.diff(theta) / np.diff(s), 0.0)[[0, max(len(s) - 2, 0)]]
-    ends = theta[[0, -1]] + slope * ([0.0, rod.length] - s[[0, -1]])
-    return np.array([0.0, *s, rod.length]), np.array([ends[0], *theta, ends[1]])
+    ends = theta[[0, -1]] + slope * ([0.0, length] - s[[0, -1]])
+    return np.array([0.0, *s, length]), np.array([ends[0], *theta, ends[1]])
 
 
-def _set_displacements(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Array) -> None:
-    """Set the displacements of the stations and the normals of the contacts."""
-    beams = layout.scene.beams
-    for number, station in enumerate(layout.stations):
-        touch, unknown = station.touch, station.numbers[:2]
-        if touch is None:
-            if station.arc is None:
-                seen = end_of((station.joint or station.ends)[0], answer.axes.__getitem__)
-            else:
-                part = next(item for item in layout.parts if item.first == number)
-                arcs, line = answer.axes[beams[part.beam].name]
-                seen = np.array([np.interp(station.arc * layout.length, arcs, way) for way in line.T])
-            moved = (seen - beams[0].start) / layout.length - station.reference
-            z[unknown[unknown >= 0]] = moved[unknown >= 0]
-        elif touch.angle != NONE:
-            before, arc = layout.beside(touch)[0], float(z[touch.arc])
-            x, y = before.rod.axes[:, 0]
-            undeformed = math.atan2(y, x) + before.rod.angle(arc)
-            z[touch.angle] = undeformed + np.interp(arc, *turns[before.beam]) + math.asin(touch.slope)
-
-
-def _balance(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Array) -> None:
+def _balance(layout: Layout, answer: AnswerState, z: Array) -> None:
     """Set the forces of the parts by a least-squares balance with the answer's contact forces, reactions and loads."""
     acting, known = _acting(layout, answer, z)
-    joined, count = {hinge.end: hinge.joint for hinge in layout.hinges}, len(layout.parts)
-    balance = np.zeros((len(layout.stations), 2, count, 2))
-    moments, values = np.zeros((count, count, 2)), np.zeros(count)
+    joined = {hinge.end: hinge.joint for hinge in layout.hinges}
+    balance = np.zeros((len(layout.stations), len(layout.parts)))
     for n, part in enumerate(layout.parts):
         for number, sign in ((part.first, -1.0), (part.last, 1.0)):
-            balance[joined.get(number, number), :, n] += sign * part.rod.axes
-        moments[n, n], values[n] = _moments(layout, n, answer, turns, z)
-    stated = np.array([
-        [k not in joined and (k in known or item.touch is not None or free >= 0) for free in item.numbers[:2]]
-        for k, item in enumerate(layout.stations)
-    ])  # fmt: skip
-    rows = np.concatenate([balance[stated], _CLOSED_LOOP * moments]).reshape(-1, 2 * count)
-    right = np.concatenate([acting[stated], _CLOSED_LOOP * values])
-    z[layout.forces] = np.linalg.lstsq(rows, right, rcond=None)[0]
+            balance[joined.get(number, number), n] += sign
+    for axis, forces in enumerate(layout.forces.reshape(-1, 2).T):
+        stated = [
+            k not in joined and (k in known or item.touch is not None or item.numbers[axis] >= 0)
+            for k, item in enumerate(layout.stations)
+        ]
+        z[forces] = np.linalg.lstsq(balance[stated], acting[stated, axis], rcond=None)[0]
 
 
 def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[int]]:
     """External forces (stations, 2), of ends behind a hinge at the joint, and the stations whose reactions the answer has."""
-    _, loads, springs = layout.tables
-    acting = (loads - springs * layout.motions(z))[:, :2]
+    _, loads, stiffness = layout.tables
+    acting = loads[:, :2] - (stiffness @ layout.motions(z).ravel()).reshape(loads.shape)[:, :2]
     for hinge in layout.hinges:
         acting[hinge.joint] += acting[hinge.end]
-    where = {end: k for k, item in enumerate(layout.stations) for end in item.joint}
     for end, (x, y, _) in answer.reactions.items():
-        acting[where[end]] += np.array([x, y]) / layout.force
+        acting[layout.joint(end)] += np.array([x, y]) / layout.force
     for k, touch in layout.touched:
         force = np.nan_to_num(np.array(answer.forces[touch.spec.pair])) / layout.force
         acting[k] += force
         if "." in touch.spec.node:
-            acting[where[touch.spec.node]] -= force
-    return acting, {where[end] for end in answer.reactions}
-
-
-def _moments(
-    layout: Layout, n: int, answer: AnswerState, turns: list[Rotations], z: Array
-) -> tuple[Array, float]:
-    """Coefficients and right side of ``(r_b - r_a) x c = m_a - m_b + int r' x W ds`` in the beam's frame."""
-    part, (a, b) = layout.parts[n], layout.extents(z)[n]
-    x, y = part.rod.axes.T @ (layout.position(z, part.last) - layout.position(z, part.first))
-    lever, step = np.array([-y, x]), (b - a) / 8.0
-    ends = np.array([a, b - step])
-    bent = np.diff([np.interp(ends + more, *turns[part.beam]) for more in (0.0, step)], axis=0)[0]
-    m_a, m_b = part.rod.flexibility(ends).EI * bent / step if step > 0.0 else (0.0, 0.0)
-    if not part.rod.loaded:
-        return lever, m_a - m_b
-    arc, line = answer.axes[layout.scene.beams[part.beam].name]
-    s = np.linspace(a, b, _LOADED)
-    way = np.diff([np.interp(s * layout.length, arc, column) for column in line.T]) / layout.length
-    x, y = part.rod.axes.T @ way
-    p, q = part.rod.force(part.piece, (0.0, 0.0), (s[:-1] + s[1:]) / 2.0)
-    return lever, m_a - m_b + float(y @ p - x @ q)
+            acting[layout.joint(touch.spec.node)] -= force
+    return acting, {layout.joint(end) for end in answer.reactions}

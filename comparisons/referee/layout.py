@@ -7,7 +7,6 @@ of a beam; its force is ``n = c - W(s)`` with an unknown constant c. Lengths are
 `Layout.given` behind the unknowns.
 """
 
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -19,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.grip import Grip
-from comparisons.referee.rod import Rod, face_of, left, rod_of, units_of
+from comparisons.referee.rod import Face, Piece, Rod, face_of, rod_of, trimmed, units_of
 from comparisons.scene import ContactSpec, Scene
 
 Array = NDArray[np.float64]
@@ -29,11 +28,14 @@ NONE = -1
 """Number of a quantity that is zero."""
 _FREE: Mapping[str, Grip] = MappingProxyType({})
 _NOTHING = np.zeros(3)
+_AXIS = Face(1.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Touch:
     """A closed contact between a touching point x and the axis point ``r = x - offset(s) nu(phi)``, nu the left normal of the direction phi.
+
+    The offset is the reach of the face on the left of the beam, and minus the reach on its right.
 
     The energy is stationary in phi, so that the contact force acts along nu, and in s: ``nu . (r'_- + r'_+)/2 = -offset'`` makes nu normal
     to the face. With friction phi is the direction of the face by a row of its own.
@@ -44,27 +46,9 @@ class Touch:
     """Number of the arc position."""
     angle: int
     """Number of phi; `NONE` without offset."""
-    offset: float
-    """Distance of x from the axis at the start of the beam, positive on the left of the beam."""
-    slope: float
-    """Derivative of the offset by the arc position."""
-    roll: float
-    """Radius of a round pin, positive on the right of the beam."""
+    face: Face
     grip: Grip | None
     """How friction holds the contact; None without friction."""
-
-    def away(self, s: Any) -> Any:
-        """Offset at an arc position, real or complex."""
-        return self.offset + self.slope * s
-
-    def lever(self, s: Any) -> Any:
-        """Distance of the face from the axis at an arc position, positive on the right of the beam; real or complex."""
-        return -self.away(s) - self.roll
-
-    @property
-    def right(self) -> float:
-        """1 for a node on the right of the beam, -1 on its left."""
-        return -left(self.spec)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -84,8 +68,6 @@ class Station:
     """Ends of beams that are rigidly attached."""
     joint: tuple[str, ...] = ()
     """Ends of all beams at a joint, with those behind a hinge; empty for other stations."""
-    arc: float | None = None
-    """Arc position of a place inside a beam."""
 
     def turning(self, rotation: int, **more: Any) -> "Station":
         """Return a station at the same place with a rotation of its own."""
@@ -110,14 +92,13 @@ class Part:
     arcs: tuple[int, int]
     """Numbers of the arc positions of both stations."""
     force: int
-    """Number of the first of the two components of c, along the chord of the undeformed beam and to its left."""
+    """Number of the first of the two components of c."""
     rod: Rod
-    piece: int
-    """Number of the piece of the load."""
+    piece: Piece
 
     def constant(self, z: Array) -> Array:
-        """Return c (2,)."""
-        return z[self.force : self.force + 2]
+        """Return c (2, 1)."""
+        return z[self.force : self.force + 2, None]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -164,17 +145,26 @@ class Layout:
 
     @cached_property
     def tables(self) -> tuple[Ints, Array, Array]:
-        """Numbers, loads and springs (stations, 3) of the stations."""
-        return (
-            np.array([item.numbers for item in self.stations]),
-            np.array([item.load for item in self.stations]),
-            np.array([item.springs for item in self.stations]),
+        """Numbers and loads (stations, 3) of the stations, and stiffness (3 stations, 3 stations) of springs and hinges."""
+        numbers, loads, springs = (
+            np.array([getattr(item, name) for item in self.stations])
+            for name in ("numbers", "load", "springs")
         )
+        stiffness = np.diag(springs.ravel())
+        for end, joint, stiff in self.hinges:
+            pair = 3 * np.array([end, joint]) + 2
+            stiffness[np.ix_(pair, pair)] += stiff * np.array([[1.0, -1.0], [-1.0, 1.0]])
+        return numbers, loads, stiffness
+
+    def pieces(self, parts: Ints) -> Piece:
+        """Pieces (e, 1) of the rods in which the parts (e,) are."""
+        return Piece(*(table[..., parts, None] for table in self._pieces))
 
     @cached_property
-    def uniform(self) -> bool:
-        """Whether all beams are straight, of one section, and without a load along them."""
-        return all(part.rod.uniform for part in self.parts)
+    def _pieces(self) -> Piece:
+        pieces = (part.piece for part in self.parts)
+        table, *others = (np.concatenate(item, axis=-1) for item in zip(*pieces, strict=True))
+        return Piece(trimmed(table), *others)
 
     @property
     def grips(self) -> dict[str, Grip]:
@@ -207,12 +197,14 @@ class Layout:
         ways = self.motions(z)[:, :2]
         for k, touch in self.touched:
             if touch.angle != NONE:
-                ways[k] -= touch.away(float(z[touch.arc])) * normal(float(z[touch.angle]))
+                phi, away = z[touch.angle], touch.face.left * touch.face.reach(z[touch.arc])
+                ways[k] -= away * np.array([-np.sin(phi), np.cos(phi)])
         return ways
 
-    def position(self, z: Array, station: int) -> Array:
-        """Position (2,) of the axis at a station."""
-        return np.asarray(self.stations[station].reference + self.shifts(z)[station])
+    @cached_property
+    def references(self) -> Array:
+        """Undeformed positions (stations, 2)."""
+        return np.array([item.reference for item in self.stations])
 
     def extents(self, z: Array) -> Array:
         """Arc positions (parts, 2) at the starts and the ends of all parts."""
@@ -223,23 +215,24 @@ class Layout:
         return np.array([part.arcs for part in self.parts])
 
     @cached_property
+    def chords(self) -> tuple[Ints, Array, Array]:
+        """Numbers (2, parts) of the stations at both ends of the parts, ways (parts, 2) between these, and whether a contact is there (parts, 1)."""
+        ends = np.array([(part.first, part.last) for part in self.parts]).T
+        first, last = self.references[ends]
+        touched = np.isin(ends, [k for k, _ in self.touched])
+        return ends, last - first, (touched[0] | touched[1])[:, None]
+
+    @cached_property
     def sides(self) -> tuple[Ints, Array]:
-        """Numbers (2 parts, 6) of c, displacement, arc position and phi at both ends of the parts; and sign, chord, kappa0, turn, offset."""
+        """Numbers (2 parts, 6) of c, displacement, arc position and phi at both ends of the parts; sign, and left, start and slope of the face."""
         numbers, sizes = [], []
         for part in self.parts:
             for end, sign in enumerate((-1.0, 1.0)):
-                there, rod = self.stations[(part.first, part.last)[end]], part.rod
-                phi, offset, slope = NONE, 0.0, 0.0
-                if there.touch is not None:
-                    phi, offset, slope = there.touch.angle, there.touch.offset, there.touch.slope
+                there = self.stations[(part.first, part.last)[end]]
+                phi, face = (NONE, _AXIS) if there.touch is None else (there.touch.angle, there.touch.face)
                 numbers.append((part.force, part.force + 1, *there.numbers[:2], part.arcs[end], phi))
-                sizes.append((sign, *rod.axes[:, 0], rod.curvature, rod.turn, offset, slope))
+                sizes.append((sign, *face[:3]))
         return np.array(numbers), np.array(sizes).T
-
-
-def normal(angle: float) -> Array:
-    """Left normal of a direction."""
-    return np.array([-math.sin(angle), math.cos(angle)])
 
 
 class _Numbers:
@@ -268,15 +261,10 @@ def lay_out(
     stations, hinges = _joints(scene, load_parameter, rods, length, unit, numbers)
     at = {end: station for station in stations for end in station.joint}
     on_beam: dict[str, list[tuple[float, int, int]]] = {beam.name: [] for beam in scene.beams}
-    for spec in scene.contacts:
-        if spec.pair not in closed:
-            continue
-        face = face_of(scene, spec)
-        turn, arc, *angle = numbers.free(3 if face.start else 2)
-        touch = Touch(
-            spec=spec, arc=arc, angle=angle[0] if angle else NONE, offset=face.left * face.start / length,
-            slope=face.left * face.slope, roll=-face.left * face.radius / length, grip=grips.get(spec.pair),
-        )  # fmt: skip
+    for spec in (item for item in scene.contacts if item.pair in closed):
+        face = face_of(scene, spec, length)
+        turn, arc, angle = *numbers.free(2), numbers.free(1)[0] if face.start else NONE
+        touch = Touch(spec=spec, arc=arc, angle=angle, face=face, grip=grips.get(spec.pair))
         node = at.get(spec.node) or Station(
             reference=_place(scene, scene.pin(spec.node).position(load_parameter), length),
             numbers=np.full(3, NONE),
@@ -285,15 +273,12 @@ def lay_out(
         stations.append(node.turning(turn, touch=touch))
     for beam, rod in zip(scene.beams, rods, strict=True):
         inside = [item for item in scene.load_histories if item.load.beam == beam.name and item.load.at]
-        for s in map(float, rod.breaks[1:-1]):
-            loads = _total(
-                item.at(load_parameter) for item in inside if (item.load.at or 0.0) * rod.length == s
-            )
+        for s in rod.breaks[1:-1]:
+            here = (item for item in inside if (item.load.at or 0.0) * rod.length == s)
+            loads = _total(item.at(load_parameter) for item in here)
             on_beam[beam.name].append((s * length, len(stations), numbers.fixed(s)))
             place = _place(scene, beam.place(s / rod.length), length)
-            stations.append(
-                Station(reference=place, numbers=np.array(numbers.free(3)), load=loads / unit, arc=s)
-            )
+            stations.append(Station(reference=place, numbers=np.array(numbers.free(3)), load=loads / unit))
     ends = {end: number for number, station in enumerate(stations) for end in station.ends}
     parts: list[Part] = []
     for number, (beam, rod) in enumerate(zip(scene.beams, rods, strict=True)):
@@ -301,8 +286,9 @@ def lay_out(
         chain = [begin, *sorted(on_beam[beam.name]), (beam.length, end, numbers.fixed(rod.length))]
         piece = 0
         for (_, first, arc), (_, last, arc_after) in pairwise(chain):
-            piece += stations[first].arc is not None
-            parts.append(Part(number, first, last, (arc, arc_after), numbers.free(2)[0], rod, piece))
+            piece += arc < NONE  # a place inside the beam, whose arc position is prescribed
+            constant = numbers.free(2)[0]
+            parts.append(Part(number, first, last, (arc, arc_after), constant, rod, rod.pieces[piece]))
     return Layout(
         scene=scene, load_parameter=load_parameter, length=length, force=force, stations=tuple(stations),
         parts=tuple(parts), hinges=tuple(hinges), given=np.array(numbers.given[::-1]),
@@ -329,17 +315,13 @@ def _joints(
     for beam, rod in zip(scene.beams, rods, strict=True):
         names.setdefault(beam.start, []).append(f"{beam.name}.start")
         names.setdefault(beam.end, []).append(f"{beam.name}.end")
-        if rod.loaded:
-            W = np.array(rod.force(len(rod.load) - 1, (0.0, 0.0), rod.length))
-            resultants[f"{beam.name}.end"] = np.append(-rod.axes @ W, 0.0)
+        resultants[f"{beam.name}.end"] = np.append(-rod.pieces[-1].force(0.0, rod.length), 0.0)
     hinged = {hinge.node: hinge.stiffness / unit[2] for hinge in scene.hinges}
     stations: list[Station] = []
     for point, ends in names.items():
         own = tuple(end for end in ends if end not in hinged)
-        motion: tuple[float | None, ...] = (None, None, None)
-        for support in scene.all_supports:
-            if support.node in ends:
-                motion = scene.prescribed_motions[support.node].at(t)
+        held = [support.node for support in scene.all_supports if support.node in ends]
+        motion = scene.prescribed_motions[held[-1]].at(t) if held else (None, None, None)
         springs = _total((*item.stiffness, item.rotation) for item in scene.springs if item.node in ends)
         turns = bool(own or springs[2] or any(hinged.get(end) for end in ends))
         loads = _total(item.at(t) for item in scene.load_histories if item.load.node in ends)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.elements import AMPLITUDE, DEGREE, GAUSS, VALUES, Mesh, mesh_of
-from comparisons.referee.equations import solved
+from comparisons.referee.equations import scales
 from comparisons.referee.guess import SHORTEST, AnswerState, first_guess
 from comparisons.referee.layout import Layout, lay_out
 from comparisons.referee.rod import largest
@@ -205,8 +205,18 @@ def _newton(now: Equilibrium, iterations: int) -> Equilibrium:
 def newton_step(guess: Equilibrium, held: Ints | None = None) -> Change | None:
     """Newton correction with the unknowns `held` fixed; None if singular."""
     system = guess.system
-    change = solved(system, held)
-    if change is None:
+    hessian, gradient = system.hessian, system.gradient
+    if held is not None:
+        hessian, gradient = hessian.copy(), gradient.copy()
+        hessian[held], hessian[:, held], gradient[held] = 0.0, 0.0, 0.0
+        hessian[held, held] = 1.0
+    if not np.all(np.isfinite(hessian)) or not np.all(np.any(hessian, axis=1)):
+        return None
+    # EI, EA and forces differ by orders of magnitude
+    scale = scales(hessian)
+    try:
+        change: Array = -scale * np.linalg.solve(scale[:, None] * hessian * scale, scale * gradient)
+    except np.linalg.LinAlgError:
         return None
     moved = np.append(change, 0.0 * guess.layout.given)[guess.mesh.local]
     return change, np.asarray(-(system.shift + np.einsum("eij,ej->ei", system.lever, moved)))

@@ -7,19 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.elements import (
-    AMPLITUDE,
-    GAUSS,
-    VALUES,
-    WEIGHTS,
-    Mesh,
-    fields,
-    pairs,
-    places,
-    rotations,
-    shapes,
-    up_to,
-)
+from comparisons.referee.elements import AMPLITUDE, VALUES, WEIGHTS, Mesh, rotations, shapes, up_to
 from comparisons.referee.equations import System, assemble, index_of
 from comparisons.referee.layout import NONE, Layout, Touch
 from comparisons.referee.rod import cross
@@ -144,12 +132,12 @@ class Equilibrium:
         found, layout = dict[str, Contact](), self.layout
         for touch in layout.touches:
             before, behind = layout.beside(touch)
-            force = layout.force * before.rod.axes @ (before.constant(self.z) - behind.constant(self.z))
+            force = layout.force * (before.constant(self.z) - behind.constant(self.z))[:, 0]
             mean = np.sum(self.tangents(touch), axis=0)
             size = np.hypot(*mean)
             found[touch.spec.pair] = Contact(
                 force=force,
-                push=float(touch.right * cross(mean, force) / size),
+                push=float(-touch.face.left * cross(mean, force) / size),
                 drag=float(mean @ force / size),
                 arc_position=self.closed[touch.spec.pair],
             )
@@ -195,7 +183,7 @@ class Equilibrium:
         """Return the shape of a beam at arc lengths (m,)."""
         layout, z, mesh, s = self.layout, self.z, self.mesh, np.asarray(arc) / self.layout.length
         parts = [k for k, part in enumerate(layout.parts) if layout.scene.beams[part.beam].name == beam]
-        rod, extents = layout.parts[parts[0]].rod, layout.extents(z)
+        extents = layout.extents(z)
         part = np.array(parts)[np.searchsorted(extents[parts[1:], 0], s, side="right")]
         first, last = extents[part].T
         e, xi, theta, bent = located(self, part, (s - first) / (last - first))
@@ -204,32 +192,35 @@ class Equilibrium:
         of, e = mesh.part[mine], e - mine.start
         extent = np.diff(extents)[of, 0]
         half = mesh.share[mine] * extent / 2.0
-        points = (extents[of, 0] + extent * mesh.start[mine] + half)[:, None] + half[:, None] * GAUSS
-        within = places(layout, of, points, z[mesh.local[mine, 2:4]])
+        points = extents[of, :1] + extent[:, None] * mesh.points[mine]
+        constants = z[mesh.local[mine, 2:4]].T[..., None]
         rotation = rotations(layout, mesh, z, self.bubbles)[mine]
-        inner = within.frame * fields(rotation @ VALUES.T, within)[2]
-        before = np.append(0.0, np.cumsum(half * (inner @ WEIGHTS)))
-        along = before[e] - before[np.searchsorted(of, part)] + half[e] * (up_to(xi) * inner[e]).sum(axis=1)
-        there = places(layout, part, s[:, None], z[mesh.local[mine, 2:4]][e])
-        N, Q, tangent = fields(theta[:, None], there)
-        begins = np.array([layout.position(z, layout.parts[k].first) for k in parts])[part - parts[0]]
-        position = begins + (pairs(along) + rod.between(first, s)) @ rod.axes.T
-        direction = pairs(there.frame * tangent)[:, 0] + rod.direction(s)
+        inner = layout.pieces(of).strained(constants, points, rotation @ VALUES.T).way
+        before = np.cumsum(np.pad(half * (inner @ WEIGHTS), ((0, 0), (1, 0))), axis=1)
+        along = (
+            before[:, e]
+            - before[:, np.searchsorted(of, part)]
+            + half[e] * (up_to(xi) * inner[:, e]).sum(axis=2)
+        )
+        pieces, c, at, turned = layout.pieces(part), constants[:, e], s[:, None], theta[:, None]
+        begins = (layout.references + layout.shifts(z))[layout.chords[0][0, part]]
+        there = pieces.strained(c, at, turned)
+        position = begins + (along + pieces.between(first[:, None], at)[..., 0]).T
         return Shape(
             position=np.array(layout.scene.beams[0].start) + layout.length * position,
-            tangent=direction @ rod.axes.T,
+            tangent=pieces.tangent(c, at, turned)[..., 0].T,
             rotation=theta,
             moment=layout.force * layout.length * there.EI[:, 0] * bent / half[e],
-            N=layout.force * N[:, 0],
-            Q=layout.force * Q[:, 0],
+            N=layout.force * there.N[:, 0],
+            Q=layout.force * there.Q[:, 0],
         )
 
     def tangents(self, touch: Touch) -> tuple[Array, Array]:
         """Return ``r'_-`` and ``r'_+`` at a contact."""
         parts, z = self.layout.beside(touch), self.z
-        s, theta = float(z[touch.arc]), float(self.layout.motions(z)[parts[0].last, 2])
-        before, behind = (part.rod.tangent(part.piece, part.constant(z), s, theta) for part in parts)
-        return np.asarray(before), np.asarray(behind)
+        s, theta = z[[touch.arc]], self.layout.motions(z)[parts[0].last, 2]
+        before, behind = (part.piece.tangent(part.constant(z), s, theta)[:, 0] for part in parts)
+        return before, behind
 
     def place(self, node: str) -> Array:
         """Return the position of a beam's end such as ``upper.end``, or of a pin."""

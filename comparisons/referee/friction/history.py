@@ -17,7 +17,7 @@ from comparisons.referee.grip import LOOSE, Grip, Hold, UnknownFrictionError
 from comparisons.referee.guess import answer_state
 from comparisons.referee.newton import equilibrium
 from comparisons.referee.path import corners, reach
-from comparisons.referee.rod import face_of
+from comparisons.referee.rod import face_of, units_of
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import ContactSpec, Scene
 
@@ -276,7 +276,6 @@ def _found_at(solution: Equilibrium | None, phase: Phase, t: float) -> Equilibri
 def at_rest(scene: Scene, spec: ContactSpec) -> Hold:
     """The place of a contact with the undeformed beam."""
     beam = scene.beam(spec.beam)
-    x, y = beam.direction
     there = scene.place(spec.node) if "." in spec.node else scene.pin(spec.node).position(0.0)
     face = face_of(scene, spec)
     steep = face.slope
@@ -285,14 +284,13 @@ def at_rest(scene: Scene, spec: ContactSpec) -> Hold:
         apart = np.array(there) - np.array(beam.place(arc / beam.length))
         ahead = float(apart @ beam.tangent(arc / beam.length)) + steep * face.reach(arc)
         arc = min(max(arc + ahead, 0.0), beam.length)
-    angle, tilt = math.atan2(y, x), face.left * math.asin(steep)
-    lever = face.left * (face.radius - face.reach(arc))
+    tilt, (x, y) = math.asin(face.tilt), beam.direction
     return Hold(
         load_parameter=0.0,
-        arc_position=arc,
-        stretch=math.sqrt(1.0 - steep**2) + lever * beam.curvature,
-        shear=angle - beam.turn / 2.0 + tilt,
-        direction=angle + beam.turn * (arc / beam.length - 0.5) + tilt,
+        arc_position=arc / units_of(scene)[0],
+        stretch=math.sqrt(1.0 - steep**2) + face.lever(arc) * beam.curvature,
+        shear=tilt,
+        direction=math.atan2(y, x) + beam.turn * (arc / beam.length - 0.5) + tilt,
     )
 
 

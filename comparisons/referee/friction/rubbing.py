@@ -16,7 +16,7 @@ from comparisons.referee.friction.slip import place, relative_slip_rate, slip_ra
 from comparisons.referee.grip import Hold, UnknownFrictionError
 from comparisons.referee.layout import Touch
 from comparisons.referee.path import corners, reach
-from comparisons.referee.rod import largest
+from comparisons.referee.rod import largest, units_of
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import ContactSpec, Scene
 
@@ -98,10 +98,10 @@ def _crept(history: History, k: int, touch: Touch, hold: Hold, exact: Equilibriu
     """Move over the length of a held material point, ``A (s - s*) + lever (psi - psi*) + roll (phi - phi*) = 0``; zero within its bound."""
     # an answer states s alone; the angles are exact, and it knows each of the three terms to its accuracy only
     length = history.scene.beam(touch.spec.beam).length
-    here, unit = place(exact, touch), exact.layout.length
-    rolled = here.arc_position - hold.arc_position
-    sheared = unit * touch.lever(here.arc_position / unit) * math.remainder(here.shear - hold.shear, math.tau)
-    turned = unit * touch.roll * (here.direction - hold.direction)
+    here, unit, face = place(exact, touch), exact.layout.length, touch.face
+    rolled = unit * (here.arc_position - hold.arc_position)
+    sheared = unit * face.lever(here.arc_position) * math.remainder(here.shear - hold.shear, math.tau)
+    turned = unit * face.radius * (here.direction - hold.direction)
     moved, most = _moved(history, touch.spec, k) - rolled, max(abs(rolled), abs(sheared), abs(turned))
     return moved / length if abs(moved) > _law(history.response, allowed) * length + allowed * most else 0.0
 
@@ -109,7 +109,8 @@ def _crept(history: History, k: int, touch: Touch, hold: Hold, exact: Equilibriu
 def _moved(history: History, spec: ContactSpec, k: int) -> float:
     """Change of the stated arc position since the event at which a stick began, or since the start; nan without an event."""
     phase = history.phase(spec.pair, k)
-    began = at_rest(history.scene, spec).arc_position if phase.before is None else phase.stated_arc
+    unit = units_of(history.scene)[0]
+    began = unit * at_rest(history.scene, spec).arc_position if phase.before is None else phase.stated_arc
     return float(history.response.contacts[spec.pair].arc_position[k]) - began
 
 

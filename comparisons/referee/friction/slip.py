@@ -17,11 +17,12 @@ from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from comparisons.referee.equations import element_before
-from comparisons.referee.grip import Grip, Hold, rows
-from comparisons.referee.layout import NONE, Touch
+from comparisons.referee.grip import Grip, Hold
+from comparisons.referee.layout import Touch
 from comparisons.referee.path import corners, reach, tangent
 from comparisons.referee.rod import largest
 from comparisons.referee.state import Equilibrium
+from comparisons.referee.touching import rows, wrapped
 
 Array = NDArray[np.float64]
 Holds = dict[str, Hold]
@@ -51,15 +52,10 @@ def _rates(now: Equilibrium, behind: bool) -> Array:
 
 
 def slip_rate(now: Equilibrium, touch: Touch, *, behind: bool = False) -> float:
-    """Slip rate of a contact with friction, ahead or behind, in units of the layout."""
-    layout, rate = now.layout, _rates(now, behind)
-    before, _ = layout.beside(touch)
-    slipping = place(now, touch).stretch * float(rate[touch.arc])
-    if touch.angle == NONE:
-        return slipping
-    theta, phi = float(rate[layout.stations[before.last].numbers[2]]), float(rate[touch.angle])
-    theta += before.rod.curvature * float(rate[touch.arc])
-    return slipping + float(touch.lever(float(now.z[touch.arc]))) * (phi - theta) + touch.roll * phi
+    """Slip rate of a contact with friction, ahead or behind, in units of the layout: the derivative of the row of a stick that begins here."""
+    held = replace(touch, grip=Grip(friction=0.0, slip=0, hold=place(now, touch)))
+    numbers, _, derivatives = rows(now.layout, held, now.z, _moment(now, touch))
+    return float(derivatives[0] @ np.append(_rates(now, behind), 0.0)[numbers])
 
 
 def relative_slip_rate(now: Equilibrium, touch: Touch, *, behind: bool = False) -> float:
@@ -73,17 +69,16 @@ def relative_slip_rate(now: Equilibrium, touch: Touch, *, behind: bool = False) 
 
 def place(now: Equilibrium, touch: Touch) -> Hold:
     """The place of a contact with friction, at which it may begin to stick."""
-    layout, z = now.layout, now.z
-    before, _ = layout.beside(touch)
-    phi = 0.0 if touch.angle == NONE else float(z[touch.angle])
-    moment = float(now.system.ends[element_before(now.mesh, touch), 1])
+    _, (*_, stretch, shear), _ = rows(now.layout, touch, now.z, _moment(now, touch))
     return Hold(
-        load_parameter=now.load_parameter,
-        arc_position=float(z[touch.arc]) * layout.length,
-        stretch=rows(layout, touch, z, moment).stretch,
-        shear=phi - float(layout.motions(z)[before.last, 2]) - before.rod.curvature * float(z[touch.arc]),
-        direction=phi,
-    )
+        load_parameter=now.load_parameter, arc_position=float(now.z[touch.arc]), stretch=stretch, shear=shear,
+        direction=float(now.layout.full(now.z)[touch.angle]),
+    )  # fmt: skip
+
+
+def _moment(now: Equilibrium, touch: Touch) -> float:
+    """Moment before a contact."""
+    return float(now.system.ends[element_before(now.mesh, touch), 1])
 
 
 def roll(
@@ -94,7 +89,6 @@ def roll(
     times, found = first + (last - first) * _PLACES, [near] * len(_PLACES)
     holds = {pair: hold for pair in begins if (hold := grips[pair].hold) is not None}
     areas = {pair: Polynomial([hold.area(first)], domain=span) for pair, hold in holds.items()}
-    length = near.layout.length
     for _ in range(_SWEEPS):
         own = {pair: replace(hold, areas=(*hold.areas, (first, areas[pair]))) for pair, hold in holds.items()}
         held = {**grips, **{pair: replace(grips[pair], hold=hold) for pair, hold in own.items()}}
@@ -108,7 +102,7 @@ def roll(
         rough = [
             _area(times[::2], trail[:, ::2])(last) - changes[pair](last) for pair, trail in trails.items()
         ]
-        if last - first > _LEAST and max(map(abs, rough)) > _APART * length:
+        if last - first > _LEAST and max(map(abs, rough)) > _APART:
             middle = float(times[len(times) // 2])
             half = roll(found[len(times) // 2], (first, middle), grips, begins)
             if half is None:
@@ -116,7 +110,7 @@ def roll(
             grips = {**grips, **{pair: replace(grips[pair], hold=hold) for pair, hold in half[0].items()}}
             return roll(found[-1], (middle, last), grips, half[1])
         before, areas = areas, {pair: change + holds[pair].area(first) for pair, change in changes.items()}
-        if all(np.abs((areas[pair] - before[pair])(times)).max() <= _SAME * length for pair in holds):
+        if all(np.abs((areas[pair] - before[pair])(times)).max() <= _SAME for pair in holds):
             ends = {pair: found[-1].layout.touch(pair) for pair in holds}
             return own, {pair: place(found[-1], touch) for pair, touch in ends.items()}
     return None
@@ -125,14 +119,13 @@ def roll(
 def _trail(hold: Hold, begin: Hold, found: list[Equilibrium], pair: str) -> Array:
     """Changes (4, n) of s, A, psi and the lever since the stick began, at the begin of an interval and at equilibria."""
     touches = [item.layout.touch(pair) for item in found]
-    unit, touch = found[0].layout.length, touches[0]
     places = [hold, begin, *(place(item, own) for item, own in zip(found, touches, strict=True))]
     rows = [
-        [item.arc_position, item.stretch, item.shear, unit * touch.lever(item.arc_position / unit)]
+        [item.arc_position, item.stretch, item.shear, touches[0].face.lever(item.arc_position)]
         for item in places
     ]
     trail = np.array(rows[1:]).T - np.array(rows[:1]).T
-    trail[2] -= 2.0 * np.pi * np.rint(trail[2] / (2.0 * np.pi))
+    trail[2] = wrapped(trail[2])
     return trail
 
 

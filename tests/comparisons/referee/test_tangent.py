@@ -94,7 +94,7 @@ def test_the_direction_of_a_face_follows_the_variations_of_the_axis():
 
     def phi(z: np.ndarray) -> float:
         x, y = sum(replace(exact, z=z).tangents(touch)) / 2.0
-        return math.atan2(y, x) + math.asin(touch.slope / math.hypot(x, y))
+        return math.atan2(y, x) + math.asin(touch.face.tilt / math.hypot(x, y))
 
     assert phi(z) == pytest.approx(z[touch.angle], abs=1e-12)
     free = directions(layout, z)
