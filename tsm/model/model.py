@@ -21,9 +21,9 @@ from tsm.model.groups import GROUPS, ElementGroup, ExactGroup
 from tsm.model.ordering import block_order
 from tsm.model.pairs import BeamModel, PairModel
 from tsm.model.scales import Sizes, joined_extents, sizes_of, units_of
-from tsm.statement.beam import check, checks
+from tsm.statement.beam import Beam, check, checks
 from tsm.statement.stages import Increments
-from tsm.statement.structure import Beam, Structure
+from tsm.statement.structure import Structure
 
 _CONTACT_KINDS = np.arange(6, 10)
 

@@ -26,7 +26,9 @@ from tsm.elements.contact_law import Friction, Here, Vector
 from tsm.elements.properties import Array, Properties, unwind
 from tsm.model.projection import arc_position
 from tsm.model.state import Grip, Place, Touch, Traction
-from tsm.statement.structure import Beam, ContactPair, Pin
+from tsm.statement.beam import Beam
+from tsm.statement.pin import Pin
+from tsm.statement.structure import ContactPair
 
 if TYPE_CHECKING:
     from tsm.model.groups import ElementGroup

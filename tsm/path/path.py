@@ -26,7 +26,7 @@ from tsm.model.contact import handed_over
 from tsm.model.model import Model
 from tsm.model.pairs import PairModel
 from tsm.model.state import State, Touch
-from tsm.statement.status import Status
+from tsm.statement.status import RefusedError
 from tsm.system.newton import Equilibrium, Newton
 from tsm.system.stability import index
 from tsm.system.system import Drive
@@ -37,17 +37,6 @@ SMALLEST = 1e-12
 """Floor of the load step, as a part of the whole load."""
 _SAFE = 0.8
 """Safety factor: next step over the step that the tangents would still allow."""
-_LEAST_PART = 0.1
-"""Shortest part of a refused step that is tried next."""
-_NAMED = {
-    Status.NOT_FINITE,
-    Status.SINGULAR_TANGENT,
-    Status.INACCURATE,
-    Status.TWO_CONTACTS,
-    Status.PING_PONG,
-    Status.JAMMED,
-}
-"""Failures that are reported by their own status instead of the general status of a step at its floor."""
 _LONGEST = 1.0
 """Longest step whatever its tangents are, in largest Newton steps (0.3 L, 0.7 rad); the farthest equilibrium
 from its prediction where no tangent is usable. With 2 instead of 1, one random pin in a hundred ends on another branch."""
@@ -57,8 +46,6 @@ _RESOLVED = 1e-8
 """Smaller motions, in the same measure, are round-off, as of a column that stays straight: it moves along itself only."""
 _MEMORY = 4
 """Points in the prediction, a polynomial in the load parameter through their states and usable tangents."""
-_BEFORE_KINK = 1
-"""Points before a contact passed from element to element that the prediction still uses: the path has a kink there."""
 _AHEAD = 1e-2
 """Part of a step ahead of a state at which another one states its tangent; a shorter one has fewer digits."""
 SHORTEST = 1e-6
@@ -101,7 +88,7 @@ class Point:
     def index(self) -> int:
         """Number of the energy's negative eigenvalues, -1 where it is not defined, see `tsm.system.stability`."""
         _ = self.system.tangent  # which the rates need besides, and the index is cheaper with
-        return index(self.newton.assembler, self.state, self.system)
+        return index(self.newton.assembler, self.system)
 
     @cached_property
     def on_chords(self) -> bool:
@@ -169,12 +156,13 @@ class Track:
         self.index = point.index if point.index >= 0 else self.index
 
     def _remembered(self, point: Point) -> list[tuple[State, ...]]:
-        """Earlier states that serve for the prediction beyond a point."""
+        """Earlier states that serve for the prediction beyond a point.
+
+        The path has a kink where a contact passes from element to element, and one state before it serves where there is no other.
+        """
         kept: list[tuple[State, ...]] = []
-        kinks = 0
         for *ahead, state in reversed(self.history[1 - _MEMORY :]):
-            kinks += _owners(state) != _owners(point.state)
-            if kinks > _BEFORE_KINK and not point.on_chords:
+            if kept and _owners(state) != _owners(point.state) and not point.on_chords:
                 break
             if state.load_parameter < point.t:
                 kept.append((*ahead, state))
@@ -301,41 +289,12 @@ def _touch(pair: PairModel, weights: list[float], trail: Sequence[Touch]) -> Tou
     return replace(last, xi=xi, force=(x, y), angle=_weighted(weights, [touch.angle for touch in trail]))
 
 
+def check_followed(unexplained: float) -> None:
+    """Refuse a step that its tangents do not explain."""
+    if unexplained > FOLLOWED:
+        raise RefusedError(part=allowed(unexplained))
+
+
 def allowed(unexplained: float) -> float:
     """Return the fraction of a step that its tangents would explain; `unexplained` is the fraction that they do not explain."""
     return _SAFE * FOLLOWED / max(unexplained, 1e-9)
-
-
-class StepControl:
-    """Length of the next load step: it grows while the path is followed, and is cut back where an attempt fails."""
-
-    def __init__(self) -> None:
-        self.step, self.failure, self.part = (
-            1.0,
-            Status.CONVERGED,
-            1 / 2,
-        )  # why the last attempt failed, and what to try next
-
-    def fail(self, status: Status, part: float = 1 / 2) -> Status:
-        """Give up an attempt; the fraction `part` of its step is tried next."""
-        self.failure, self.part = status, min(max(part, _LEAST_PART), 1 / 2)
-        return status
-
-    def refuse(self, part: float = 1 / 2) -> Status:
-        """Give up a step that is too long, whatever was found at its end."""
-        return self.fail(Status.ITERATION_LIMIT, part)
-
-    def cut_back(self, left: float) -> bool:
-        """Shorten the step, of which `left` was tried at most; return whether it is at its floor."""
-        self.step = min(self.step, left) * self.part
-        return self.step < SMALLEST
-
-    def grow(self, taken: float, fitting: float) -> None:
-        """Lengthen the step after one that was taken and could have been `fitting` times as long."""
-        self.step = min(max(min(2.0, fitting) * taken, self.step if fitting >= 1 else 0.0), 1.0)
-
-    def verdict(self, folds: bool) -> Status:
-        """Status that explains why no step succeeds; `folds` if the speed of the path shows a limit point."""
-        if self.failure in _NAMED:
-            return self.failure
-        return Status.LIMIT_POINT if folds else Status.CUTBACK_FLOOR

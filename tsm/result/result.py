@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from tsm.contact.events import Event, normal_force
+from tsm.contact.events import Event, normal_force, traction
 from tsm.elements.properties import Array
 from tsm.model.groups.shape import Stations
 from tsm.model.model import Model
 from tsm.path.critical import CriticalPoint
-from tsm.path.friction import grips, traction
+from tsm.path.friction import grips
 from tsm.path.step import Step
 from tsm.result import present
 from tsm.result.deformation import Deformation, deformation
@@ -316,9 +316,8 @@ def _contact_at(model: Model, equilibrium: Equilibrium, k: int) -> tuple[float, 
 def _friction(model: Model, steps: list[Step], k: int) -> FrictionHistory:
     rows = []
     for step in steps:
-        state, system = step.equilibrium.state, step.equilibrium.system
-        grip = dict(grips(state)).get(k)
-        here = traction(model, state, system, k) if grip else None
+        grip = grips(step.equilibrium.state).get(k)
+        here = traction(model, step.equilibrium, k) if grip else None
         force = (here.tangential, here.normal) if here else (0.0, 0.0)
         rows.append((*force, grip.slip if grip else 0, step.spent[1 + k] if len(step.spent) else np.nan))
     tangential, normal, slip, dissipated = np.array(rows).reshape(-1, 4).T

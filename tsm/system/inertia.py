@@ -6,7 +6,7 @@ Most bands are positive definite, which Cholesky's factorisation shows. If A is 
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -35,7 +35,7 @@ class Symmetric(NamedTuple):
 
 def negatives(symmetric: Symmetric) -> int | None:
     """Number of negative eigenvalues, None where one of them is zero or not a number."""
-    band, right, corner, units, _ = symmetric
+    band, right, corner, *_ = symmetric
     factor, info = lapack().dpbtrf(band, lower=1)
     if info == 0 and (factor[0] ** 2 > _WEAK * band[0]).all():
         if not len(corner):
@@ -44,37 +44,38 @@ def negatives(symmetric: Symmetric) -> int | None:
         reduced = corner - right.T @ inside
         if np.abs(reduced).max() < _SOFT:
             return _negatives_dense(reduced)
-    count, width = band.shape[1], len(corner)
-    if count + width > _DENSE:
-        return _negatives_sparse(symmetric)
-    whole = np.zeros((count + width, count + width))
-    for k, diagonal in enumerate(band[:count]):
-        whole[range(k, count), range(count - k)] = diagonal[: count - k] * units[k:] * units[: count - k]
-    whole[count:, :count], whole[count:, count:] = right.T * units, corner
-    return _negatives_dense(whole)
+    whole = _whole(symmetric)
+    if whole.shape[0] <= _DENSE:
+        return _negatives_dense(whole.toarray())
+    return _negatives_sparse(whole)
 
 
-def _negatives_sparse(symmetric: Symmetric) -> int | None:
-    """Number of negative eigenvalues of a large matrix, by an LU decomposition; None if a pivot leaves the diagonal."""
+def _whole(symmetric: Symmetric) -> Any:
+    """The matrix, sparse."""
     from scipy.sparse import block_array, coo_array, dia_array
-    from scipy.sparse.linalg import splu
 
     band, right, corner, units, _ = symmetric
-    count = band.shape[1]
-    lower = dia_array((band, -np.arange(len(band))), shape=(count, count))
-    scale = dia_array((units[None], [0]), shape=(count, count))
-    inside = scale @ (lower + dia_array((band[1:], -np.arange(1, len(band))), shape=(count, count)).T) @ scale
-    beside = coo_array(right * units[:, None])
-    whole = block_array([[inside, beside], [beside.T, coo_array(corner)]] if len(corner) else [[inside]])
-    fit = _equilibrating(np.asarray(abs(whole).max(axis=0).todense()).ravel())
-    whole = (
-        dia_array((fit[None], [0]), shape=whole.shape)
-        @ whole
-        @ dia_array((fit[None], [0]), shape=whole.shape)
+    shape = (band.shape[1],) * 2
+    lower, above = (
+        dia_array((band, -np.arange(len(band))), shape),
+        dia_array((band[1:], -np.arange(1, len(band))), shape),
     )
-    options = {"SymmetricMode": True, "Equil": False}
+    inside = (lower + above.T).multiply(units).multiply(units[:, None])
+    beside = coo_array(right * units[:, None])
+    return block_array([[inside, beside], [beside.T, coo_array(corner)]] if len(corner) else [[inside]])
+
+
+def _negatives_sparse(whole: Any) -> int | None:
+    """Number of negative eigenvalues of a large matrix, by an LU decomposition; None if a pivot leaves the diagonal."""
+    from scipy.sparse.linalg import splu
+
+    fit = _equilibrating(np.asarray(abs(whole).max(axis=0).todense()).ravel())
+    scaled, options = (
+        whole.multiply(fit).multiply(fit[:, None]).tocsc(),
+        {"SymmetricMode": True, "Equil": False},
+    )
     try:
-        lu = splu(whole.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+        lu = splu(scaled, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
     except RuntimeError:
         return None
     pivots = lu.U.diagonal()
@@ -91,9 +92,8 @@ def _equilibrating(largest: Array) -> Array:
 
 
 def _negatives_dense(matrix: Array) -> int | None:
-    """Number of negative eigenvalues of a dense matrix from its lower triangle, by Bunch and Kaufman's factorisation."""
-    lower = np.abs(np.tril(matrix))
-    scale = _equilibrating(np.maximum(lower.max(axis=0, initial=0.0), lower.max(axis=1, initial=0.0)))
+    """Number of negative eigenvalues of a dense matrix, by Bunch and Kaufman's factorisation."""
+    scale = _equilibrating(np.abs(matrix).max(axis=0, initial=0.0))
     factors, exchanges, _ = lapack().dsytrf(matrix * scale * scale[:, None], lower=1)
     single = exchanges > 0
     pivots = factors.diagonal()[single]

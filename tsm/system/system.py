@@ -23,8 +23,8 @@ from tsm.model.contact_block import Bordered, ContactBlock, Units
 from tsm.model.groups import GroupForces
 from tsm.model.model import Model
 from tsm.model.state import State
+from tsm.statement.beam import Point
 from tsm.statement.stages import stage_of
-from tsm.statement.structure import Point
 from tsm.system.lapack import lapack
 
 _EPS = float(np.finfo(float).eps)
