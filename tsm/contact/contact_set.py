@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from tsm.contact.events import ROUND_OFF, EventKind, over, touch_at
-from tsm.model.contact import chord_owner, with_touches
+from tsm.model.contact import chord_owner, closed, with_touches
 from tsm.model.groups.shape import undeformed
 from tsm.model.model import Model
 from tsm.model.pairs import PairModel
@@ -65,11 +65,7 @@ def initial_state(model: Model) -> State:
 
 def crowded(model: Model, state: State) -> bool:
     """Whether two nodes touch one element of the paper's, whose matrix knows a single contact."""
-    owners = [
-        touch.element
-        for pair, touch in zip(model.pairs, state.touches, strict=True)
-        if touch is not None and pair.slot < 0
-    ]
+    owners = [touch.element for _, pair, touch in closed(model, state) if pair.slot < 0]
     return len(set(owners)) < len(owners)
 
 

@@ -20,6 +20,12 @@ from tsm.model.projection import nearest_chord, slide
 from tsm.model.state import State, Touch
 
 
+def closed(model: Model, state: State) -> list[tuple[int, PairModel, Touch]]:
+    """Closed pairs with their numbers and contacts."""
+    there = enumerate(zip(model.pairs, state.touches, strict=True))
+    return [(k, pair, touch) for k, (pair, touch) in there if touch is not None]
+
+
 def with_touches(model: Model, state: State, touches: tuple[Touch | None, ...]) -> State:
     """State with other contacts."""
     after = replace(state, touches=touches)

@@ -17,6 +17,7 @@ import numpy as np
 from tsm.contact.contact_set import changed
 from tsm.contact.root import find_root
 from tsm.elements.properties import Array
+from tsm.model.contact import closed
 from tsm.model.model import Model
 from tsm.model.state import State
 from tsm.path.path import Point
@@ -105,8 +106,8 @@ def mode_shape(point: Point) -> tuple[Array, dict[str, Array]] | None:
         return None
     moved = newton.update(state, soft[0] * _SHIFT, point.system)
     system = newton.assembler.linearise(moved)
-    axes = {beam: axis_line(model, state, point.system, beam)[1] for beam in model.beams}
-    shapes = {beam: axis_line(model, moved, system, beam)[1] - axis for beam, axis in axes.items()}
+    axes = {beam: axis_line(model, point.system, beam)[1] for beam in model.beams}
+    shapes = {beam: axis_line(model, system, beam)[1] - axis for beam, axis in axes.items()}
     most = max(float(np.abs(shape).max()) for shape in shapes.values()) or 1.0
     most *= _side(np.concatenate([_leftwards(axes[beam], shape) for beam, shape in shapes.items()]))
     return soft[0] * (_SHIFT / most), {beam: shape / most for beam, shape in shapes.items()}
@@ -132,8 +133,8 @@ def mechanism(point: Point, drive: Drive) -> bool:
     """Whether a structure can move without strain as a drive begins. A contact without force holds it only if it begins to push."""
     model, state = point.model, point.state
     edge, opened = IDLE * model.force_scale, state
-    closed = [(k, model.pairs[k], touch) for k, touch in enumerate(state.touches) if touch is not None]
-    idle = [item for item in closed if item[1].slot >= 0 and math.hypot(*item[2].force) <= edge]
+    there = closed(model, state)
+    idle = [item for item in there if item[1].slot >= 0 and math.hypot(*item[2].force) <= edge]
     for k, *_ in idle:
         opened = changed(model, opened, k, None, armed=True)
     if not (model.joints or _moves(model, opened)):
@@ -180,9 +181,7 @@ def _moves(model: Model, state: State) -> bool:
     equations = [held[model.fixed], held[model.slaves] - held[model.masters]]
     if model.springs is not None:
         equations += [held[model.springs.ground], held[model.springs.second] - held[model.springs.first]]
-    for pair, touch in zip(model.pairs, state.touches, strict=True):
-        if touch is None:
-            continue
+    for _, pair, touch in closed(model, state):
         at = np.array([model.node_position(pair, state.q, state.load_parameter)])
         moved = rows(model.element_nodes[[touch.element], 0], at)[:2]
         if pair.node >= 0:

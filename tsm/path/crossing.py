@@ -14,6 +14,7 @@ from tsm.contact.contact_set import end_beside
 from tsm.contact.ends import clearance
 from tsm.contact.events import ROUND_OFF, over
 from tsm.contact.root import find_root
+from tsm.model.contact import closed
 from tsm.model.model import Model
 from tsm.model.pairs import PairModel
 from tsm.model.projection import Projection
@@ -94,6 +95,5 @@ def check_ends(model: Model, state: State, stopped: State) -> None:
 
 def on_held_end(model: Model, state: State) -> bool:
     """Whether a contact lies on a held end, which takes any force: nothing that happens there has a tangent."""
-    there = zip(model.pairs, state.touches, strict=True)
-    ends = (end_beside(model, pair, touch) for pair, touch in there if touch is not None)
+    ends = (end_beside(model, pair, touch) for _, pair, touch in closed(model, state))
     return any(held and away <= ROUND_OFF * model.length for _, held, away in ends)

@@ -140,8 +140,9 @@ class Follower:
         it serves for a prediction.
         """
         here, t = self.track.last, self.track.last.t
-        goes_on = t == self.turned or not (self.model.rubbed or self.model.stages > 1)
-        if goes_on or (t > 0 and all(abs(t - turn) > NEAR for turn in self.model.turns)):
+        if t == self.turned or not (self.model.rubbed or self.model.stages > 1):
+            return
+        if t > 0 and all(abs(t - turn) > NEAR for turn in self.model.turns):
             return
         if 0 < t < self.model.stages and t == round(t):
             here = here.with_state(self.newton.prescribed(here.state, math.nextafter(t, math.inf)))
@@ -152,6 +153,8 @@ class Follower:
 
     def _gripped(self, point: Point, last: State) -> Point:
         """Point whose contacts with friction slip or stick from here, after a state `last`; a change is an event."""
+        if not self.model.rubbed:
+            return point
         before, gripped = grips(point.state), regripped(point, self._drive(point.t), last)
         for k, grip in grips(gripped.state).items():
             if before[k] != UNDECIDED and before[k].slip != grip.slip:
@@ -196,7 +199,9 @@ class Follower:
     def _solve(self, t: float) -> Point:
         """Point at t from the predicted state, if the tangent leads to it."""
         last, start = self.track.last, self.track.predicted(t)
-        equilibrium = rolled(self.newton, last.state, self.newton.solve(start))
+        equilibrium = self.newton.solve(start)
+        if self.model.rubbed:
+            equilibrium = rolled(self.newton, last.state, equilibrium)
         self.log.iterations += equilibrium.iterations
         if not equilibrium.converged:
             raise RefusedError(equilibrium.status)

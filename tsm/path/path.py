@@ -22,7 +22,7 @@ import numpy as np
 
 from tsm.contact.contact_set import owned
 from tsm.elements.properties import Array
-from tsm.model.contact import handed_over
+from tsm.model.contact import closed, handed_over
 from tsm.model.model import Model
 from tsm.model.pairs import PairModel
 from tsm.model.state import State, Touch
@@ -93,8 +93,7 @@ class Point:
     @cached_property
     def on_chords(self) -> bool:
         """Whether a closed contact has a stiffness that grows without bound at the beam nodes: round-off spoils its tangent."""
-        pairs = zip(self.model.pairs, self.state.touches, strict=True)
-        return any(touch is not None and pair.slot < 0 for pair, touch in pairs)
+        return any(pair.slot < 0 for _, pair, _ in closed(self.model, self.state))
 
     def rates(self, drive: Drive) -> Rates | None:
         """Rates while the pins go straight and the loads grow as the drive says; None where the tangent is singular."""

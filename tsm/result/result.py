@@ -10,6 +10,7 @@ import numpy as np
 
 from tsm.contact.events import Event, normal_force, traction
 from tsm.elements.properties import Array
+from tsm.model.contact import closed
 from tsm.model.groups.shape import Stations
 from tsm.model.model import Model
 from tsm.path.critical import CriticalPoint
@@ -204,7 +205,7 @@ class Result:
             Deformed position.
         """
         here = self.equilibria[k]
-        return axis_line(self.model, here.state, here.system, beam, points_per_element)
+        return axis_line(self.model, here.system, beam, points_per_element)
 
     def stations(self, beam: str, k: int) -> Stations:
         """Lines along a beam at accepted load parameter k: its elements, or short pieces of the segments of exact ones."""
@@ -279,8 +280,8 @@ def _where(model: Model, steps: list[Step], status: Status) -> str:
     stopped = state.load_parameter if state else 0.0
     where = f"; stopped at load parameter {stopped:.6g}, last reported {reached:.6g}"
     if status in {Status.CUTBACK_FLOOR, Status.LIMIT_POINT} and state:
-        for pair, touch in zip(model.pairs, state.touches, strict=True):
-            if touch is not None and pair.slot < 0 and min(touch.xi, 1 - touch.xi) < _AT_NODE:
+        for _, pair, touch in closed(model, state):
+            if pair.slot < 0 and min(touch.xi, 1 - touch.xi) < _AT_NODE:
                 beam = pair.target.beam
                 where += (
                     f'; {pair.pair.name}: the contact lies on a node, where elements "{beam.element}" are rigid: '

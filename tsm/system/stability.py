@@ -17,6 +17,7 @@ import math
 import numpy as np
 
 from tsm.elements.properties import Array
+from tsm.model.contact import closed
 from tsm.model.groups import ExactGroup
 from tsm.model.groups.layout import OWN
 from tsm.model.groups.rods import RodBalance
@@ -48,23 +49,20 @@ def index(assembler: Assembler, system: Linearisation) -> int:
     held at its arc position; on a face the shear strain moves it.
     """
     model, aside = assembler.model, assembler.model.border_dofs
-    there = zip(model.pairs, system.state.touches, strict=True)
-    closed = [(aside + pair.slot, pair, touch) for pair, touch in there if touch is not None]
-    if any(
-        pair.slot < 0 or (touch.grip is not None and touch.grip.held is None) for _, pair, touch in closed
-    ):
+    there = [(aside + pair.slot, touch) for _, pair, touch in closed(model, system.state)]
+    if any(slot < aside or (touch.grip is not None and touch.grip.held is None) for slot, touch in there):
         return UNDEFINED
     for forces in system.groups:
         if isinstance(forces, RodBalance) and (hidden := modes_at_least(forces)):
             return hidden
     with np.errstate(all="ignore"):
-        symmetric = _symmetric(assembler, system, 2 * len(closed))
-    symmetric = _freed(symmetric, [slot + 2 for slot, _, touch in closed if touch.grip is not None])
+        symmetric = _symmetric(assembler, system, 2 * len(there))
+    symmetric = _freed(symmetric, [slot + 2 for slot, touch in there if touch.grip is not None])
     counted = negatives(symmetric)
     if counted is None:
         return UNDEFINED
     held = counted - symmetric.multipliers
-    still = [slot for slot, _, touch in closed if math.hypot(*touch.force) <= IDLE * model.force_scale]
+    still = [slot for slot, touch in there if math.hypot(*touch.force) <= IDLE * model.force_scale]
     if not still:
         return held
     # a mechanism without its idle contacts has an eigenvalue of zero, whose sign is round-off
@@ -164,8 +162,8 @@ def _with_variation(
     right, corner = np.zeros((model.equations + 1, spare[-1])), np.eye(spare[-1])
     right[:, :border], corner[:border, :border] = tangent.right, tangent.corner
     values = second.tangent.reshape(len(second.tangent), -1).T
-    closed = [part.tangent.ravel() for part in tangent.groups[: group.number]]
-    flat = np.concatenate([*closed, values.ravel(), assembler.spring_values])
+    others = [part.tangent.ravel() for part in tangent.groups[: group.number]]
+    flat = np.concatenate([*others, values.ravel(), assembler.spring_values])
     band = np.bincount(assembler.scatter, flat, assembler.band_size + 1)[:-1].reshape(model.banded, -1)
     if aside:
         there = assembler.scatter_right[before : before + values.size]
@@ -176,8 +174,8 @@ def _with_variation(
         right[:, own] = corner[own] = corner[:, own] = 0.0
         right[model.equation[group.dofs[:, part.element], None], own] = part.matrix[:OWN, OWN:]
         corner[own[:, None], own] = part.matrix[OWN:, OWN:]
-    for pair, touch in zip(model.pairs, state.touches, strict=True):
-        if pair.node >= 0 and pair.cuts and touch is not None:
+    for _, pair, _ in closed(model, state):
+        if pair.node >= 0 and pair.cuts:
             for i in range(2):
                 right[model.equation[3 * pair.node + i], aside + pair.slot + i] += 1
     if aside:
