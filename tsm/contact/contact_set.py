@@ -95,8 +95,8 @@ def end_beside(model: Model, pair: PairModel, touch: Touch) -> tuple[tuple[int, 
 
 def owned(model: Model, state: State) -> State:
     """State with the owners of projected contacts renewed."""
-    touches = [
-        chord_owner(model, pair, state, touch) if touch is not None and pair.slot < 0 else touch
-        for pair, touch in zip(model.pairs, state.touches, strict=True)
-    ]
-    return replace(state, touches=tuple(touches))
+    touches = list(state.touches)
+    for k, pair, touch in closed(model, state):
+        if pair.slot < 0:
+            touches[k] = chord_owner(model, pair, state, touch)
+    return state if touches == list(state.touches) else replace(state, touches=tuple(touches))

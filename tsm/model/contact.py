@@ -34,15 +34,14 @@ def with_touches(model: Model, state: State, touches: tuple[Touch | None, ...]) 
 
 def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...], past: float = 0.0) -> State:
     """State with moved contacts; a contact that left its element by a part of its length is handed over to the neighbour."""
-    owned: list[Touch | None] = []
-    for pair, touch in zip(model.pairs, touches, strict=True):
-        if touch is None:
-            owned.append(None)
-            continue
+    before, owned = replace(state, touches=touches), list(touches)
+    for number, pair, touch in closed(model, before):
         first = pair.target.first
         k, xi = slide(pair.target.lengths, touch.element - first, touch.xi, max(past, pair.group.past_node))
-        owned.append(touch if first + k == touch.element else replace(touch, element=first + k, xi=xi))
-    return with_touches(model, replace(state, touches=touches), tuple(owned))
+        if first + k != touch.element:
+            owned[number] = replace(touch, element=first + k, xi=xi)
+    after = before if owned == list(touches) else replace(before, touches=tuple(owned))
+    return recut(model.rods, before, after) if model.rods else after
 
 
 def chord_owner(model: Model, pair: PairModel, state: State, touch: Touch) -> Touch:

@@ -88,6 +88,9 @@ class Assembler:
         self.scatter = np.where((rows < banded) & (columns < banded), flat, self.band_size)
         self.dofs = [group.dofs.ravel() for group in model.groups]
         self.spring_values = model.springs.values if model.springs else np.zeros(0)
+        self.steady: Drive | None = None
+        if model.stages == 1 and all(len(pin.path) < 3 for pin in model.structure.pins):
+            self.steady = self.drive(0.0, 1.0)
         width, height = model.border, last + 1
         self.size = width * height
         if model.border_dofs:
@@ -163,6 +166,8 @@ class Assembler:
 
     def drive(self, begin: float, end: float | None = None) -> Drive:
         """What changes at a load parameter, or between it and another one in the same stage."""
+        if self.steady is not None:
+            return self.steady
         end, still = begin if end is None else end, (0.0, 0.0)
         velocities = tuple(pair.pin.velocity(begin, end) if pair.pin else still for pair in self.model.pairs)
         return Drive(velocities, stage_of(max(begin, end), self.model.stages))
