@@ -72,11 +72,8 @@ class Point:
 
     def __init__(self, newton: Newton, equilibrium: Equilibrium) -> None:
         self.newton, self.model, self.equilibrium = newton, newton.model, equilibrium
-        self.state, self.system, self.t = (
-            equilibrium.state,
-            equilibrium.system,
-            equilibrium.state.load_parameter,
-        )
+        self.state, self.system = equilibrium.state, equilibrium.system
+        self.t = self.state.load_parameter
         self._rates: dict[Drive, Rates | None] = {}
         self.margins: dict[Drive, list[Any]] = {}  # see `tsm.path.margins`
 
@@ -141,9 +138,8 @@ class Track:
 
     def __init__(self, point: Point) -> None:
         self.newton, self.last, self.before = point.newton, point, point
-        self.index = (
-            max(point.index, 0) if point.equilibrium.converged else 0
-        )  # of the last point that has one
+        # of the last point that has one
+        self.index = max(point.index, 0) if point.equilibrium.converged else 0
         # states with the same contacts, each after one ahead of it along its tangent if there is any
         self.history: list[tuple[State, ...]] = [(point.state,)]
 
@@ -260,12 +256,9 @@ def extrapolate(model: Model, history: list[State], t: float, *, tangents: bool 
 def _lagrange(times: list[float], t: float) -> Iterator[tuple[float, list[float], list[float]]]:
     """For each time, the factors of Lagrange's polynomial at t, and the terms of its derivative at the time."""
     for n, time in enumerate(times):
-        others = [other for k, other in enumerate(times) if k != n]
-        yield (
-            time,
-            [(t - other) / (time - other) for other in others],
-            [1 / (time - other) for other in others],
-        )
+        others = times[:n] + times[n + 1 :]
+        slopes = [1 / (time - other) for other in others]
+        yield time, [(t - other) / (time - other) for other in others], slopes
 
 
 def _hermite(times: list[float], ahead: list[float], t: float) -> list[float]:

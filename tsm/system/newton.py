@@ -238,7 +238,7 @@ class Newton:
             return replace(state, load_parameter=t)
         q = state.q.copy()
         q[self.model.fixed] = self.model.motions.at(t)
-        self._share(q)
+        q[self.model.slaves] = q[self.model.masters]  # ends behind hinges move with their joints
         return replace(state, load_parameter=t, q=q)
 
     def update(
@@ -268,7 +268,7 @@ class Newton:
             state = self.prescribed(state, end)
         q = state.q.copy()
         q[model.free] += factor * dq
-        self._share(q)
+        q[model.slaves] = q[model.masters]
         if not np.isfinite(size):
             return replace(state, q=q)
         dofs = np.zeros(model.dof_count)
@@ -287,11 +287,6 @@ class Newton:
             for pair, touch in zip(model.pairs, state.touches, strict=True)
         )  # fmt: skip
         return handed_over(model, moved, tuple(touches), past)
-
-    def _share(self, q: Array) -> None:
-        """Give the ends behind hinges the displacements of their joints."""
-        if self.model.joints:
-            q[self.model.slaves] = q[self.model.masters]
 
 
 def _alternates(owners: list[tuple[int, ...]]) -> bool:

@@ -234,29 +234,22 @@ class Assembler:
         """Newton step and the solutions for further right-hand sides, as columns; None if the tangent is singular."""
         model = self.model
         banded, border, count = model.banded, model.border, 1 + len(more)
-        rhs = np.empty((banded, count + border), order="F")
         tangent = system.tangent
         sides = np.stack([-(system.residual + tangent.condensed_residual), *more], axis=1)
         if self.units:
             tangent, sides = self.units.without(tangent, sides)
-        rhs[:, :count] = sides[:banded]
-        rhs[:, count:] = tangent.right[:banded]
-        lu, _, X, info = lapack().dgbsv(self.k, self.k, tangent.band.T, rhs, overwrite_b=True)
+        rhs = np.concatenate([sides[:banded], tangent.right[:banded]], axis=1)
+        lu, _, X, info = lapack().dgbsv(self.k, self.k, tangent.band.T, rhs)
         if border and (
             info != 0 or (np.abs(lu[2 * self.k]) <= _WEAK * np.abs(tangent.band).max(axis=1)).any()
         ):
             return self._solve_whole(tangent, sides)
-        if info != 0:
-            return None
-        if not border:
-            return self._with_units(X)
-        reduced = tangent.below[:, :banded] @ X
-        _, _, z, info = lapack().dgesv(
-            tangent.corner - reduced[:, count:], sides[banded:] - reduced[:, :count]
-        )
-        if info != 0:
-            return None
-        return self._with_units(np.concatenate([X[:, :count] - X[:, count:] @ z, z]))
+        if border:
+            reduced = tangent.below[:, :banded] @ X
+            left, right = tangent.corner - reduced[:, count:], sides[banded:] - reduced[:, :count]
+            _, _, z, info = lapack().dgesv(left, right)
+            X = np.concatenate([X[:, :count] - X[:, count:] @ z, z])
+        return None if info != 0 else self._with_units(X)
 
     def _with_units(self, x: Array) -> Array:
         return x if self.units is None else x * self.units.columns[:, None]
@@ -266,10 +259,9 @@ class Assembler:
         from scipy.sparse.linalg import splu
 
         try:
-            lu = splu(self.whole(tangent))
+            return self._with_units(splu(self.whole(tangent)).solve(sides))
         except RuntimeError:
             return None
-        return self._with_units(lu.solve(sides))
 
     def whole(self, tangent: Bordered) -> Any:
         """Tangent as one sparse matrix, by columns."""
