@@ -26,7 +26,7 @@ from tsm.path.energy import rolled, spent
 from tsm.path.fall import Fall
 from tsm.path.friction import grips, regripped
 from tsm.path.margins import Margin, Search, broken, margins
-from tsm.path.path import SMALLEST, Point, Track, allowed, check_followed
+from tsm.path.path import FOLD, SMALLEST, Point, Track, allowed
 from tsm.path.step import NEAR, Step, ends
 from tsm.statement.settings import Settings
 from tsm.statement.stages import stage_of
@@ -119,9 +119,10 @@ class Follower:
                 return False
             if on_held_end(self.model, self.track.last.state):
                 raise StopError(Status.FOLDED) from refused
-            if refused.status in _NAMED or not self.track.folds():
-                named = refused.status if refused.status in _NAMED else Status.CUTBACK_FLOOR
-                raise StopError(named) from refused
+            if refused.status in _NAMED:
+                raise StopError(refused.status) from refused
+            if self.track.last.speed <= FOLD:
+                raise StopError(Status.CUTBACK_FLOOR) from refused
             self._meet_limit_point()
         return True
 
@@ -199,24 +200,26 @@ class Follower:
     def _solve(self, t: float) -> Point:
         """Point at t from the predicted state, if the tangent leads to it."""
         last, start = self.track.last, self.track.predicted(t)
-        equilibrium = self.newton.solve(start)
-        if self.model.rubbed:
-            equilibrium = rolled(self.newton, last.state, equilibrium)
-        self.log.iterations += equilibrium.iterations
-        if not equilibrium.converged:
-            raise RefusedError(equilibrium.status)
-        reached = Point(self.newton, equilibrium)
+        reached = self._solved(start, last.state)
         reached.behind = self.track.unexplained(last, reached)
-        check_followed(reached.behind)
         if self.track.strays(start, reached.state):
             raise RefusedError
         return reached
+
+    def _solved(self, start: State, before: State | None = None) -> Point:
+        """Equilibrium near a start; contacts in stick have not slipped since a state before."""
+        equilibrium = self.newton.solve(start)
+        if before is not None and self.model.rubbed:
+            equilibrium = rolled(self.newton, before, equilibrium)
+        self.log.iterations += equilibrium.iterations
+        if not equilibrium.converged:
+            raise RefusedError(equilibrium.status)
+        return Point(self.newton, equilibrium)
 
     def _advance(self, reached: Point) -> None:
         """Accept a point if the step has no event, has followed the path and has passed no critical point."""
         last, track = self.track.last, self.track
         unexplained = max(reached.behind, track.unexplained(reached, reached))
-        check_followed(unexplained)
         if 0 <= reached.index != track.index and (reached.index > track.index or last.index == track.index):
             if unexplained > _STRAIGHT:
                 raise RefusedError
@@ -301,25 +304,15 @@ class Follower:
 
     def _resume(self, event: Point, state: State, *, jump: bool) -> None:
         """Find equilibrium with the changed contacts and accept it."""
-        found = self._jumped(event, state) if jump else self._settled(state)
+        if jump:
+            found, released = self._fall().after(event, state)
+            self.log.release(EventKind.SLIP_OFF, released)
+            if grips(found.state):
+                raise StopError(Status.REST_UNKNOWN)
+        else:
+            found = self._solved(state)
         check_ends(self.model, found.state, event.state)
         gripped, held = self._gripped(found, event.state), self.track.index
         self._begin(gripped)
         if self.track.index > held and self.branch != "primary":
             self._meet_limit_point()
-
-    def _jumped(self, event: Point, state: State) -> Point:
-        """Point after a slip-off."""
-        rest, released = self._fall().after(event, state)
-        self.log.release(EventKind.SLIP_OFF, released)
-        if grips(rest.state):
-            raise StopError(Status.REST_UNKNOWN)
-        return rest
-
-    def _settled(self, state: State) -> Point:
-        """Point with changed contacts, without a jump."""
-        equilibrium = self.newton.solve(state)
-        self.log.iterations += equilibrium.iterations
-        if not equilibrium.converged:
-            raise RefusedError(equilibrium.status)
-        return Point(self.newton, equilibrium)

@@ -31,7 +31,7 @@ from tsm.system.newton import Equilibrium, Newton
 from tsm.system.stability import index
 from tsm.system.system import Drive
 
-FOLLOWED = 0.35
+_FOLLOWED = 0.35
 """The bound c. A limit point is approached by a factor of (1 + 2 c)^2 = 2.9 a step."""
 SMALLEST = 1e-12
 """Floor of the load step, as a part of the whole load."""
@@ -50,7 +50,7 @@ _AHEAD = 1e-2
 """Part of a step ahead of a state at which another one states its tangent; a shorter one has fewer digits."""
 SHORTEST = 1e-6
 """Step of the load parameter below which the tangent alone predicts: the others would be round-off."""
-_FOLD = 100.0
+FOLD = 100.0
 """Speed of the path, in largest Newton steps per whole load, above which a limit point is near, where it is infinite."""
 _GROWING, _ROOM = 1.4, 0.6
 """Growth of the speed that shows a limit point ahead, and the next step over the distance to it."""
@@ -166,7 +166,7 @@ class Track:
     def predicted(self, t: float) -> State:
         """State at t from the last states and their tangents, or along the last tangent."""
         last, step, history = self.last, t - self.last.t, self.history
-        steady = not last.on_chords and last.speed < _FOLD  # a nearly singular tangent leads anywhere
+        steady = not last.on_chords and last.speed < FOLD  # a nearly singular tangent leads anywhere
         if steady and step >= SHORTEST and len(history[-1]) == 1:
             history[-1] = (last.predicted(last.t + _AHEAD * step), last.state)
         if (len(history) == 1 and not last.on_chords) or (steady and step < SHORTEST):
@@ -175,14 +175,17 @@ class Track:
         return self.newton.prescribed(extrapolate(last.model, states, t, tangents=steady), t)
 
     def unexplained(self, by: Point, reached: Point) -> float:
-        """Part of the step to a point that the tangent at one of its ends does not explain; 0 where none is usable."""
+        """Part of the step to a point that the tangent at one of its ends does not explain; 0 where none is usable. It may not be large."""
         last, newton = self.last, self.newton
         rates = None if last.on_chords else by.rates(newton.assembler.drive(last.t, reached.t))
         if rates is None:
             return 0.0
         step = newton.motion(last.state, reached.state, by.state)
         size, left = newton.size(step), newton.size(step - (reached.t - last.t) * rates.motion)
-        return left / size if min(left, size) > _RESOLVED else 0.0
+        part = left / size if min(left, size) > _RESOLVED else 0.0
+        if part > _FOLLOWED:
+            raise RefusedError(part=allowed(part))
+        return part
 
     def strays(self, predicted: State, reached: State) -> bool:
         """Whether an equilibrium lies too far away, or too far from its prediction where no tangent is usable."""
@@ -192,31 +195,16 @@ class Track:
     def room(self) -> float:
         """Longest step that the last two speeds promise to follow; infinite where they promise nothing."""
         one, two = self.before, self.last
-        short = _PROMISED / two.speed if two.speed < _FOLD and not two.on_chords else math.inf
+        short = _PROMISED / two.speed if two.speed < FOLD and not two.on_chords else math.inf
         if len(self.history) < 2 or one.t >= two.t or not two.speed > _GROWING * one.speed:
             return short
         return min(short, _ROOM * (self.limit() - two.t) or math.inf)
 
     def limit(self) -> float:
-        """Load parameter of the limit point ahead."""
-        return limit_load((self.before.t, self.before.speed), (self.last.t, self.last.speed))
-
-    def folds(self) -> bool:
-        """Whether the path is as fast as beside a limit point."""
-        return self.last.speed > _FOLD
-
-
-def limit_load(before: tuple[float, float], last: tuple[float, float]) -> float:
-    """Load parameter of a limit point from two load parameters before it and the speeds of the path there.
-
-    Near it the speed is ``a/sqrt(t_c - t)``.
-
-    >>> round(limit_load((0.0, 1.0), (0.75, 2.0)), 12)
-    1.0
-    """
-    (t0, v0), (t1, v1) = before, last
-    ratio = v0 / v1 if np.isfinite(v1) and v1 > v0 > 0 else 0.0
-    return t1 + (t1 - t0) * ratio**2 / (1 - ratio**2) if ratio < 1 else t1
+        """Load parameter of the limit point ahead, by the speeds of the path at the last two points: near it ``a/sqrt(t_c - t)``."""
+        (t0, v0), (t1, v1) = ((point.t, point.speed) for point in (self.before, self.last))
+        ratio = v0 / v1 if np.isfinite(v1) and v1 > v0 > 0 else 0.0
+        return t1 + (t1 - t0) * ratio**2 / (1 - ratio**2)
 
 
 def _owners(state: State) -> list[int]:
@@ -281,12 +269,6 @@ def _touch(pair: PairModel, weights: list[float], trail: Sequence[Touch]) -> Tou
     return replace(last, xi=xi, force=(x, y), angle=_weighted(weights, [touch.angle for touch in trail]))
 
 
-def check_followed(unexplained: float) -> None:
-    """Refuse a step that its tangents do not explain."""
-    if unexplained > FOLLOWED:
-        raise RefusedError(part=allowed(unexplained))
-
-
 def allowed(unexplained: float) -> float:
     """Return the fraction of a step that its tangents would explain; `unexplained` is the fraction that they do not explain."""
-    return _SAFE * FOLLOWED / max(unexplained, 1e-9)
+    return _SAFE * _FOLLOWED / max(unexplained, 1e-9)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -146,23 +145,11 @@ class Result:
     model: Model
     equilibria: tuple[Equilibrium, ...]
 
-    def __repr__(self) -> str:
-        return present.summary(self)
-
-    def arrays(self) -> dict[str, Array]:
-        """Histories by name, see `tsm.result.present.arrays`: what ``numpy.savez`` takes."""
-        return present.arrays(self)
-
-    def table(self) -> dict[str, Array]:
-        """Histories as columns of equal length, see `tsm.result.present.table`: what ``pandas.DataFrame`` takes."""
-        return present.table(self)
-
-    def _repr_html_(self) -> str:
-        return present.html(self)
-
-    def plot(self, axes: Any = None, shown: int = present.SHOWN) -> Any:
-        """Draw the deflected axes, see `tsm.result.present.plot`."""
-        return present.plot(self, axes, shown)
+    __repr__ = present.summary
+    _repr_html_ = present.html
+    arrays = present.arrays
+    table = present.table
+    plot = present.plot
 
     @cached_property
     def strain_energy(self) -> Array:
