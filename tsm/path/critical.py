@@ -81,10 +81,10 @@ def locate_bifurcation(before: Point, after: Point, solve: Callable[[float], Poi
     (g0, _), (g1, _) = evaluate(before), evaluate(after)
     apart, small = _LOCATED * max(1.0, after.t), _LOCATED * max(g0, -g1)
     ends = (before.t, g0), (after.t, g1)
-    found = find_root(lambda t: evaluate(solve(t)), *ends, small=small, apart=apart)
-    if found is None:
+    root = find_root(lambda t: evaluate(solve(t)), *ends, small=small, apart=apart) if g0 > 0 else None
+    if root is None:
         raise RefusedError
-    return found
+    return root
 
 
 def critical_point(kind: CriticalKind, point: Point, load_parameter: float) -> CriticalPoint:
