@@ -6,7 +6,7 @@ Most bands are positive definite, which Cholesky's factorisation shows. If A is 
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -35,7 +35,7 @@ class Symmetric(NamedTuple):
 
 def negatives(symmetric: Symmetric) -> int | None:
     """Number of negative eigenvalues, None where one of them is zero or not a number."""
-    band, right, corner, *_ = symmetric
+    band, right, corner, units, _ = symmetric
     factor, info = lapack().dpbtrf(band, lower=1)
     if info == 0 and (factor[0] ** 2 > _WEAK * band[0]).all():
         if not len(corner):
@@ -44,36 +44,31 @@ def negatives(symmetric: Symmetric) -> int | None:
         reduced = corner - right.T @ inside
         if np.abs(reduced).max() < _SOFT:
             return _negatives_dense(reduced)
-    whole = _whole(symmetric)
-    if whole.shape[0] <= _DENSE:
-        return _negatives_dense(whole.toarray())
-    return _negatives_sparse(whole)
+    count, width = right.shape
+    if count + width > _DENSE:
+        return _negatives_sparse(symmetric)
+    whole = np.zeros((count + width, count + width))
+    for k, diagonal in enumerate(band[:count]):
+        whole[range(k, count), range(count - k)] = diagonal[: count - k] * units[k:] * units[: count - k]
+    whole[count:, :count], whole[count:, count:] = right.T * units, np.tril(corner)
+    return _negatives_dense(whole + np.tril(whole, -1).T)
 
 
-def _whole(symmetric: Symmetric) -> Any:
-    """The matrix, sparse."""
+def _negatives_sparse(symmetric: Symmetric) -> int | None:
+    """Number of negative eigenvalues of a large matrix, by an LU decomposition; None if a pivot leaves the diagonal."""
     from scipy.sparse import block_array, coo_array, dia_array
+    from scipy.sparse.linalg import splu
 
     band, right, corner, units, _ = symmetric
     shape = (band.shape[1],) * 2
-    lower, above = (
-        dia_array((band, -np.arange(len(band))), shape),
-        dia_array((band[1:], -np.arange(1, len(band))), shape),
-    )
+    lower = dia_array((band, -np.arange(len(band))), shape)
+    above = dia_array((band[1:], -np.arange(1, len(band))), shape)
     inside = (lower + above.T).multiply(units).multiply(units[:, None])
     beside = coo_array(right * units[:, None])
-    return block_array([[inside, beside], [beside.T, coo_array(corner)]] if len(corner) else [[inside]])
-
-
-def _negatives_sparse(whole: Any) -> int | None:
-    """Number of negative eigenvalues of a large matrix, by an LU decomposition; None if a pivot leaves the diagonal."""
-    from scipy.sparse.linalg import splu
-
+    whole = block_array([[inside, beside], [beside.T, coo_array(corner)]] if len(corner) else [[inside]])
     fit = _equilibrating(np.asarray(abs(whole).max(axis=0).todense()).ravel())
-    scaled, options = (
-        whole.multiply(fit).multiply(fit[:, None]).tocsc(),
-        {"SymmetricMode": True, "Equil": False},
-    )
+    scaled = whole.multiply(fit).multiply(fit[:, None]).tocsc()
+    options = {"SymmetricMode": True, "Equil": False}
     try:
         lu = splu(scaled, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
     except RuntimeError:
