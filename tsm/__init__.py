@@ -7,20 +7,12 @@ from tsm.contact.events import Event, EventKind
 from tsm.elements import ELEMENTS
 from tsm.result.result import ContactHistory, FrictionHistory, Result, SupportHistory
 from tsm.solve import SolveError, march, solve
+from tsm.statement.beam import Beam, LineLoad, Section
+from tsm.statement.pin import Pin
 from tsm.statement.settings import Settings
+from tsm.statement.springs import Hinge, Spring
 from tsm.statement.status import Status
-from tsm.statement.structure import (
-    Beam,
-    ContactPair,
-    Hinge,
-    LineLoad,
-    Load,
-    Pin,
-    Section,
-    Spring,
-    Structure,
-    Support,
-)
+from tsm.statement.structure import ContactPair, Load, Structure, Support
 
 __all__ = [
     "ELEMENTS",

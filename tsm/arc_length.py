@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import replace
+from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
@@ -32,7 +32,7 @@ from tsm.path.step import Step
 from tsm.result.result import Result
 from tsm.solve import ended
 from tsm.statement.settings import Settings
-from tsm.statement.status import Status
+from tsm.statement.status import RefusedError, Status, StopError
 from tsm.statement.structure import Structure
 from tsm.system.newton import Newton
 from tsm.system.system import Drive
@@ -84,15 +84,15 @@ def trace(
         raise ValueError(f"steps = {steps!r}: must be at least 1")
     if structure.stages > 1:
         raise ValueError(f"stages = {structure.stages}: arc-length control follows a single stage, use solve")
-    begin = time.perf_counter()
-    model = Model(structure)
-    path = _Path(model, settings or Settings())
+    begin, model = time.perf_counter(), Model(structure)
     taken: list[Step] = []
-    status = path.status
-    while status is Status.CONVERGED and len(taken) < steps:
-        step = path.advance(arc_length)
-        status = step.status
-        taken += [step] * (status is Status.CONVERGED)
+    status = Status.COMPLETED
+    try:
+        path = _Path(model, settings or Settings())
+        while len(taken) < steps:
+            taken.append(path.advance(arc_length))
+    except (StopError, RefusedError) as stop:
+        status = stop.status
     return ended(model, taken, status, begin, throw=throw)
 
 
@@ -109,9 +109,9 @@ class _Path:
     def __init__(self, model: Model, settings: Settings) -> None:
         self.newton = Newton(model, settings)
         start = Point(self.newton, self.newton.solve(initial_state(model)))
-        gripped = regripped(start, self._drive(start), start.state) if model.rubbed else start
-        self.status = gripped if isinstance(gripped, Status) else gripped.equilibrium.status
-        self.here = start if isinstance(gripped, Status) else gripped
+        if not start.equilibrium.converged:
+            raise StopError(start.equilibrium.status)
+        self.here = regripped(start, self._drive(start), start.state)
         per_beam = np.where(model.kind < 2, model.extent / model.length, 1.0) * self.newton.per_step
         self.weight = np.where(model.kind < 3, per_beam, 0.0) ** 2
         self.direction = self._direction(self.here, None)
@@ -123,16 +123,19 @@ class _Path:
     def advance(self, arc_length: float) -> Step:
         """One step, shortened where it does not converge, with the limit point it passed if any."""
         step = Step(equilibrium=self.here.equilibrium)
-        while isinstance(reached := self._step(length := arc_length * self.growth, step), Status):
-            step.cutbacks += 1
-            self.growth /= 2
-            if self.growth < SMALLEST:
-                return replace(step, status=reached)
-        there, direction = reached
-        assert self.direction is not None, "a step needs a direction"
+        while True:
+            try:
+                length = arc_length * self.growth
+                there, direction = self._step(length, step)
+                break
+            except RefusedError:
+                step.cutbacks += 1
+                self.growth /= 2
+                if self.growth < SMALLEST:
+                    raise
         begin = self.direction.load
         if broken(self._margins(self.here, begin), self._margins(there, direction.load)):
-            return replace(step, status=Status.CONTACT_CHANGED)
+            raise StopError(Status.CONTACT_CHANGED)
         if direction.load * begin < 0:
             step.events.append(self._limit_point(length, begin, direction.load, step))
         self.here.release()
@@ -143,44 +146,38 @@ class _Path:
 
     def _margins(self, point: Point, load: float) -> list[Margin]:
         """Margins on the way on which the load parameter grows or falls."""
-        found = margins(point, self._drive(point))
-        return [
-            m._replace(value=math.copysign(1, load) * m.value) if m.kind is EventKind.STICK else m
-            for m in found
-        ]
+        found, way, stick = margins(point, self._drive(point)), math.copysign(1, load), EventKind.STICK
+        return [m._replace(value=way * m.value) if m.kind is stick else m for m in found]
 
-    def _direction(self, point: Point, last: _Direction | None) -> _Direction | None:
+    def _direction(self, point: Point, last: _Direction | None) -> _Direction:
         """Direction of the path in the sense of the last one; at first, towards an increasing load."""
         rates = point.rates(self._drive(point))
         if rates is None:
-            return None
+            raise RefusedError(Status.SINGULAR_TANGENT)
         x = rates.unknowns
         size = float(np.sqrt(x @ (self.weight * x)))
-        ahead = 1.0 if last is None else float(x @ (self.weight * last.x))
-        sign = 1.0 if ahead >= 0 else -1.0
+        sign = 1.0 if last is None or x @ (self.weight * last.x) >= 0 else -1.0
         return _Direction(sign * x / size, sign / size)
 
-    def _step(self, length: float, log: Step) -> tuple[Point, _Direction] | Status:
-        """Point a distance along the direction of the path, or why there is none."""
-        if self.direction is None:
-            return Status.SINGULAR_TANGENT
+    def _step(self, length: float, log: Step) -> tuple[Point, _Direction]:
+        """Point a distance along the direction of the path."""
         here, (x, load) = self.here, self.direction
         start = self.newton.update(here.state, length * x, here.system, t=here.t + length * load)
         there = self.newton.solve(start, across=self.weight * x)
         log.iterations += there.iterations
         if not there.converged:
-            return there.status
+            raise RefusedError(there.status)
         point = Point(self.newton, there)
-        direction = self._direction(point, self.direction)
-        return Status.SINGULAR_TANGENT if direction is None else (point, direction)
+        return point, self._direction(point, self.direction)
 
     def _limit_point(self, length: float, before: float, after: float, log: Step) -> Event:
         """Limit point within a step: where the direction of the path has no load component."""
 
-        def evaluate(s: float) -> tuple[float, float] | None:
-            reached = self._step(s, log)
-            return None if isinstance(reached, Status) else (reached[1].load, reached[0].t)
+        def evaluate(s: float) -> tuple[float, float]:
+            point, direction = self._step(s, log)
+            return direction.load, point.t
 
-        small, apart = _LOCATED * abs(before), _APART * length
-        t = find_root(evaluate, (0.0, before), (length, after), small=small, apart=apart)
+        small, apart, t = _LOCATED * abs(before), _APART * length, None
+        with suppress(RefusedError):
+            t = find_root(evaluate, (0.0, before), (length, after), small=small, apart=apart)
         return Event(kind=EventKind.LIMIT_POINT, load_parameter=self.here.t if t is None else t)

@@ -20,7 +20,7 @@ from tsm.model.model import Model
 from tsm.model.projection import arc_position, slide
 from tsm.model.scales import joined_extents, sizes_of
 from tsm.path.crossing import crossing
-from tsm.path.margins import WATCHES, Margin, Watch, broken
+from tsm.path.margins import WATCHES, Margin, broken
 from tsm.statement.status import Status
 from tsm.system.newton import Newton
 
@@ -84,14 +84,12 @@ def test_a_margin_is_broken_below_round_off():
 
 def test_a_new_event_is_a_row(monkeypatch):
     """A contact that may carry so much and no more: the path ends where it does, located like every event."""
-    most = Watch(
-        EventKind.LINE_CONTACT,
-        lambda point, k: point.state.touches[k] is not None,
-        lambda point, k, _: 1.0 - normal_force(point.model, point.equilibrium, k) / 0.5,
-        lambda *_: Status.LINE_CONTACT,
+    rows = {row.kind: row for row in WATCHES}
+    rows[EventKind.LINE_CONTACT] = rows[EventKind.LINE_CONTACT]._replace(
+        awaited=lambda point, k: point.state.touches[k] is not None,
+        margin=lambda point, k, _: 1.0 - normal_force(point.model, point.equilibrium, k) / 0.5,
     )
-    rows = (row for row in WATCHES if row.kind is not most.kind)
-    monkeypatch.setattr("tsm.path.margins.WATCHES", (*rows, most))
+    monkeypatch.setattr("tsm.path.margins.WATCHES", tuple(rows.values()))
     path = ((0.8, 0.0), (0.8, 0.3))
     result = tsm.solve(cantilever(path), [0.5, 1.0], throw=False)
     assert result.status is Status.LINE_CONTACT
@@ -167,9 +165,3 @@ def test_a_root_is_found_well_within_the_bound_of_evaluations(name):
     assert abs(function(found)) <= 1e-13 or 0 <= found - root < 1e-13
     assert found == asked[-1]
     assert len(asked) <= (100 if "jump" in name else 50)
-
-
-def test_no_value_ends_the_search_for_a_root():
-    values = iter([(0.2, 0.3), (0.1, 0.4), None])
-    assert find_root(lambda _: next(values), (0.0, 0.5), (1.0, -0.4), small=1e-15, apart=1e-15) is None
-    assert not list(values)

@@ -6,14 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from tsm.contact.events import ROUND_OFF, EventKind
-from tsm.model.contact import chord_owner, with_touches
+from tsm.contact.events import ROUND_OFF, EventKind, over, touch_at
+from tsm.model.contact import chord_owner, closed, with_touches
 from tsm.model.groups.shape import undeformed
 from tsm.model.model import Model
 from tsm.model.pairs import PairModel
 from tsm.model.projection import Projection
 from tsm.model.state import UNDECIDED, State, Touch
-from tsm.statement.status import Status
+from tsm.statement.status import Status, StopError
 
 
 def changed(model: Model, state: State, k: int, touch: Touch | None, *, armed: bool) -> State:
@@ -37,7 +37,7 @@ def rearm(model: Model, state: State) -> State:
     for k, pair in enumerate(model.pairs):
         if state.touches[k] is None and not armed[k]:
             seen = model.project(pair, state)
-            armed[k] = seen.overshoot > ROUND_OFF * model.length or seen.gap > ROUND_OFF * model.length
+            armed[k] = not over(model, seen) or seen.gap > ROUND_OFF * model.length
     return replace(state, armed=tuple(armed))
 
 
@@ -46,58 +46,57 @@ def initial_state(model: Model) -> State:
 
     Raises ValueError if a node starts on the wrong side of its beam.
     """
-    q = np.zeros(model.dof_count)
-    count = len(model.pairs)
-    none: tuple[Touch | None, ...] = (None,) * count
-    start = State(load_parameter=0.0, q=q, touches=none, armed=(True,) * count)
+    q, count, small = np.zeros(model.dof_count), len(model.pairs), ROUND_OFF * model.length
+    start = State(load_parameter=0.0, q=q, touches=(None,) * count, armed=(True,) * count)
     if model.rods:
         start = undeformed(model.rods, start)
     touches: list[Touch | None] = []
     for pair in model.pairs:
         seen = model.project(pair, start)
-        small = ROUND_OFF * model.length
-        over = seen.overshoot <= small
-        if over and seen.gap < -small:
+        if over(model, seen) and seen.gap < -small:
             position = model.node_position(pair, q, 0.0)
             raise ValueError(
                 f"ContactPair({pair.pair.name}).side = {pair.pair.side!r}: "
                 f"the node starts at {position}, {-seen.gap:.3g} behind the surface"
             )
-        closed = over and seen.gap <= small
-        touches.append(closed_at(pair, seen) if closed else None)
+        touches.append(closed_at(pair, seen) if over(model, seen) and seen.gap <= small else None)
     return owned(model, with_touches(model, start, tuple(touches)))
 
 
 def crowded(model: Model, state: State) -> bool:
     """Whether two nodes touch one element of the paper's, whose matrix knows a single contact."""
-    owners = [
-        touch.element
-        for pair, touch in zip(model.pairs, state.touches, strict=True)
-        if touch is not None and pair.slot < 0
-    ]
+    owners = [touch.element for _, pair, touch in closed(model, state) if pair.slot < 0]
     return len(set(owners)) < len(owners)
 
 
-def forbidden(model: Model, kind: EventKind, pair: PairModel, arc: float, *, alone: bool) -> Status | None:
-    """Status that ends the march where a contact may not open; `alone` if no other contact takes over."""
-    if kind is EventKind.LINE_CONTACT:
-        return Status.LINE_CONTACT
-    if kind is EventKind.SLIP_OFF:
-        end = "start" if arc < pair.target.beam.length / 2 else "end"
-        node = model.end_node(f"{pair.target.beam.name}.{end}")
-        if any(3 * node + c in model.prescribed for c in range(3)):
-            return Status.FOLDED
-        if pair.pair.keep:
-            return Status.SLIPPED_OFF
-        corner = alone and pair.pair.radius > 0 and (node, end == "end") in model.free_ends[pair.pair.beam]
-        return Status.END_CONTACT if corner else None
-    return Status.LOST_CONTACT if pair.pair.keep else None
+def opened(model: Model, state: State, k: int, kind: EventKind, *, alone: bool) -> State:
+    """State without a contact that was released or slipped off; `alone` if no other contact takes over.
+
+    Raises StopError where the path ends because the contact may not open.
+    """
+    pair, slips = model.pairs[k], kind is EventKind.SLIP_OFF
+    end, held, _ = end_beside(model, pair, touch_at(state, k))
+    if slips and held:
+        raise StopError(Status.FOLDED)
+    if pair.pair.keep:
+        raise StopError(Status.SLIPPED_OFF if slips else Status.LOST_CONTACT)
+    if slips and alone and pair.pair.radius > 0 and end in model.free_ends[pair.pair.beam]:
+        raise StopError(Status.END_CONTACT, (state, k))
+    return changed(model, state, k, None, armed=not slips)
+
+
+def end_beside(model: Model, pair: PairModel, touch: Touch) -> tuple[tuple[int, bool], bool, float]:
+    """End of its beam that a contact is nearer to, its node and whether it is the last one; whether it is held; how far it is."""
+    arc, length = pair.arc_position(touch), pair.target.beam.length
+    last = arc >= length / 2
+    node = model.end_node(f"{pair.target.beam.name}.{'end' if last else 'start'}")
+    return (node, last), any(3 * node + c in model.prescribed for c in range(3)), min(arc, length - arc)
 
 
 def owned(model: Model, state: State) -> State:
     """State with the owners of projected contacts renewed."""
-    touches = [
-        chord_owner(model, pair, state, touch) if touch is not None and pair.slot < 0 else touch
-        for pair, touch in zip(model.pairs, state.touches, strict=True)
-    ]
-    return replace(state, touches=tuple(touches))
+    touches = list(state.touches)
+    for k, pair, touch in closed(model, state):
+        if pair.slot < 0:
+            touches[k] = chord_owner(model, pair, state, touch)
+    return state if touches == list(state.touches) else replace(state, touches=tuple(touches))

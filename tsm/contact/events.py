@@ -25,7 +25,8 @@ from dataclasses import dataclass
 from enum import Enum
 
 from tsm.model.model import Model
-from tsm.model.projection import arc_position
+from tsm.model.projection import Projection, arc_position
+from tsm.model.state import State, Touch, Traction
 from tsm.system.newton import Equilibrium
 
 ROUND_OFF = 1e-10
@@ -45,10 +46,6 @@ class EventKind(Enum):
     END_CONTACT = "end-contact"
     LIMIT_POINT = "limit-point"
     BIFURCATION = "bifurcation"
-
-
-GRIPS = frozenset({EventKind.SLIP, EventKind.STICK})
-"""Events at which a contact stays closed."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,15 +84,31 @@ class Event:
     stage: int = 1
 
 
+def touch_at(state: State, k: int) -> Touch:
+    """Contact of closed pair k."""
+    touch = state.touches[k]
+    assert touch is not None, "a closed pair has a touch"
+    return touch
+
+
+def over(model: Model, seen: Projection) -> bool:
+    """Whether a node lies over its beam, not past an end."""
+    return seen.overshoot <= ROUND_OFF * model.length
+
+
+def traction(model: Model, equilibrium: Equilibrium, k: int) -> Traction:
+    """Force and place of closed pair k, which has friction."""
+    rods = model.rods
+    assert rods is not None, "a contact with friction cuts its element"
+    return rods.traction(k, equilibrium.system.groups[rods.number])
+
+
 def normal_force(model: Model, equilibrium: Equilibrium, k: int) -> float:
     """Contact force of closed pair k, friction included, positive where it pushes the beam away from the node's side."""
     fx, fy = equilibrium.system.forces[k]
-    touch = equilibrium.state.touches[k]
-    assert touch is not None, "a closed pair has a touch"
-    pair, state = model.pairs[k], equilibrium.state
-    if touch.grip is not None and model.rods:
-        push = model.rods.traction(k, equilibrium.system.groups[model.rods.number]).normal
-        return math.copysign(math.hypot(fx, fy), push)
+    pair, state, touch = model.pairs[k], equilibrium.state, touch_at(equilibrium.state, k)
+    if touch.grip is not None:
+        return math.copysign(math.hypot(fx, fy), traction(model, equilibrium, k).normal)
     dx, dy = model.direction(pair, touch, state)
     size = float((fx * fx + fy * fy) ** 0.5)
     return size if pair.side * (fy * dx - fx * dy) >= 0 else -size

@@ -11,7 +11,7 @@ Answer = TypeVar("Answer")
 
 
 def find_root(
-    evaluate: Callable[[float], tuple[float, Answer] | None],
+    evaluate: Callable[[float], tuple[float, Answer]],
     before: tuple[float, float],
     after: tuple[float, float],
     *,
@@ -20,10 +20,10 @@ def find_root(
 ) -> Answer | None:
     """Find where a function changes its sign, by inverse quadratic interpolation or bisection (Chandrupatla 1997).
 
-    ``evaluate``: value of the function, and data that belong to it; None where it has no value. ``before,
-    after``: argument and value on both sides of the root, of opposite signs. ``small``: absolute value that
-    counts as zero. ``apart``: width of the bracket at which the search ends for a function that jumps.
-    Returns the data at the root, or just past a jump; None where the function has no value.
+    ``evaluate``: value of the function, and data that belong to it. ``before, after``: argument and value on
+    both sides of the root, of opposite signs. ``small``: absolute value that counts as zero. ``apart``: width of
+    the bracket at which the search ends for a function that jumps. Returns the data at the root, or just past a
+    jump; None where no evaluation was past it.
     """
     (other, g), (last, f) = before, after  # the root lies between them
     sign = 1.0 if g > 0 else -1.0
@@ -32,10 +32,7 @@ def find_root(
     for _ in range(_EVALUATIONS):
         least = min(apart / 2 / abs(other - last), 0.5)
         at = last + min(max(part, least), 1 - least) * (other - last)
-        sample = evaluate(at)
-        if sample is None:
-            return None
-        value, answer = sample
+        value, answer = evaluate(at)
         if abs(value) <= small:
             return answer
         if sign * value < 0:

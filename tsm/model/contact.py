@@ -20,6 +20,12 @@ from tsm.model.projection import nearest_chord, slide
 from tsm.model.state import State, Touch
 
 
+def closed(model: Model, state: State) -> list[tuple[int, PairModel, Touch]]:
+    """Closed pairs with their numbers and contacts."""
+    there = enumerate(zip(model.pairs, state.touches, strict=True))
+    return [(k, pair, touch) for k, (pair, touch) in there if touch is not None]
+
+
 def with_touches(model: Model, state: State, touches: tuple[Touch | None, ...]) -> State:
     """State with other contacts."""
     after = state if touches == state.touches else replace(state, touches=touches)
@@ -29,13 +35,11 @@ def with_touches(model: Model, state: State, touches: tuple[Touch | None, ...]) 
 def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...], past: float = 0.0) -> State:
     """State with moved contacts; a contact that left its element by a part of its length is handed over to the neighbour."""
     moved, owned = replace(state, touches=touches), list(touches)
-    for n, (pair, touch) in enumerate(zip(model.pairs, touches, strict=True)):
-        if touch is not None:
-            first = pair.target.first
-            past_node = max(past, model.group_of(pair.target).past_node)
-            k, xi = slide(pair.target.lengths, touch.element - first, touch.xi, past_node)
-            if touch.element != first + k:
-                owned[n] = replace(touch, element=first + k, xi=xi)
+    for number, pair, touch in closed(model, moved):
+        first, past_node = pair.target.first, max(past, model.group_of(pair.target).past_node)
+        k, xi = slide(pair.target.lengths, touch.element - first, touch.xi, past_node)
+        if touch.element != first + k:
+            owned[number] = replace(touch, element=first + k, xi=xi)
     return with_touches(model, moved, tuple(owned))
 
 

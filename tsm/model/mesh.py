@@ -14,7 +14,8 @@ from tsm.elements.beam import Coefficients
 from tsm.elements.properties import Array, Properties
 from tsm.model.along import Along, gauss_nodes, kind_of
 from tsm.model.scales import Sizes, joined_extents, sizes_of
-from tsm.statement.structure import Beam, Structure
+from tsm.statement.beam import Beam
+from tsm.statement.structure import Structure
 
 
 @dataclass(frozen=True, kw_only=True)

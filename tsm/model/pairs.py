@@ -27,7 +27,8 @@ from tsm.elements.properties import unwind
 from tsm.model.mesh import BeamModel
 from tsm.model.projection import arc_position
 from tsm.model.state import Grip, Place, Touch, Traction
-from tsm.statement.structure import ContactPair, Pin
+from tsm.statement.pin import Pin
+from tsm.statement.structure import ContactPair
 
 
 class Here(NamedTuple):

@@ -1,14 +1,8 @@
 """Critical points of the equilibrium path, where the tangent is singular and a mode needs no force; mechanisms.
 
 At a limit point the load parameter is stationary along the path, and this branch has no equilibrium beyond.
-At a bifurcation point the path goes on, unstable, and another branch crosses it. Both kinds are located as
-the root of a number g. This number vanishes where the tangent K is singular and is smooth there (Griewank and
-Reddien 1984)::
-
-    [ K  b ] [ v ]   [ 0 ]
-    [ c  0 ] [ g ] = [ 1 ],     g = -1/(c . y),  v = y/(c . y),  K y = b
-
-The vectors b and c are arbitrary and fixed; v is the mode.
+At a bifurcation point the path goes on, unstable, and another branch crosses it; it is located as the root of
+the tangent's smallest singular value, which is smooth there with the sign that the index gives it.
 """
 
 from __future__ import annotations
@@ -23,15 +17,17 @@ import numpy as np
 from tsm.contact.contact_set import changed
 from tsm.contact.root import find_root
 from tsm.elements.properties import Array
+from tsm.model.contact import closed
 from tsm.model.model import Model
 from tsm.model.state import State
 from tsm.path.path import Point
+from tsm.statement.status import RefusedError
 from tsm.system.axis import axis_line
 from tsm.system.stability import IDLE, loose, mode
 from tsm.system.system import Drive
 
 _LOCATED = 1e-13
-"""Tolerance of the search: width of the bracket of the critical load parameter, and g over its value at the ends of the step."""
+"""Tolerance of the search: width of the bracket of the critical load parameter, and the singular value over that at the ends of the step."""
 _LEAST = 1e-9
 """Singular value of the equations of rigid motions, in coordinates over the structure's size, that counts as zero."""
 _SHIFT = 1e-6
@@ -67,48 +63,28 @@ class CriticalPoint:
     mode: dict[str, Array]
 
 
-def _bordered(point: Point, across: Array | None = None) -> tuple[float, Array]:
-    """Return g and v of the module's equation; the vector c is `across`, or by default along all displacements."""
-    newton = point.newton
-    size = len(newton.scale)
-    draw = np.random.default_rng(1)
-    b = draw.uniform(0.5, 1.0, size) * draw.choice([-1.0, 1.0], size) / newton.scale
-    c = draw.uniform(0.5, 1.0, size) * newton.per_unknown if across is None else across
-    solved = newton.assembler.solve(point.system, b)
-    if solved is None or not np.isfinite(solved[:, 1]).all():
-        return 0.0, np.zeros(size)
-    y = solved[:, 1]
-    along = float(c @ y)
-    with np.errstate(all="ignore"):
-        v = y / along if along else np.zeros(size)
-    return (-1 / along, v) if along and np.isfinite(v).all() else (0.0, np.zeros(size))
+def locate_bifurcation(before: Point, after: Point, solve: Callable[[float], Point]) -> Point:
+    """Locate a bifurcation, the point with a singular tangent on a path that goes on.
 
-
-def locate_bifurcation(before: Point, after: Point, solve: Callable[[float], Point | None]) -> Point | None:
-    """Locate a bifurcation, the point with a singular tangent on a path that goes on; None where the path is not found.
-
-    The index shows the side of the bifurcation, and g measures the distance to it.
+    The index shows the side of the bifurcation, and the smallest singular value measures the distance to it. Raises
+    RefusedError where the path is not found.
 
     ``before, after``: ends of a step between which the index changes. ``solve``: point of the path at a load
     parameter.
     """
-    _, v = _bordered(before)
-    weights = before.newton.per_unknown**2
-    length = float(v @ (weights * v))
-    if not 0 < length < np.inf:
-        return None
 
-    def distance(point: Point) -> float:
-        g = abs(_bordered(point, weights * v / length)[0])
-        return g if point.index == before.index else -g
+    def evaluate(point: Point) -> tuple[float, Point]:
+        soft = mode(point.newton.assembler, point.system)
+        size = 0.0 if soft is None else soft[1]
+        return size if point.index == before.index else -size, point
 
-    def evaluate(t: float) -> tuple[float, Point] | None:
-        point = solve(t)
-        return None if point is None else (distance(point), point)
-
-    g0, g1 = distance(before), distance(after)
+    (g0, _), (g1, _) = evaluate(before), evaluate(after)
     apart, small = _LOCATED * max(1.0, after.t), _LOCATED * max(g0, -g1)
-    return find_root(evaluate, (before.t, g0), (after.t, g1), small=small, apart=apart)
+    ends = (before.t, g0), (after.t, g1)
+    root = find_root(lambda t: evaluate(solve(t)), *ends, small=small, apart=apart) if g0 > 0 else None
+    if root is None:
+        raise RefusedError
+    return root
 
 
 def critical_point(kind: CriticalKind, point: Point, load_parameter: float) -> CriticalPoint:
@@ -125,13 +101,13 @@ def mode_shape(point: Point) -> tuple[Array, dict[str, Array]] | None:
     the axes; None without a single mode.
     """
     newton, model, state = point.newton, point.model, point.state
-    soft = mode(newton.assembler, state, point.system)
+    soft = mode(newton.assembler, point.system)
     if soft is None:
         return None
     moved = newton.update(state, soft[0] * _SHIFT, point.system)
     system = newton.assembler.linearise(moved)
-    axes = {beam: axis_line(model, state, point.system, beam)[1] for beam in model.beams}
-    shapes = {beam: axis_line(model, moved, system, beam)[1] - axis for beam, axis in axes.items()}
+    axes = {beam: axis_line(model, point.system, beam)[1] for beam in model.beams}
+    shapes = {beam: axis_line(model, system, beam)[1] - axis for beam, axis in axes.items()}
     most = max(float(np.abs(shape).max()) for shape in shapes.values()) or 1.0
     most *= _side(np.concatenate([_leftwards(axes[beam], shape) for beam, shape in shapes.items()]))
     return soft[0] * (_SHIFT / most), {beam: shape / most for beam, shape in shapes.items()}
@@ -157,11 +133,8 @@ def mechanism(point: Point, drive: Drive) -> bool:
     """Whether a structure can move without strain as a drive begins. A contact without force holds it only if it begins to push."""
     model, state = point.model, point.state
     edge, opened = IDLE * model.force_scale, state
-    idle = [
-        (k, pair, touch)
-        for k, (pair, touch) in enumerate(zip(model.pairs, state.touches, strict=True))
-        if touch is not None and pair.slot >= 0 and math.hypot(*touch.force) <= edge
-    ]
+    there = closed(model, state)
+    idle = [item for item in there if item[1].slot >= 0 and math.hypot(*item[2].force) <= edge]
     for k, *_ in idle:
         opened = changed(model, opened, k, None, armed=True)
     if not (model.joints or _moves(model, opened)):
@@ -181,7 +154,7 @@ def mechanism(point: Point, drive: Drive) -> bool:
 
 def _free(point: Point) -> bool:
     """Whether beams that are rigid can move, and no load stiffens the motion; the tangent of many slender elements is loose too."""
-    return loose(point.newton.assembler, point.state, point.system) and _moves(point.model, point.state)
+    return loose(point.newton.assembler, point.system) and _moves(point.model, point.state)
 
 
 def _moves(model: Model, state: State) -> bool:
@@ -197,27 +170,22 @@ def _moves(model: Model, state: State) -> bool:
     places = model.coordinates + q.reshape(-1, 3)[:, :2]
 
     def rows(nodes: Array, at: Array) -> Array:
-        """Displacements and rotation (n, 3, columns) of the bodies of some nodes at some places, by the bodies' motions."""
+        """Displacements and rotations (3 n, columns) of the bodies of n nodes at some places, by the bodies' motions."""
         found, n = np.zeros((len(nodes), 3, len(numbers), 3)), np.arange(len(nodes))
         x, y = ((at - places[0]) / model.extent).T
         found[n, :, body[nodes]] = np.eye(3)
         found[n, 0, body[nodes], 2], found[n, 1, body[nodes], 2] = -y, x
-        return found.reshape(len(nodes), 3, 3 * len(numbers))
+        return found.reshape(3 * len(nodes), -1)
 
-    def held(dofs: Array) -> Array:
-        kept: Array = rows(dofs // 3, places[dofs // 3])[np.arange(len(dofs)), dofs % 3]
-        return kept
-
-    equations = [held(model.fixed), held(model.slaves) - held(model.masters)]
+    held = rows(np.arange(len(body)), places)
+    equations = [held[model.fixed], held[model.slaves] - held[model.masters]]
     if model.springs is not None:
-        equations += [held(model.springs.ground), held(model.springs.second) - held(model.springs.first)]
-    for pair, touch in zip(model.pairs, state.touches, strict=True):
-        if touch is None:
-            continue
+        equations += [held[model.springs.ground], held[model.springs.second] - held[model.springs.first]]
+    for _, pair, touch in closed(model, state):
         at = np.array([model.node_position(pair, state.q, state.load_parameter)])
-        moved = rows(model.element_nodes[[touch.element], 0], at)[0, :2]
+        moved = rows(model.element_nodes[[touch.element], 0], at)[:2]
         if pair.node >= 0:
-            moved = moved - rows(np.array([pair.node]), at)[0, :2]
+            moved = moved - rows(np.array([pair.node]), at)[:2]
         x, y = model.direction(pair, touch, state)
         sticks = touch.grip is not None and not touch.grip.slip
         equations.append(moved if sticks else np.array([[-y, x]]) / math.hypot(x, y) @ moved)

@@ -21,12 +21,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from tsm.elements.properties import Array, unwind
+from tsm.contact.events import traction
+from tsm.elements.properties import Array
 from tsm.model.pairs import PairModel
 from tsm.model.state import Grip, Place, State
-from tsm.path.friction import grips, slip_rate, traction, traction_at, with_grips
+from tsm.path.friction import grips, slip_rate, traction_at, with_grips
 from tsm.path.path import SHORTEST, Point, Track, extrapolate
-from tsm.statement.status import Status
+from tsm.statement.status import RefusedError, Status
 from tsm.system.newton import Equilibrium, Newton
 from tsm.system.system import Drive
 
@@ -65,7 +66,7 @@ def rolled(newton: Newton, before: State, reached: Equilibrium) -> Equilibrium:
     model, small = newton.model, _ZERO * newton.model.length
     held = {
         k: grip.held
-        for k, grip in grips(reached.state)
+        for k, grip in grips(reached.state).items()
         if grip.held is not None and (model.pairs[k].lever or model.pairs[k].roll)
     }
     if not held or not reached.converged:
@@ -89,8 +90,8 @@ def rolled(newton: Newton, before: State, reached: Equilibrium) -> Equilibrium:
     apart = np.abs(areas - fewer[:, 1:])[:, -1].max()
     if apart > _AREAS * model.length and abs(end - begin) > _WHOLE:
         first = rolled(newton, before, middle)
-        grips_there = tuple((k, grip) for k, grip in grips(first.state) if k in held)
-        second = newton.solve(with_grips(reached.state, grips_there))
+        there = {k: grip for k, grip in grips(first.state).items() if k in held}
+        second = newton.solve(with_grips(reached.state, there))
         return rolled(newton, first.state, second) if first.converged else first
     for _ in range(_SWEEPS):
         nodes = [_corrected(newton, held, node, area) for node, area in zip(nodes, areas.T, strict=True)]
@@ -101,7 +102,7 @@ def rolled(newton: Newton, before: State, reached: Equilibrium) -> Equilibrium:
 
 
 def _place(newton: Newton, node: Equilibrium, k: int) -> Place:
-    return traction(newton.model, node.system, k).place
+    return traction(newton.model, node, k).place
 
 
 def _curves(newton: Newton, held: Held, nodes: list[Equilibrium]) -> Array:
@@ -130,11 +131,9 @@ def _shifted(pair: PairModel, place: Place, by: float) -> Place:
 
 def _corrected(newton: Newton, held: Held, node: Equilibrium, areas: Array) -> Equilibrium:
     """One iteration towards the equilibrium in which the trapezium of every contact is the area."""
-    places = (
-        (k, _shifted(newton.model.pairs[k], place, area))
-        for (k, place), area in zip(held.items(), areas.tolist(), strict=True)
-    )
-    held_there = newton.at(node, with_grips(node.state, tuple((k, Grip(0, place)) for k, place in places)))
+    shifted = zip(held.items(), areas.tolist(), strict=True)
+    places = {k: Grip(0, _shifted(newton.model.pairs[k], place, area)) for (k, place), area in shifted}
+    held_there = newton.at(node, with_grips(node.state, places))
     solved = newton.assembler.solve(held_there.system)
     if solved is None:
         return node
@@ -143,16 +142,12 @@ def _corrected(newton: Newton, held: Held, node: Equilibrium, areas: Array) -> E
 
 def _anchored(newton: Newton, held: Held, node: Equilibrium) -> Equilibrium:
     """Equilibrium whose contacts are held in their own places, with what is left of their rows, so that it does not add up."""
-    places = []
-    for k, grip in grips(node.state):
+    places = {}
+    for k, grip in grips(node.state).items():
         if k in held and grip.held is not None:
-            pair, there, here = newton.model.pairs[k], grip.held, _place(newton, node, k)
-            left = (here.stretch + there.stretch) / 2 * (here.arc - there.arc)
-            left += pair.lever * (here.shear - there.shear) + pair.roll * unwind(
-                here.direction - there.direction
-            )
-            places.append((k, Grip(0, _shifted(pair, here, -left))))
-    return newton.at(node, with_grips(node.state, tuple(places)))
+            pair, here = newton.model.pairs[k], _place(newton, node, k)
+            places[k] = Grip(0, _shifted(pair, here, -pair.slid(here, grip.held)))
+    return newton.at(node, with_grips(node.state, places))
 
 
 def power(point: Point, drive: Drive) -> Array | None:
@@ -172,16 +167,16 @@ def power(point: Point, drive: Drive) -> Array | None:
     for k, (fx, fy) in system.forces.items():
         if model.pairs[k].pin is not None:
             spent[0] += fx * drive.velocities[k][0] + fy * drive.velocities[k][1]
-    for k, grip in grips(state):
+    for k, grip in grips(state).items():
         if grip.slip:
             spent[1 + k] = traction_at(point, k).tangential * slip_rate(point, by, k)
     return spent
 
 
-def spent(track: Track, end: Point, drive: Drive) -> tuple[Array, list[Point]] | None:
+def spent(track: Track, end: Point, drive: Drive) -> tuple[Array, list[Point]]:
     """Work and dissipation from the last point of a path to the next one, and points in between, in order.
 
-    None where a tangent is singular at an end, or no equilibrium is found in between. A short part without
+    Refuses a step with a singular tangent at an end, or without an equilibrium in between. A short part without
     one counts by the mean of its ends.
     """
     newton, begin = track.newton, track.last
@@ -199,22 +194,23 @@ def spent(track: Track, end: Point, drive: Drive) -> tuple[Array, list[Point]] |
         between.append(Point(newton, reached))
         return power(between[-1], drive)
 
-    def over(start: float, stop: float, first: Array, last: Array) -> Array | None:
+    def over(start: float, stop: float, first: Array | None, last: Array | None) -> Array:
         length = stop - start
         inner = [at(start + part * length) for part in LOBATTO]
-        powers = np.array([first, *(value for value in inner if value is not None), last])
+        powers = np.array([value for value in (first, *inner, last) if value is not None])
+        if first is None or last is None or (len(powers) < 5 and length > _SHORT):
+            raise RefusedError
         if len(powers) < 5:
             mean: Array = length * (first + last) / 2
-            return None if length > _SHORT else mean
+            return mean
         apart = np.abs((_FIVE - _THREE) @ powers).max() * length
         if apart <= _APART * newton.model.force_scale * newton.model.length or length <= least:
             whole: Array = length * (_FIVE @ powers)
             return whole
         middle = start + length / 2
         late = over(middle, stop, powers[2], last)
-        early = None if late is None else over(start, middle, first, powers[2])
-        return None if late is None or early is None else late + early
+        return late + over(start, middle, first, powers[2])
 
-    first, last, least = power(begin, drive), power(end, drive), (end.t - begin.t) / 2**_DEPTH
-    total = None if first is None or last is None else over(begin.t, end.t, first, last)
-    return None if total is None else (total, sorted(between, key=lambda point: point.t))
+    least = (end.t - begin.t) / 2**_DEPTH
+    total = over(begin.t, end.t, power(begin, drive), power(end, drive))
+    return total, sorted(between, key=lambda point: point.t)

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tsm.contact.contact_set import changed
-from tsm.contact.events import ROUND_OFF, EventKind, normal_force
+from tsm.contact.contact_set import opened
+from tsm.contact.events import ROUND_OFF, EventKind, normal_force, over
 from tsm.elements.properties import Array
 from tsm.model.model import Model
 from tsm.model.state import State
@@ -22,7 +22,7 @@ from tsm.path.friction import grips
 from tsm.path.margins import Margin, least_push
 from tsm.path.path import Point
 from tsm.path.step import Step
-from tsm.statement.status import Status
+from tsm.statement.status import Status, StopError
 from tsm.system.newton import Newton
 from tsm.system.system import Drag
 
@@ -48,56 +48,52 @@ class Fall:
     measure: Callable[[Point], list[Margin]]  # margins at a point
     log: Step  # where iterations, touches and releases are noted
 
-    def beside(self, critical: Point, ahead: float) -> tuple[Point, float] | Status:
+    def beside(self, critical: Point, ahead: float) -> tuple[Point, float]:
         """Return the point of least potential beside a critical one, and the potential that the fall there releases.
 
         The structure is pushed along its mode, one way and the other. Of two points with the same potential
-        it is the one on the mode's positive side, see `mode_shape`. Returns FALLING if the structure finds no
-        rest, REST_UNKNOWN if it falls onto contacts with friction.
+        it is the one on the mode's positive side, see `mode_shape`. Raises StopError with FALLING if the structure
+        finds no rest, with REST_UNKNOWN if it falls onto contacts with friction.
         """
         newton, shape = self.newton, mode_shape(critical)
         if shape is None:
-            return Status.FALLING
+            raise StopError(Status.FALLING)
         held, push = newton.prescribed(critical.state, ahead), _PUSH * newton.model.length * shape[0]
         rests = []
         for way in (1.0, -1.0):
             start = newton.update(held, way * push, critical.system)
             rest = self.rest(start, newton.potential(start))
             if rest is not None and rest.index <= 0:
-                rests.append((newton.potential(rest.state), rest))
+                rests.append(rest)
         if not rests:
-            return Status.FALLING
-        if any(grips(rest.state) for _, rest in rests):
-            return Status.REST_UNKNOWN
-        least = min(energy for energy, _ in rests)
-        rest = next(rest for _, rest in rests if self._descends(least, rest.state))
-        return rest, newton.potential(held) - least
+            raise StopError(Status.FALLING)
+        if any(grips(rest.state) for rest in rests):
+            raise StopError(Status.REST_UNKNOWN)
+        least = min(newton.potential(rest.state) for rest in rests)
+        return next(r for r in rests if self._descends(least, r.state)), newton.potential(held) - least
 
-    def after(self, event: Point, state: State) -> tuple[Point, float] | Status:
+    def after(self, event: Point, state: State) -> tuple[Point, float]:
         """Return the point after a slip-off, and the released potential; contacts whose force would become tensile are released.
 
-        ``state``: the configuration of the slip-off without the lost contact. Returns FALLING if the
-        structure finds no rest, LOST_CONTACT if a contact opens that must persist.
+        ``state``: the configuration of the slip-off without the lost contact. Raises StopError with FALLING if
+        the structure finds no rest, with LOST_CONTACT if a contact opens that must persist.
         """
         model = self.newton.model
         energy = began = self.newton.potential(event.state)
         while True:
             point = self._next(state, energy)
             if point is None:
-                return Status.FALLING
+                raise StopError(Status.FALLING)
             state, energy = point.state, self.newton.potential(point.state)
-            pushes = [
-                (normal_force(model, point.equilibrium, k) / least_push(self.newton, k), k)
-                for k, touch in enumerate(state.touches)
-                if touch is not None
-            ]
+            closed = (k for k, touch in enumerate(state.touches) if touch is not None)
+            pushes = (
+                (normal_force(model, point.equilibrium, k) / least_push(self.newton, k), k) for k in closed
+            )
             least, k = min(pushes, default=(0.0, -1))
             if least >= -1.0:
                 return point, began - energy
             self.log.note(EventKind.RELEASE, event, state, k)
-            if model.pairs[k].pair.keep:
-                return Status.LOST_CONTACT
-            state = changed(model, state, k, None, armed=True)
+            state = opened(model, state, k, EventKind.RELEASE, alone=True)
 
     def _next(self, state: State, energy: float) -> Point | None:
         """Point near the state, of a potential of at most `energy`, or at the end of a fall."""
@@ -116,7 +112,7 @@ class Fall:
         equilibrium. ``energy``: potential of this configuration with the lost contact.
         """
         newton, model, pace = self.newton, self.newton.model, _FIRST_PACE
-        over, resistance = _before(model, state), _resistance(model)
+        before, resistance = _before(model, state), _resistance(model)
         for _ in range(_TRIALS):
             at_rest = pace > _FIRST_PACE * 1e8
             drag = None if at_rest else Drag(resistance / pace, state.q)
@@ -130,13 +126,11 @@ class Fall:
                 if at_rest:
                     return point
                 state, pace, energy = point.state, 10 * pace, newton.potential(point.state)
-                over = {m.pair for m in margins if m.kind is EventKind.TOUCH and m.value < 1.0}
+                before = {m.pair for m in margins if m.kind is EventKind.TOUCH and m.value < 1.0}
             elif landed and newton.apart(state, point.state) < _LAST_PART:
                 for margin in landed:
-                    touch = margin._replace(value=0.0) if margin.pair in over else margin
-                    closed = self.log.applied(point, state, touch)
-                    assert isinstance(closed, State), "a touch ends no path"
-                    state = closed
+                    touch = margin._replace(value=0.0) if margin.pair in before else margin
+                    state = self.log.applied(point, state, touch)
             else:
                 pace /= 4
         return None
@@ -149,10 +143,9 @@ class Fall:
 
 def _before(model: Model, state: State) -> set[int]:
     """Open pairs whose node lies on the stated side of the beam or on the surface, and which must touch before they pass it."""
-    small = ROUND_OFF * model.length
     open_ones = [k for k, touch in enumerate(state.touches) if touch is None and state.armed[k]]
     seen = {k: model.project(model.pairs[k], state) for k in open_ones}
-    return {k for k, place in seen.items() if place.overshoot <= small and place.gap >= -small}
+    return {k for k, place in seen.items() if over(model, place) and place.gap >= -ROUND_OFF * model.length}
 
 
 def met(margins: list[Margin]) -> list[Margin]:

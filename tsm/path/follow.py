@@ -21,16 +21,16 @@ from tsm.elements.properties import Array
 from tsm.model.model import Model
 from tsm.model.state import UNDECIDED, State
 from tsm.path.critical import CriticalKind, critical_point, locate_bifurcation, mechanism
-from tsm.path.crossing import crossing, on_held_end, overlapping, through_end
+from tsm.path.crossing import check_ends, crossing, on_held_end, through_end
 from tsm.path.energy import rolled, spent
 from tsm.path.fall import Fall
 from tsm.path.friction import grips, regripped
 from tsm.path.margins import Margin, Search, broken, margins
-from tsm.path.path import FOLLOWED, SMALLEST, Point, StepControl, Track, allowed
+from tsm.path.path import FOLD, SMALLEST, Point, Track, allowed
 from tsm.path.step import NEAR, Step, ends
 from tsm.statement.settings import Settings
 from tsm.statement.stages import stage_of
-from tsm.statement.status import Status
+from tsm.statement.status import RefusedError, Status, StopError
 from tsm.system.newton import Newton
 from tsm.system.system import Drive
 
@@ -42,6 +42,15 @@ _MOST_ATTEMPTS = 1000
 """Largest number of load steps, with refused ones, between two prescribed load parameters."""
 _MOST_CHANGES = 6
 """Largest number of contact events at one load parameter, for each contact pair."""
+_NAMED = {
+    Status.NOT_FINITE,
+    Status.SINGULAR_TANGENT,
+    Status.INACCURATE,
+    Status.TWO_CONTACTS,
+    Status.PING_PONG,
+    Status.JAMMED,
+}
+"""Failures that are reported by their own status instead of the general status of a step at its floor."""
 
 
 class Follower:
@@ -50,7 +59,7 @@ class Follower:
     def __init__(self, model: Model, settings: Settings) -> None:
         self.model, self.branch = model, settings.branch
         self.newton = Newton(model, settings)
-        self.control = StepControl()
+        self.step = 1.0  # length of the next load step
         self.target = 0.0  # next prescribed load parameter
         self.turned = -1.0  # last corner of a pin's path
         start = Point(self.newton, self.newton.solve(initial_state(model)))
@@ -59,14 +68,8 @@ class Follower:
         if model.rubbed:
             self.log.spent = np.zeros(1 + len(model.pairs))
         self.chatter: Counter[tuple[int, float]] = Counter()  # changes of every pair at every load parameter
-        self.status = start.equilibrium.status
-        if mechanism(start, self._drive(0.0)):
-            self.status = Status.MECHANISM
         # margins of the events that the contacts of the last point may have next
-        self.margins = self._measure(start) if self.status is Status.CONVERGED else []
-        met = overlapping(model, start.state) if self.margins else None
-        if met is not None:
-            self.status = self.log.note_end(model, start.state, met)
+        self.margins = self._measure(start) if start.equilibrium.converged else []
 
     def _measure(self, point: Point) -> list[Margin]:
         return margins(point, self._drive(point.t))
@@ -78,44 +81,59 @@ class Follower:
 
     def march(self, load_parameters: Array) -> Iterator[Step]:
         """Yield accepted steps up to the last load parameter or the first failure."""
-        if self.status is not Status.CONVERGED:
-            yield self._record(self.status)
-            return
         times = load_parameters.tolist()
         asked = frozenset(times)
-        for target in ends(times, self.model.turns, self.track.last.t):
-            self.target = target
-            for attempt in count():
-                if self.track.last.t >= target:
-                    break
-                status = self._try_step() if attempt < _MOST_ATTEMPTS else Status.STEP_LIMIT
-                if status is None:
-                    continue
-                reached = status is Status.CONVERGED and self.track.last.t == target
-                yield self._record(status, requested=reached and target in asked)
-                if status is not Status.CONVERGED:
-                    return
+        try:
+            self._check_start()
+            for target in ends(times, self.model.turns, self.track.last.t):
+                self.target = target
+                for attempt in count():
+                    if self.track.last.t >= target:
+                        break
+                    if self._try_step(attempt):
+                        yield self._record(requested=self.track.last.t == target and target in asked)
+        except StopError as stop:
+            if stop.met is not None:
+                self.log.note_end(self.model, *stop.met)
+            yield self._record(stop.status)
 
-    def _try_step(self) -> Status | None:
-        """Take a step, or give it up; None where a shorter one is to be tried."""
-        t = self.track.last.t
-        left, step = self.target - t, min(self.control.step, self.track.room())
-        goal = self.target if left <= step * (1 + 1e-6) else t + step
-        status = self.control.refuse()
-        if step >= SMALLEST:
-            status = self._turn_corner()
-            status = self._reach(goal) if status is Status.CONVERGED else status
-        if status is Status.CONVERGED or status is not self.control.failure:
-            return status
-        self.log.cutbacks += 1
-        if not self.control.cut_back(min(step, left)):
-            return None
-        if on_held_end(self.model, self.track.last.state):
-            return Status.FOLDED
-        status = self.control.verdict(self.track.folds())
-        return self._meet_limit_point() if status is Status.LIMIT_POINT else status
+    def _check_start(self) -> None:
+        start = self.track.last
+        if mechanism(start, self._drive(0.0)):
+            raise StopError(Status.MECHANISM)
+        if not start.equilibrium.converged:
+            raise StopError(start.equilibrium.status)
+        check_ends(self.model, start.state, start.state)
 
-    def _turn_corner(self) -> Status:
+    def _try_step(self, attempt: int) -> bool:
+        """Take a step, or shorten the next one; return whether one was taken."""
+        if attempt == _MOST_ATTEMPTS:
+            raise StopError(Status.STEP_LIMIT)
+        left, step = self.target - self.track.last.t, min(self.step, self.track.room())
+        try:
+            self._take(step, left)
+        except RefusedError as refused:
+            self.log.cutbacks += 1
+            self.step = min(self.step, step, left) * refused.part
+            if self.step >= SMALLEST:
+                return False
+            if on_held_end(self.model, self.track.last.state):
+                raise StopError(Status.FOLDED) from refused
+            if refused.status in _NAMED:
+                raise StopError(refused.status) from refused
+            if self.track.last.speed <= FOLD:
+                raise StopError(Status.CUTBACK_FLOOR) from refused
+            self._meet_limit_point()
+        return True
+
+    def _take(self, step: float, left: float) -> None:
+        """Take a step of a length, or one to the next prescribed load parameter, if it is the rest that is left."""
+        if step < SMALLEST:
+            raise RefusedError
+        self._turn_corner()
+        self._reach(self.target if left <= step * (1 + 1e-6) else self.track.last.t + step)
+
+    def _turn_corner(self) -> None:
         """Go on as the load does, at the start, where a path has a corner and where a stage begins.
 
         Contacts with friction may slip or stick from there. A stage begins just after the load parameter at
@@ -123,103 +141,99 @@ class Follower:
         it serves for a prediction.
         """
         here, t = self.track.last, self.track.last.t
-        goes_on = t == self.turned or not (self.model.rubbed or self.model.stages > 1)
-        if goes_on or (t > 0 and all(abs(t - turn) > NEAR for turn in self.model.turns)):
-            return Status.CONVERGED
+        if t == self.turned or not (self.model.rubbed or self.model.stages > 1):
+            return
+        if t > 0 and all(abs(t - turn) > NEAR for turn in self.model.turns):
+            return
         if 0 < t < self.model.stages and t == round(t):
             here = here.with_state(self.newton.prescribed(here.state, math.nextafter(t, math.inf)))
             if mechanism(here, self._drive(here.t)):
-                return Status.MECHANISM
+                raise StopError(Status.MECHANISM)
         self.turned = here.t
-        gripped = self._gripped(here, here.state)
-        if isinstance(gripped, Status):
-            return gripped
-        self._begin(gripped)
-        return Status.CONVERGED
+        self._begin(self._gripped(here, here.state))
 
-    def _gripped(self, point: Point, last: State) -> Point | Status:
+    def _gripped(self, point: Point, last: State) -> Point:
         """Point whose contacts with friction slip or stick from here, after a state `last`; a change is an event."""
-        before = dict(grips(point.state))
-        gripped = regripped(point, self._drive(point.t), last) if before else point
-        if isinstance(gripped, Status):
-            return gripped
-        for k, grip in grips(gripped.state):
+        if not self.model.rubbed:
+            return point
+        before, gripped = grips(point.state), regripped(point, self._drive(point.t), last)
+        for k, grip in grips(gripped.state).items():
             if before[k] != UNDECIDED and before[k].slip != grip.slip:
                 self.log.note(EventKind.SLIP if grip.slip else EventKind.STICK, gripped, gripped.state, k)
         return gripped
 
-    def _record(self, status: Status, *, requested: bool = False) -> Step:
+    def _record(self, status: Status = Status.CONVERGED, *, requested: bool = False) -> Step:
         """The step that ends here; the log starts anew."""
-        last, stage = self.track.last, 1 + stage_of(self.target, self.model.stages)
-        step = replace(
-            self.log,
-            equilibrium=last.equilibrium,
-            requested=requested,
-            status=status,
-            index=last.index,
-            events=[replace(event, stage=stage) for event in self.log.events],
+        log, last, stage = self.log, self.track.last, 1 + stage_of(self.target, self.model.stages)
+        log.equilibrium, log.index, log.status, log.requested = (
+            last.equilibrium,
+            last.index,
+            status,
+            requested,
         )
-        self.log = Step(equilibrium=last.equilibrium, spent=self.log.spent)
-        return step
+        if stage > 1:
+            log.events = [replace(event, stage=stage) for event in log.events]
+        self.log = Step(equilibrium=last.equilibrium, spent=log.spent)
+        return log
 
-    def _reach(self, goal: float) -> Status:
+    def _reach(self, goal: float) -> None:
         """Go to a load parameter or to the first event before it."""
         last, reached = self.track.last, self._solve(goal)
-        if reached is None:
-            return self.control.failure
-        crossed = crossing(self.model, last.state, reached.state)
-        if crossed is not None and crossed[0] <= last.t:
-            touch = next(m for m in self.margins if (m.kind, m.pair) == (EventKind.TOUCH, crossed[1]))
-            return self._switch(last, [touch])
-        inside = crossed[0] if crossed is not None else through_end(self.model, last.state, reached.state)
-        if inside is not None:
-            return self._reach(inside)
+        missed = crossing(self.model, last.state, reached.state) or through_end(
+            self.model, last.state, reached.state
+        )
+        if missed is not None:
+            t, k = missed
+            if t > last.t:
+                return self._reach(t)
+            return self._switch(last, [m for m in self.margins if (m.kind, m.pair) == (EventKind.TOUCH, k)])
         after = self._measure(reached)
         numbers, search = broken(self.margins, after), self._search(goal)
         if numbers:
-            found = search.first(after, numbers)
-            return found if isinstance(found, Status) else self._switch(*found)
-        if search.pulls_at_first():
-            return self.control.failure
+            return self._switch(*search.first(after, numbers))
+        search.check_pulls()
         return self._advance(reached)
 
     def _search(self, goal: float) -> Search:
-        return Search(self.track.last, self.margins, goal, self._solve, self._measure, self.control)
+        return Search(self.track.last, self.margins, goal, self._solve, self._measure)
 
-    def _solve(self, t: float) -> Point | None:
+    def _solve(self, t: float) -> Point:
         """Point at t from the predicted state, if the tangent leads to it."""
         last, start = self.track.last, self.track.predicted(t)
-        equilibrium = rolled(self.newton, last.state, self.newton.solve(start))
-        self.log.iterations += equilibrium.iterations
-        if not equilibrium.converged:
-            self.control.fail(equilibrium.status)
-            return None
-        reached = Point(self.newton, equilibrium)
-        reached.behind = left = self.track.unexplained(last, reached)
-        if left > FOLLOWED or self.track.strays(start, reached.state):
-            self.control.refuse(allowed(left) if left > FOLLOWED else 1 / 2)
-            return None
+        reached = self._solved(start, last.state)
+        reached.behind = self.track.unexplained(last, reached)
+        if self.track.strays(start, reached.state):
+            raise RefusedError
         return reached
 
-    def _advance(self, reached: Point) -> Status:
+    def _solved(self, start: State, before: State | None = None) -> Point:
+        """Equilibrium near a start; contacts in stick have not slipped since a state before."""
+        equilibrium = self.newton.solve(start)
+        if before is not None and self.model.rubbed:
+            equilibrium = rolled(self.newton, before, equilibrium)
+        self.log.iterations += equilibrium.iterations
+        if not equilibrium.converged:
+            raise RefusedError(equilibrium.status)
+        return Point(self.newton, equilibrium)
+
+    def _advance(self, reached: Point) -> None:
         """Accept a point if the step has no event, has followed the path and has passed no critical point."""
         last, track = self.track.last, self.track
         unexplained = max(reached.behind, track.unexplained(reached, reached))
-        fitting = allowed(unexplained)
-        if unexplained > FOLLOWED:
-            return self.control.refuse(fitting)
         if 0 <= reached.index != track.index and (reached.index > track.index or last.index == track.index):
-            return self._meet_bifurcation(reached) if unexplained <= _STRAIGHT else self.control.refuse()
+            if unexplained > _STRAIGHT:
+                raise RefusedError
+            return self._meet_bifurcation(reached)
         if self.model.rubbed:
-            more = spent(track, reached, self._drive(reached.t))
-            part = 1 / 2 if more is None else self._search(reached.t).dips([*more[1], reached])
-            if more is None or part is not None:
-                return self.control.refuse(part or 1 / 2)
-            self.log.spent = self.log.spent + more[0]
+            more, between = spent(track, reached, self._drive(reached.t))
+            self._search(reached.t).check_dips([*between, reached])
+            self.log.spent = self.log.spent + more
         self.log.events += passes(self.model, last.equilibrium, reached.equilibrium)
         self._accept(reached)
-        self.control.grow(reached.t - last.t, fitting)
-        return Status.CONVERGED
+        # the next step, after one that could have been `fitting` times as long
+        fitting, taken = allowed(unexplained), reached.t - last.t
+        self.step = min(max(min(2.0, fitting) * taken, self.step if fitting >= 1 else 0.0), 1.0)
+        return None
 
     def _accept(self, point: Point) -> None:
         """Make a point the last of the path."""
@@ -234,107 +248,71 @@ class Follower:
         self.track.history = []
         self._accept(point)
 
-    def _meet_bifurcation(self, reached: Point) -> Status:
+    def _meet_bifurcation(self, reached: Point) -> None:
         """At a bifurcation within a step, end the path, turn to the stable branch, or accept the point beyond."""
         singular = locate_bifurcation(self.track.last, reached, self._solve)
-        if singular is None:
-            return self.control.refuse()
         self._note_critical(CriticalKind.BIFURCATION, singular, singular.t)
         ahead = reached if self.branch == "primary" else singular
         self.log.events += passes(self.model, self.track.last.equilibrium, ahead.equilibrium)
         self._accept(ahead)
-        if self.branch == "primary":
-            return Status.CONVERGED
-        return self._turn(singular) if self.branch == "stable" else Status.BIFURCATION
+        if self.branch != "primary":
+            self._turn(singular, Status.BIFURCATION)
 
-    def _meet_limit_point(self) -> Status:
+    def _meet_limit_point(self) -> None:
         """End the path beside a limit point, or let the structure fall to the stable branch."""
         self._note_critical(CriticalKind.LIMIT_POINT, self.track.last, self.track.limit())
-        return self._turn(self.track.last) if self.branch == "stable" else Status.LIMIT_POINT
+        self._turn(self.track.last, Status.LIMIT_POINT)
 
     def _note_critical(self, kind: CriticalKind, point: Point, load_parameter: float) -> None:
         self.log.critical.append(critical_point(kind, point, load_parameter))
         self.log.events.append(Event(kind=EventKind[kind.name], load_parameter=load_parameter))
 
-    def _turn(self, critical: Point) -> Status:
-        """Let the structure fall from a critical point, pushed along its mode in both directions; accept the point of less energy."""
-        kind = self.log.events[-1].kind
+    def _turn(self, critical: Point, status: Status) -> None:
+        """End the path, or let the structure fall from a critical point, pushed along its mode in both directions."""
+        if self.branch != "stable":
+            raise StopError(status)
         ahead = critical.t + min(_AHEAD, (self.target - critical.t) / 2)
-        found = self._fall().beside(critical, ahead)
-        if isinstance(found, Status):
-            return found
-        rest, released = found
-        met = overlapping(self.model, rest.state)
-        if met is not None:
-            return self.log.note_end(self.model, critical.state, met)
-        self.log.release(kind, released)
+        rest, released = self._fall().beside(critical, ahead)
+        check_ends(self.model, rest.state, critical.state)
+        self.log.release(EventKind[status.name], released)
         self._begin(rest)
-        self.control.step = 1.0
-        return Status.CONVERGED
+        self.step = 1.0
 
     def _fall(self) -> Fall:
         return Fall(newton=self.newton, measure=self._measure, log=self.log)
 
-    def _switch(self, event: Point, changes: list[Margin]) -> Status:
+    def _switch(self, event: Point, changes: list[Margin]) -> None:
         """Accept the configuration of the events, then open and close its contacts."""
         if event is not self.track.last:
-            status = self._advance(event)
-            if status is not Status.CONVERGED or self.track.last.system is not event.system:
-                return status
+            self._advance(event)
+            if self.track.last.system is not event.system:
+                return
         state, noted = event.state, len(self.log.events)
         kinds = {margin.kind for margin in changes}
         for margin in changes:
-            after = self._change(event, state, margin, alone=len(kinds) == 1)
-            if isinstance(after, Status):
-                return after
-            state = after
+            self.chatter[margin.pair, state.load_parameter] += 1
+            if self.chatter[margin.pair, state.load_parameter] > _MOST_CHANGES:
+                raise StopError(Status.CHATTER)
+            state = self.log.applied(event, state, margin, alone=len(kinds) == 1)
         if crowded(self.model, state):
-            return Status.TWO_CONTACTS
-        status = self._resume(event, state, jump=EventKind.SLIP_OFF in kinds)
-        if status is not Status.CONVERGED and status is self.control.failure:
+            raise StopError(Status.TWO_CONTACTS)
+        try:
+            self._resume(event, state, jump=EventKind.SLIP_OFF in kinds)
+        except RefusedError:
             del self.log.events[noted:]
-        return status
+            raise
 
-    def _change(self, event: Point, state: State, margin: Margin, *, alone: bool) -> State | Status:
-        """State with a contact opened or closed, slipping or sticking; `alone` if no contact takes over."""
-        k = margin.pair
-        self.chatter[k, state.load_parameter] += 1
-        if self.chatter[k, state.load_parameter] > _MOST_CHANGES:
-            return Status.CHATTER
-        after: State | Status = Status.END_CONTACT
-        if margin.kind is not EventKind.END_CONTACT:
-            after = self.log.applied(event, state, margin, alone=alone)
-        return self.log.note_end(self.model, state, k) if after is Status.END_CONTACT else after
-
-    def _resume(self, event: Point, state: State, *, jump: bool) -> Status:
+    def _resume(self, event: Point, state: State, *, jump: bool) -> None:
         """Find equilibrium with the changed contacts and accept it."""
-        found = self._jumped(event, state) if jump else self._settled(state)
-        if isinstance(found, Status):
-            return found
-        met = overlapping(self.model, found.state)
-        if met is not None:
-            return self.log.note_end(self.model, event.state, met)
-        gripped = self._gripped(found, event.state)
-        if isinstance(gripped, Status):
-            return gripped
-        held = self.track.index
+        if jump:
+            found, released = self._fall().after(event, state)
+            self.log.release(EventKind.SLIP_OFF, released)
+            if grips(found.state):
+                raise StopError(Status.REST_UNKNOWN)
+        else:
+            found = self._solved(state)
+        check_ends(self.model, found.state, event.state)
+        gripped, held = self._gripped(found, event.state), self.track.index
         self._begin(gripped)
         if self.track.index > held and self.branch != "primary":
-            return self._meet_limit_point()
-        return Status.CONVERGED
-
-    def _jumped(self, event: Point, state: State) -> Point | Status:
-        """Point after a slip-off."""
-        found = self._fall().after(event, state)
-        if isinstance(found, Status):
-            return found
-        rest, released = found
-        self.log.release(EventKind.SLIP_OFF, released)
-        return Status.REST_UNKNOWN if grips(rest.state) else rest
-
-    def _settled(self, state: State) -> Point | Status:
-        """Point with changed contacts, without a jump."""
-        equilibrium = self.newton.solve(state)
-        self.log.iterations += equilibrium.iterations
-        self.control.fail(equilibrium.status)
-        return Point(self.newton, equilibrium) if equilibrium.converged else self.control.failure
+            self._meet_limit_point()

@@ -13,12 +13,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import islice, product
 
-from tsm.model.groups import ExactGroup
+from tsm.contact.events import touch_at, traction
 from tsm.model.model import Model
 from tsm.model.state import UNDECIDED, Grip, State, Traction
 from tsm.path.path import Point, Rates
-from tsm.statement.status import Status
-from tsm.system.system import Drive, Linearisation
+from tsm.statement.status import Status, StopError
+from tsm.system.system import Drive
 
 _EDGE = 1e-9
 """Distance of a force from the edge of the cone, over ``EI/L^2``, that counts as zero."""
@@ -34,89 +34,80 @@ counts as zero where no other state is admissible."""
 _MOST = 4096
 """Combinations of states that are tried: six contacts without force."""
 
-Grips = tuple[tuple[int, Grip], ...]
-"""Numbers and states of contacts."""
-
-
-def _rods(model: Model) -> ExactGroup:
-    assert model.rods is not None, "a contact with friction cuts its element"
-    return model.rods
-
-
-def traction(model: Model, system: Linearisation, k: int) -> Traction:
-    """Force and place of closed pair k, which has friction."""
-    rods = _rods(model)
-    return rods.traction(k, system.groups[rods.number])
+Grips = dict[int, Grip]
+"""States of contacts by their numbers."""
 
 
 def traction_at(point: Point, k: int) -> Traction:
     """Force and place of closed pair k, which has friction."""
-    return traction(point.model, point.system, k)
+    return traction(point.model, point.equilibrium, k)
 
 
 def cone(point: Point, k: int) -> float:
     """Distance of the force of closed pair k from the edge of its cone, ``mu F_n - |F_t|``."""
-    here = traction_at(point, k)
-    return point.model.pairs[k].pair.friction * here.normal - abs(here.tangential)
+    return _inside(point.model, k, traction_at(point, k))
+
+
+def _inside(model: Model, k: int, here: Traction) -> float:
+    return model.pairs[k].pair.friction * here.normal - abs(here.tangential)
 
 
 def slip_rate(point: Point, rates: Rates, k: int) -> float:
     """Slip rate of closed pair k."""
-    rods = _rods(point.model)
+    rods = point.model.rods
+    assert rods is not None, "a contact with friction cuts its element"
     return rods.slip_rate(k, point.system.tangent.groups[rods.number], rates.dofs, rates.contacts)
 
 
-def regripped(point: Point, drive: Drive, last: State) -> Point | Status:
+def regripped(point: Point, drive: Drive, last: State) -> Point:
     """Equilibrium whose contacts with friction slip or stick as the load parameter grows, after a state `last`.
 
     Where a slip ends, its rate is zero, and the force of the stick that follows moves along the cone: its
-    rate out of the cone is round-off. Returns JAMMED if no state of the contacts is admissible, TWO_SLIPS if
-    a contact without force could slip either way.
+    rate out of the cone is round-off. Raises StopError with JAMMED if no state of the contacts is admissible,
+    with TWO_SLIPS if a contact without force could slip either way.
     """
     model, now = point.model, grips(point.state)
-    here = {k: traction_at(point, k) for k, _ in now}
+    if not now:
+        return point
+    here = {k: traction_at(point, k) for k in now}
     # a contact that has just closed has a force of round-off, which may be considerable near a support
-    here |= {k: here[k]._replace(tangential=0.0, normal=0.0) for k, grip in now if grip == UNDECIDED}
-    choices = [[(k, grip) for grip in _choices(model, k, grip, here[k])] for k, grip in now]
+    here |= {k: here[k]._replace(tangential=0.0, normal=0.0) for k, grip in now.items() if grip == UNDECIDED}
     # the round-off of a slip rate is a force in a stiff beam, so more is allowed where a slip ends, and where nothing
     # else is admissible
     flat, more = _FLAT * model.force_scale, _STILL * _stiffest(model)
-    slipped = {k for k, grip in grips(last) if grip.slip}
-    ended = {k for k, grip in now if not grip.slip and k in slipped}
+    ended = {k for k, grip in grips(last).items() if grip.slip and k in now and not now[k].slip}
+    choices = (_choices(model, k, grip, here[k]) for k, grip in now.items())
+    every = [dict(zip(now, chosen, strict=True)) for chosen in islice(product(*choices), _MOST)]
     for least in (flat, flat + more):
         leaving = {k: flat + more if k in ended else least for k in here}
-        for chosen in islice(product(*choices), _MOST):
+        for chosen in every:
             going = _going_on(point, chosen, drive, here, leaving)
             if going is None:
                 continue
             if any(_going_on(point, other, drive, here, leaving) for other in _reversed(model, chosen, here)):
-                return Status.TWO_SLIPS
+                raise StopError(Status.TWO_SLIPS)
             return going
-    return Status.JAMMED
+    raise StopError(Status.JAMMED)
 
 
 def turned(point: Point, k: int) -> Grip:
     """State of pair k that sticks where it slipped, or slips the way of its force where it stuck."""
     here = traction_at(point, k)
-    return Grip(0, here.place) if dict(grips(point.state))[k].slip else Grip(here.way, None)
+    return Grip(0, here.place) if grips(point.state)[k].slip else Grip(here.way, None)
 
 
-def grips(state: State) -> list[tuple[int, Grip]]:
-    """Numbers and states of the closed contacts with friction."""
-    return [
-        (k, touch.grip)
-        for k, touch in enumerate(state.touches)
-        if touch is not None and touch.grip is not None
-    ]
+def grips(state: State) -> Grips:
+    """States of the closed contacts with friction, by their numbers."""
+    return {
+        k: touch.grip for k, touch in enumerate(state.touches) if touch is not None and touch.grip is not None
+    }
 
 
 def with_grips(state: State, grips: Grips) -> State:
     """State whose contacts slip or stick otherwise."""
     touches = list(state.touches)
-    for k, grip in grips:
-        touch = touches[k]
-        assert touch is not None, "only a closed contact slips or sticks"
-        touches[k] = replace(touch, grip=grip)
+    for k, grip in grips.items():
+        touches[k] = replace(touch_at(state, k), grip=grip)
     return replace(state, touches=tuple(touches))
 
 
@@ -133,7 +124,7 @@ def _choices(model: Model, k: int, grip: Grip, here: Traction) -> list[Grip]:
     stick = grip if grip.held is not None else Grip(0, here.place)
     if _idle(model, here):
         return [stick, Grip(1, None), Grip(-1, None), UNDECIDED]
-    if model.pairs[k].pair.friction * here.normal - abs(here.tangential) > _EDGE * model.force_scale:
+    if _inside(model, k, here) > _EDGE * model.force_scale:
         return [stick]
     slip = Grip(here.way, None)
     return [slip, stick] if grip.slip else [stick, slip]
@@ -141,9 +132,9 @@ def _choices(model: Model, k: int, grip: Grip, here: Traction) -> list[Grip]:
 
 def _reversed(model: Model, chosen: Grips, here: dict[int, Traction]) -> Iterator[Grips]:
     """The same states with the slip of one contact without force reversed."""
-    for n, (k, grip) in enumerate(chosen):
+    for k, grip in chosen.items():
         if grip.slip and _idle(model, here[k]):
-            yield (*chosen[:n], (k, Grip(-grip.slip, None)), *chosen[n + 1 :])
+            yield {**chosen, k: Grip(-grip.slip, None)}
 
 
 def _going_on(
@@ -152,9 +143,9 @@ def _going_on(
     """Point with contacts in the chosen states, if they can go on; forces may leave their cones at the rates `leaving`."""
     state = with_grips(point.state, chosen)
     going = point if state.touches == point.state.touches else point.with_state(state)
-    by = going.rates(drive) if here else None
-    lasting = by and all(_lasts(going, by, k, grip, here[k], leaving[k]) for k, grip in chosen)
-    return going if lasting or not here else None
+    by = going.rates(drive)
+    lasting = by and all(_lasts(going, by, k, grip, here[k], leaving[k]) for k, grip in chosen.items())
+    return going if lasting else None
 
 
 def _lasts(point: Point, by: Rates, k: int, grip: Grip, here: Traction, leaving: float) -> bool:
@@ -184,7 +175,7 @@ def _grows(model: Model, k: int, here: Traction, by: Rates, grip: Grip) -> bool:
 def _row_rate(point: Point, by: Rates, k: int, way: int) -> float:
     """Derivative of ``F_t - sigma mu F_n``, times a positive number, along rates that do not hold it at zero."""
     model, assembler = point.model, point.newton.assembler
-    slipping, slot = with_grips(point.state, ((k, Grip(way, None)),)), model.pairs[k].slot + 2
+    slipping, slot = with_grips(point.state, {k: Grip(way, None)}), model.pairs[k].slot + 2
     system, aside = assembler.linearise(slipping), model.border_dofs
     held, tangent = assembler.rate(system)[model.equations + slot], system.tangent
     along = tangent.below[aside + slot, : model.equations] @ by.unknowns[: model.equations]

@@ -15,22 +15,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tsm.contact.contact_set import changed, closed_at, forbidden
+from tsm.contact.contact_set import changed, closed_at, opened
 from tsm.contact.ends import clearance
-from tsm.contact.events import ROUND_OFF, EventKind, normal_force
+from tsm.contact.events import ROUND_OFF, EventKind, normal_force, over, touch_at
 from tsm.contact.root import find_root
 from tsm.elements.properties import Array
 from tsm.model import scales
-from tsm.model.state import UNDECIDED, Grip, State, Touch
+from tsm.model.state import UNDECIDED, Grip, State
 from tsm.path.friction import cone, slip_rate, turned, with_grips
-from tsm.path.path import Point, StepControl
-from tsm.statement.status import Status
+from tsm.path.path import Point
+from tsm.statement.status import RefusedError, Status, StopError
 from tsm.system.newton import Newton
 from tsm.system.system import Drive
-
-GRIPS = frozenset({EventKind.SLIP, EventKind.STICK})
-"""Events at which a contact stays closed."""
-
 
 _GRIPS = frozenset({EventKind.SLIP, EventKind.STICK})
 """Events at which a contact stays closed."""
@@ -62,15 +58,9 @@ class Watch(NamedTuple):
     kind: EventKind
     awaited: Callable[[Point, int], bool]  # whether pair k may have it next
     margin: Callable[[Point, int, Drive], float]  # under what changes on the way
-    # contacts after it, or why the path ends: at the event, in the state with the changes of events beside it,
-    # by its margin, and whether it is alone
-    apply: Callable[[Point, State, Margin, bool], State | Status]
-
-
-def _touch(state: State, k: int) -> Touch:
-    touch = state.touches[k]
-    assert touch is not None, "this happens at closed contacts"
-    return touch
+    # contacts after it: at the event, in the state with the changes of events beside it, by its margin, and whether
+    # it is alone; raises StopError where the path ends
+    apply: Callable[[Point, State, Margin, bool], State]
 
 
 def _closed(point: Point, k: int) -> bool:
@@ -89,7 +79,7 @@ def _grip(point: Point, k: int) -> Grip:
 
 def _inside(point: Point, k: int, _drive: Drive) -> float:
     pair = point.model.pairs[k]
-    arc = pair.arc_position(_touch(point.state, k))
+    arc = pair.arc_position(touch_at(point.state, k))
     return min(arc, pair.target.beam.length - arc) / point.model.length
 
 
@@ -105,7 +95,7 @@ def _slip_rate(point: Point, k: int, drive: Drive) -> float:
 
 def _roundness(point: Point, k: int, _drive: Drive) -> float:
     """Curvature ``theta'/(1 + e)``, ``theta' = m/EI``, by which the beam may still bend round the node, over 1/d."""
-    pair, touch, system = point.model.pairs[k], _touch(point.state, k), point.system
+    pair, touch, system = point.model.pairs[k], touch_at(point.state, k), point.system
     group = point.model.group_of(pair.target)
     forces, push = system.groups[group.number], system.forces[k]
     curvature = -pair.side * group.curvature(k, touch, point.state, forces, push)
@@ -113,9 +103,9 @@ def _roundness(point: Point, k: int, _drive: Drive) -> float:
 
 
 def _gap(point: Point, k: int, _drive: Drive) -> float:
-    pair, length = point.model.pairs[k], point.model.length
-    seen = point.model.project(pair, point.state)
-    return seen.gap / length if seen.overshoot <= ROUND_OFF * length else 1.0
+    pair, model = point.model.pairs[k], point.model
+    seen = model.project(pair, point.state)
+    return seen.gap / model.length if over(model, seen) else 1.0
 
 
 def _close(point: Point, state: State, margin: Margin, _alone: bool) -> State:
@@ -127,18 +117,17 @@ def _close(point: Point, state: State, margin: Margin, _alone: bool) -> State:
     return changed(model, state, k, closed_at(pair, model.project(pair, state)), armed=True)
 
 
-def _open(point: Point, state: State, margin: Margin, alone: bool) -> State | Status:
-    k, kind, pair = margin.pair, margin.kind, point.model.pairs[margin.pair]
-    refused = forbidden(point.model, kind, pair, pair.arc_position(_touch(state, k)), alone=alone)
-    return refused or changed(point.model, state, k, None, armed=kind is EventKind.RELEASE)
+def _open(point: Point, state: State, margin: Margin, alone: bool) -> State:
+    return opened(point.model, state, margin.pair, margin.kind, alone=alone)
 
 
 def _turn(point: Point, state: State, margin: Margin, _alone: bool) -> State:
-    return with_grips(state, ((margin.pair, turned(point, margin.pair)),))
+    return with_grips(state, {margin.pair: turned(point, margin.pair)})
 
 
-def _end(_point: Point, _state: State, margin: Margin, _alone: bool) -> Status:
-    return Status[margin.kind.name]
+def _end(_point: Point, state: State, margin: Margin, _alone: bool) -> State:
+    met = (state, margin.pair) if margin.kind is EventKind.END_CONTACT else None
+    raise StopError(Status[margin.kind.name], met)
 
 
 WATCHES = (
@@ -166,21 +155,14 @@ WATCHES = (
 def margins(point: Point, drive: Drive) -> list[Margin]:
     """Margins of the events that may come next, under what changes on the way; computed once for each change."""
     if drive not in point.margins:
-        point.margins[drive] = _margins(point, drive)
+        numbers = range(len(point.model.pairs))
+        awaited = ((watch, k) for k in numbers for watch in WATCHES if watch.awaited(point, k))
+        point.margins[drive] = [Margin(watch.kind, k, watch.margin(point, k, drive)) for watch, k in awaited]
     return point.margins[drive]
 
 
-def _margins(point: Point, drive: Drive) -> list[Margin]:
-    return [
-        Margin(watch.kind, k, watch.margin(point, k, drive))
-        for k in range(len(point.model.pairs))
-        for watch in WATCHES
-        if watch.awaited(point, k)
-    ]
-
-
-def applied(point: Point, state: State, margin: Margin, *, alone: bool) -> State | Status:
-    """State after an event at a point, or why the path ends there; `alone` if no contact takes over."""
+def applied(point: Point, state: State, margin: Margin, *, alone: bool) -> State:
+    """State after an event at a point; `alone` if no contact takes over. Raises StopError where the path ends."""
     watch = next(watch for watch in WATCHES if watch.kind is margin.kind)
     return watch.apply(point, state, margin, alone)
 
@@ -195,33 +177,27 @@ def least_push(newton: Newton, k: int) -> float:
 
 
 class Search(NamedTuple):
-    """Search from the last point of a path, which has margins, to a goal."""
+    """Search from the last point of a path, which has margins, to a goal. A search raises RefusedError where the step is too long."""
 
     last: Point
     margins: list[Margin]
     goal: float
-    solve: Callable[[float], Point | None]  # point at a load parameter, None where none is found
+    solve: Callable[[float], Point]  # point at a load parameter
     measure: Callable[[Point], list[Margin]]
-    control: StepControl  # told why a step is given up
 
-    def first(self, after: list[Margin], numbers: list[int]) -> tuple[Point, list[Margin]] | Status:
-        """First of the events with some numbers, with the margins of what happens there, or why the step is given up.
+    def first(self, after: list[Margin], numbers: list[int]) -> tuple[Point, list[Margin]]:
+        """First of the events with some numbers, with the margins of what happens there.
 
         ``after``: margins at the goal. If a force or position jumps, the step is too long.
         """
-        located: list[tuple[float, bool, int, Point]] = []
-        for n in numbers:
-            found = self._located(n, after[n].value)
-            if isinstance(found, Status):
-                return found
-            # at one load parameter a release comes last: another contact that opens may take its pull away
-            located.append((found.t, self.margins[n].kind is EventKind.RELEASE, n, found))
-        *_, n, event = min(located)
+        located = [(n, self._located(n, after[n].value)) for n in numbers]
+        # at one load parameter a release comes last: another contact that opens may take its pull away
+        n, event = min(located, key=lambda item: (item[1].t, self.margins[item[0]].kind is EventKind.RELEASE))
         measured = self.margins if event is self.last else self.measure(event)
         first = measured[n]
         past = (other for other in measured if other.value < -_COINCIDENT)
         if any(other.kind is not EventKind.TOUCH or other.pair != first.pair for other in past):
-            return self.control.refuse()
+            raise RefusedError
         together = [
             other
             for before, other in zip(self.margins, measured, strict=True)
@@ -231,59 +207,59 @@ class Search(NamedTuple):
         ]
         return event, sorted([first, *together], key=lambda m: m.kind is EventKind.TOUCH)
 
-    def _located(self, n: int, value: float) -> Point | Status:
+    def _located(self, n: int, value: float) -> Point:
         """Point at an event, by the number of its margin and the margin's value at the goal."""
         before = self.margins[n]
         if before.value <= ROUND_OFF:
             if before.kind in _GRIPS:
-                return self.control.fail(Status.JAMMED)
+                raise RefusedError(Status.JAMMED)
             ahead = self._ahead()
-            rises = ahead is not None and ahead[n].value > ROUND_OFF
-            return self.control.refuse(_PROBE) if rises else self.last
+            if ahead and ahead[n].value > ROUND_OFF:
+                raise RefusedError(part=_PROBE)
+            return self.last
 
-        def evaluate(t: float) -> tuple[float, Point] | None:
+        def evaluate(t: float) -> tuple[float, Point]:
             point = self.solve(t)
-            return None if point is None else (self.measure(point)[n].value, point)
+            return self.measure(point)[n].value, point
 
         # the point at the root of the margin, or just past its jump to below zero, located to round-off
         ends = (self.last.t, before.value), (self.goal, value)
         found = find_root(evaluate, *ends, small=_LOCATED, apart=_APART)
-        if found is None:
-            return self.control.failure
         touches = before.kind is EventKind.TOUCH and before.value < 1.0
-        jumps = touches and self.measure(found)[n].value < -ROUND_OFF
-        return self.control.refuse() if jumps else found
+        if found is None or (touches and self.measure(found)[n].value < -ROUND_OFF):
+            raise RefusedError
+        return found
 
-    def _ahead(self) -> list[Margin] | None:
-        """Margins just after the last point."""
-        point = self.solve(self.last.t + _PROBE * (self.goal - self.last.t))
-        return None if point is None else self.measure(point)
+    def _ahead(self) -> list[Margin]:
+        """Margins just after the last point, none where no point is found."""
+        try:
+            return self.measure(self.solve(self.last.t + _PROBE * (self.goal - self.last.t)))
+        except RefusedError:
+            return []
 
-    def pulls_at_first(self) -> bool:
-        """Whether a contact that has no force pulls just after the last point, though it may push at the goal."""
-        margins = enumerate(self.margins)
-        idle = {n for n, m in margins if m.kind is EventKind.RELEASE and abs(m.value) <= ROUND_OFF}
-        ahead = self._ahead() if idle else None
-        if ahead is None or idle.isdisjoint(broken(self.margins, ahead)):
-            return False
-        self.control.refuse(_PROBE)
-        return True
+    def check_pulls(self) -> None:
+        """Refuse a step after whose begin a contact that has no force pulls, though it may push at the goal."""
+        idle = {
+            n for n, m in enumerate(self.margins) if m.kind is EventKind.RELEASE and abs(m.value) <= ROUND_OFF
+        }
+        ahead = self._ahead() if idle else []
+        if ahead and not idle.isdisjoint(broken(self.margins, ahead)):
+            raise RefusedError(part=_PROBE)
 
-    def dips(self, points: list[Point]) -> float | None:
-        """Part of a step at which a margin of slip or stick is below zero, though not at its end; None if none is.
+    def check_dips(self, points: list[Point]) -> None:
+        """Refuse a step inside which a margin of slip or stick is below zero, though not at its end.
 
         ``points``: points inside the step and at its end.
         """
         begin, length = self.last.t, points[-1].t - self.last.t
         if length <= _SHORT or all(margin.kind not in _GRIPS for margin in self.margins):
-            return None
+            return
         times = np.array([begin, *(point.t for point in points)])
         trails = zip(self.margins, *map(self.measure, points), strict=True)
-        grips = ([margin.value for margin in trail] for trail in trails if trail[0].kind in _GRIPS)
-        dip = min(
-            (t for t in (below(np.array(values), times) for values in grips) if t is not None), default=None
-        )
-        return None if dip is None else (dip - begin) / length
+        grips = (np.array([m.value for m in trail]) for trail in trails if trail[0].kind in _GRIPS)
+        dips = [dip for dip in (below(values, times) for values in grips) if dip is not None]
+        if dips:
+            raise RefusedError(part=(min(dips) - begin) / length)
 
 
 def broken(before: list[Margin], after: list[Margin]) -> list[int]:

@@ -22,32 +22,21 @@ import numpy as np
 
 from tsm.contact.contact_set import owned
 from tsm.elements.properties import Array
-from tsm.model.contact import handed_over
+from tsm.model.contact import closed, handed_over
 from tsm.model.model import Model
 from tsm.model.pairs import PairModel
 from tsm.model.state import State, Touch
-from tsm.statement.status import Status
+from tsm.statement.status import RefusedError
 from tsm.system.newton import Equilibrium, Newton
 from tsm.system.stability import index
 from tsm.system.system import Drive
 
-FOLLOWED = 0.35
+_FOLLOWED = 0.35
 """The bound c. A limit point is approached by a factor of (1 + 2 c)^2 = 2.9 a step."""
 SMALLEST = 1e-12
 """Floor of the load step, as a part of the whole load."""
 _SAFE = 0.8
 """Safety factor: next step over the step that the tangents would still allow."""
-_LEAST_PART = 0.1
-"""Shortest part of a refused step that is tried next."""
-_NAMED = {
-    Status.NOT_FINITE,
-    Status.SINGULAR_TANGENT,
-    Status.INACCURATE,
-    Status.TWO_CONTACTS,
-    Status.PING_PONG,
-    Status.JAMMED,
-}
-"""Failures that are reported by their own status instead of the general status of a step at its floor."""
 _LONGEST = 1.0
 """Longest step whatever its tangents are, in largest Newton steps (0.3 L, 0.7 rad); the farthest equilibrium
 from its prediction where no tangent is usable. With 2 instead of 1, one random pin in a hundred ends on another branch."""
@@ -57,13 +46,11 @@ _RESOLVED = 1e-8
 """Smaller motions, in the same measure, are round-off, as of a column that stays straight: it moves along itself only."""
 _MEMORY = 4
 """Points in the prediction, a polynomial in the load parameter through their states and usable tangents."""
-_BEFORE_KINK = 1
-"""Points before a contact passed from element to element that the prediction still uses: the path has a kink there."""
 _AHEAD = 1e-2
 """Part of a step ahead of a state at which another one states its tangent; a shorter one has fewer digits."""
 SHORTEST = 1e-6
 """Step of the load parameter below which the tangent alone predicts: the others would be round-off."""
-_FOLD = 100.0
+FOLD = 100.0
 """Speed of the path, in largest Newton steps per whole load, above which a limit point is near, where it is infinite."""
 _GROWING, _ROOM = 1.4, 0.6
 """Growth of the speed that shows a limit point ahead, and the next step over the distance to it."""
@@ -85,11 +72,8 @@ class Point:
 
     def __init__(self, newton: Newton, equilibrium: Equilibrium) -> None:
         self.newton, self.model, self.equilibrium = newton, newton.model, equilibrium
-        self.state, self.system, self.t = (
-            equilibrium.state,
-            equilibrium.system,
-            equilibrium.state.load_parameter,
-        )
+        self.state, self.system = equilibrium.state, equilibrium.system
+        self.t = self.state.load_parameter
         self._rates: dict[Drive, Rates | None] = {}
         self.margins: dict[Drive, list[Any]] = {}  # see `tsm.path.margins`
 
@@ -101,13 +85,12 @@ class Point:
     def index(self) -> int:
         """Number of the energy's negative eigenvalues, -1 where it is not defined, see `tsm.system.stability`."""
         _ = self.system.tangent  # which the rates need besides, and the index is cheaper with
-        return index(self.newton.assembler, self.state, self.system)
+        return index(self.newton.assembler, self.system)
 
     @cached_property
     def on_chords(self) -> bool:
         """Whether a closed contact has a stiffness that grows without bound at the beam nodes: round-off spoils its tangent."""
-        pairs = zip(self.model.pairs, self.state.touches, strict=True)
-        return any(touch is not None and pair.slot < 0 for pair, touch in pairs)
+        return any(pair.slot < 0 for _, pair, _ in closed(self.model, self.state))
 
     def rates(self, drive: Drive) -> Rates | None:
         """Rates while the pins go straight and the loads grow as the drive says; None where the tangent is singular."""
@@ -155,9 +138,8 @@ class Track:
 
     def __init__(self, point: Point) -> None:
         self.newton, self.last, self.before = point.newton, point, point
-        self.index = (
-            max(point.index, 0) if point.equilibrium.converged else 0
-        )  # of the last point that has one
+        # of the last point that has one
+        self.index = max(point.index, 0) if point.equilibrium.converged else 0
         # states with the same contacts, each after one ahead of it along its tangent if there is any
         self.history: list[tuple[State, ...]] = [(point.state,)]
 
@@ -169,12 +151,13 @@ class Track:
         self.index = point.index if point.index >= 0 else self.index
 
     def _remembered(self, point: Point) -> list[tuple[State, ...]]:
-        """Earlier states that serve for the prediction beyond a point."""
+        """Earlier states that serve for the prediction beyond a point.
+
+        The path has a kink where a contact passes from element to element, and one state before it serves where there is no other.
+        """
         kept: list[tuple[State, ...]] = []
-        kinks = 0
         for *ahead, state in reversed(self.history[1 - _MEMORY :]):
-            kinks += _owners(state) != _owners(point.state)
-            if kinks > _BEFORE_KINK and not point.on_chords:
+            if kept and _owners(state) != _owners(point.state) and not point.on_chords:
                 break
             if state.load_parameter < point.t:
                 kept.append((*ahead, state))
@@ -183,7 +166,7 @@ class Track:
     def predicted(self, t: float) -> State:
         """State at t from the last states and their tangents, or along the last tangent."""
         last, step, history = self.last, t - self.last.t, self.history
-        steady = not last.on_chords and last.speed < _FOLD  # a nearly singular tangent leads anywhere
+        steady = not last.on_chords and last.speed < FOLD  # a nearly singular tangent leads anywhere
         if steady and step >= SHORTEST and len(history[-1]) == 1:
             history[-1] = (last.predicted(last.t + _AHEAD * step), last.state)
         if (len(history) == 1 and not last.on_chords) or (steady and step < SHORTEST):
@@ -192,14 +175,17 @@ class Track:
         return self.newton.prescribed(extrapolate(last.model, states, t, tangents=steady), t)
 
     def unexplained(self, by: Point, reached: Point) -> float:
-        """Part of the step to a point that the tangent at one of its ends does not explain; 0 where none is usable."""
+        """Part of the step to a point that the tangent at one of its ends does not explain; 0 where none is usable. It may not be large."""
         last, newton = self.last, self.newton
         rates = None if last.on_chords else by.rates(newton.assembler.drive(last.t, reached.t))
         if rates is None:
             return 0.0
         step = newton.motion(last.state, reached.state, by.state)
         size, left = newton.size(step), newton.size(step - (reached.t - last.t) * rates.motion)
-        return left / size if min(left, size) > _RESOLVED else 0.0
+        part = left / size if min(left, size) > _RESOLVED else 0.0
+        if part > _FOLLOWED:
+            raise RefusedError(part=allowed(part))
+        return part
 
     def strays(self, predicted: State, reached: State) -> bool:
         """Whether an equilibrium lies too far away, or too far from its prediction where no tangent is usable."""
@@ -209,31 +195,16 @@ class Track:
     def room(self) -> float:
         """Longest step that the last two speeds promise to follow; infinite where they promise nothing."""
         one, two = self.before, self.last
-        short = _PROMISED / two.speed if two.speed < _FOLD and not two.on_chords else math.inf
+        short = _PROMISED / two.speed if two.speed < FOLD and not two.on_chords else math.inf
         if len(self.history) < 2 or one.t >= two.t or not two.speed > _GROWING * one.speed:
             return short
         return min(short, _ROOM * (self.limit() - two.t) or math.inf)
 
     def limit(self) -> float:
-        """Load parameter of the limit point ahead."""
-        return limit_load((self.before.t, self.before.speed), (self.last.t, self.last.speed))
-
-    def folds(self) -> bool:
-        """Whether the path is as fast as beside a limit point."""
-        return self.last.speed > _FOLD
-
-
-def limit_load(before: tuple[float, float], last: tuple[float, float]) -> float:
-    """Load parameter of a limit point from two load parameters before it and the speeds of the path there.
-
-    Near it the speed is ``a/sqrt(t_c - t)``.
-
-    >>> round(limit_load((0.0, 1.0), (0.75, 2.0)), 12)
-    1.0
-    """
-    (t0, v0), (t1, v1) = before, last
-    ratio = v0 / v1 if np.isfinite(v1) and v1 > v0 > 0 else 0.0
-    return t1 + (t1 - t0) * ratio**2 / (1 - ratio**2) if ratio < 1 else t1
+        """Load parameter of the limit point ahead, by the speeds of the path at the last two points: near it ``a/sqrt(t_c - t)``."""
+        (t0, v0), (t1, v1) = ((point.t, point.speed) for point in (self.before, self.last))
+        ratio = v0 / v1 if np.isfinite(v1) and v1 > v0 > 0 else 0.0
+        return t1 + (t1 - t0) * ratio**2 / (1 - ratio**2)
 
 
 def _owners(state: State) -> list[int]:
@@ -273,12 +244,9 @@ def extrapolate(model: Model, history: list[State], t: float, *, tangents: bool 
 def _lagrange(times: list[float], t: float) -> Iterator[tuple[float, list[float], list[float]]]:
     """For each time, the factors of Lagrange's polynomial at t, and the terms of its derivative at the time."""
     for n, time in enumerate(times):
-        others = [other for k, other in enumerate(times) if k != n]
-        yield (
-            time,
-            [(t - other) / (time - other) for other in others],
-            [1 / (time - other) for other in others],
-        )
+        others = times[:n] + times[n + 1 :]
+        slopes = [1 / (time - other) for other in others]
+        yield time, [(t - other) / (time - other) for other in others], slopes
 
 
 def _hermite(times: list[float], ahead: list[float], t: float) -> list[float]:
@@ -303,39 +271,4 @@ def _touch(pair: PairModel, weights: list[float], trail: Sequence[Touch]) -> Tou
 
 def allowed(unexplained: float) -> float:
     """Return the fraction of a step that its tangents would explain; `unexplained` is the fraction that they do not explain."""
-    return _SAFE * FOLLOWED / max(unexplained, 1e-9)
-
-
-class StepControl:
-    """Length of the next load step: it grows while the path is followed, and is cut back where an attempt fails."""
-
-    def __init__(self) -> None:
-        self.step, self.failure, self.part = (
-            1.0,
-            Status.CONVERGED,
-            1 / 2,
-        )  # why the last attempt failed, and what to try next
-
-    def fail(self, status: Status, part: float = 1 / 2) -> Status:
-        """Give up an attempt; the fraction `part` of its step is tried next."""
-        self.failure, self.part = status, min(max(part, _LEAST_PART), 1 / 2)
-        return status
-
-    def refuse(self, part: float = 1 / 2) -> Status:
-        """Give up a step that is too long, whatever was found at its end."""
-        return self.fail(Status.ITERATION_LIMIT, part)
-
-    def cut_back(self, left: float) -> bool:
-        """Shorten the step, of which `left` was tried at most; return whether it is at its floor."""
-        self.step = min(self.step, left) * self.part
-        return self.step < SMALLEST
-
-    def grow(self, taken: float, fitting: float) -> None:
-        """Lengthen the step after one that was taken and could have been `fitting` times as long."""
-        self.step = min(max(min(2.0, fitting) * taken, self.step if fitting >= 1 else 0.0), 1.0)
-
-    def verdict(self, folds: bool) -> Status:
-        """Status that explains why no step succeeds; `folds` if the speed of the path shows a limit point."""
-        if self.failure in _NAMED:
-            return self.failure
-        return Status.LIMIT_POINT if folds else Status.CUTBACK_FLOOR
+    return _SAFE * _FOLLOWED / max(unexplained, 1e-9)

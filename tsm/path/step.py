@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from tsm.contact.ends import clearance
-from tsm.contact.events import Event, EventKind, normal_force
+from tsm.contact.events import Event, EventKind, normal_force, touch_at
 from tsm.elements.properties import Array
 from tsm.model.model import Model
 from tsm.model.state import State
@@ -61,8 +61,7 @@ class Step:
 
     def note(self, kind: EventKind, point: Point, state: State, k: int) -> None:
         """Record an event of a contact that is closed in a state, with its force at a point."""
-        pair, touch = point.model.pairs[k], state.touches[k]
-        assert touch is not None, "the contact is closed"
+        pair, touch = point.model.pairs[k], touch_at(state, k)
         pushes = kind is not EventKind.TOUCH and point.state.touches[k] is not None
         self.events.append(
             Event(
@@ -75,15 +74,17 @@ class Step:
             )
         )
 
-    def applied(self, point: Point, state: State, margin: Margin, *, alone: bool = True) -> State | Status:
-        """State after an event at a point, which is recorded, or why the path ends there; `alone` if no contact takes over."""
-        after, k = applied(point, state, margin, alone=alone), margin.pair
-        closed = after if margin.kind is EventKind.TOUCH and isinstance(after, State) else state
-        if closed.touches[k] is not None:
-            self.note(margin.kind, point, closed, k)
+    def applied(self, point: Point, state: State, margin: Margin, *, alone: bool = True) -> State:
+        """State after an event at a point, which is recorded; `alone` if no contact takes over. Raises StopError where the path ends."""
+        k, touches = margin.pair, margin.kind is EventKind.TOUCH
+        if not touches and state.touches[k] is not None:
+            self.note(margin.kind, point, state, k)
+        after = applied(point, state, margin, alone=alone)
+        if touches and after.touches[k] is not None:
+            self.note(margin.kind, point, after, k)
         return after
 
-    def note_end(self, model: Model, state: State, k: int) -> Status:
+    def note_end(self, model: Model, state: State, k: int) -> None:
         """Record that pair k meets an end, or the side that it does not touch, where the path ends."""
         self.events.append(
             Event(
@@ -93,7 +94,6 @@ class Step:
                 arc_position=clearance(model, state, k).arc,
             )
         )
-        return Status.END_CONTACT
 
     def release(self, kind: EventKind, energy: float) -> None:
         """Record the energy released in a fall with the last event of a kind, which caused it."""

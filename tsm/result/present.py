@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from tsm.elements.properties import Array
 
-if TYPE_CHECKING:
-    from tsm.result.result import Result
-
+Result = Any
+"""`tsm.result.result.Result`, which imports this module."""
 SHOWN = 5
 """Load parameters in a picture."""
 

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
-from tsm.contact.events import Event, normal_force
+from tsm.contact.events import Event, normal_force, traction
 from tsm.elements.properties import Array
+from tsm.model.contact import closed
 from tsm.model.groups.base import Stations
 from tsm.model.model import Model
 from tsm.path.critical import CriticalPoint
-from tsm.path.friction import grips, traction
+from tsm.path.friction import grips
 from tsm.path.step import Step
 from tsm.result import present
 from tsm.result.deformation import Deformation, deformation
@@ -145,23 +145,11 @@ class Result:
     model: Model
     equilibria: tuple[Equilibrium, ...]
 
-    def __repr__(self) -> str:
-        return present.summary(self)
-
-    def arrays(self) -> dict[str, Array]:
-        """Histories by name, see `tsm.result.present.arrays`: what ``numpy.savez`` takes."""
-        return present.arrays(self)
-
-    def table(self) -> dict[str, Array]:
-        """Histories as columns of equal length, see `tsm.result.present.table`: what ``pandas.DataFrame`` takes."""
-        return present.table(self)
-
-    def _repr_html_(self) -> str:
-        return present.html(self)
-
-    def plot(self, axes: Any = None, shown: int = present.SHOWN) -> Any:
-        """Draw the deflected axes, see `tsm.result.present.plot`."""
-        return present.plot(self, axes, shown)
+    __repr__ = present.summary
+    _repr_html_ = present.html
+    arrays = present.arrays
+    table = present.table
+    plot = present.plot
 
     @cached_property
     def strain_energy(self) -> Array:
@@ -204,7 +192,7 @@ class Result:
             Deformed position.
         """
         here = self.equilibria[k]
-        return axis_line(self.model, here.state, here.system, beam, points_per_element)
+        return axis_line(self.model, here.system, beam, points_per_element)
 
     def stations(self, beam: str, k: int) -> Stations:
         """Lines along a beam at accepted load parameter k: its elements, or short pieces of the segments of exact ones."""
@@ -279,8 +267,8 @@ def _where(model: Model, steps: list[Step], status: Status) -> str:
     stopped = state.load_parameter if state else 0.0
     where = f"; stopped at load parameter {stopped:.6g}, last reported {reached:.6g}"
     if status in {Status.CUTBACK_FLOOR, Status.LIMIT_POINT} and state:
-        for pair, touch in zip(model.pairs, state.touches, strict=True):
-            if touch is not None and pair.slot < 0 and min(touch.xi, 1 - touch.xi) < _AT_NODE:
+        for _, pair, touch in closed(model, state):
+            if pair.slot < 0 and min(touch.xi, 1 - touch.xi) < _AT_NODE:
                 beam = pair.target.beam
                 where += (
                     f'; {pair.pair.name}: the contact lies on a node, where elements "{beam.element}" are rigid: '
@@ -316,9 +304,8 @@ def _contact_at(model: Model, equilibrium: Equilibrium, k: int) -> tuple[float, 
 def _friction(model: Model, steps: list[Step], k: int) -> FrictionHistory:
     rows = []
     for step in steps:
-        state, system = step.equilibrium.state, step.equilibrium.system
-        grip = dict(grips(state)).get(k)
-        here = traction(model, system, k) if grip else None
+        grip = grips(step.equilibrium.state).get(k)
+        here = traction(model, step.equilibrium, k) if grip else None
         force = (here.tangential, here.normal) if here else (0.0, 0.0)
         rows.append((*force, grip.slip if grip else 0, step.spent[1 + k] if len(step.spent) else np.nan))
     tangential, normal, slip, dissipated = np.array(rows).reshape(-1, 4).T

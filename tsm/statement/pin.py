@@ -45,11 +45,9 @@ class Polyline:
             return (0.0, 0.0)
         k = self._leg(end)
         if begin != end and self._reached[k] > min(begin, end) * self.length:
-            (x0, y0), (x1, y1) = self.position(begin), self.position(end)
-            return ((x1 - x0) / (end - begin), (y1 - y0) / (end - begin))
+            return _mean(self.position(begin), self.position(end), end - begin)
         a, b = self.points[k : k + 2]
-        speed = self.length / math.dist(a, b)
-        return (speed * (b[0] - a[0]), speed * (b[1] - a[1]))
+        return _mean(a, b, math.dist(a, b) / self.length)
 
     @property
     def corners(self) -> tuple[float, ...]:
@@ -117,11 +115,6 @@ class Pin:
         return tuple(parts)
 
     @property
-    def length(self) -> float:
-        """Length of the path of the first stage."""
-        return self.polylines[0].length
-
-    @property
     def points(self) -> tuple[Point, ...]:
         """Corners of the path through all stages."""
         return (*self.path, *(point for points in self.onward for point in points))
@@ -132,18 +125,20 @@ class Pin:
         >>> Pin(name="pin", path=((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))).velocity(0.0, 1.0)
         (1.0, 1.0)
         """
-        stage = stage_of(end, len(self.polylines)) if self.onward else 0
-        if stage == 0:
-            return self.polylines[0].velocity(begin, end)
+        line, stage = self._at(end)
         if begin < stage:
-            (x0, y0), (x1, y1) = self.position(begin), self.position(end)
-            return ((x1 - x0) / (end - begin), (y1 - y0) / (end - begin))
-        return self.polylines[stage].velocity(begin - stage, end - stage)
+            return _mean(self.position(begin), self.position(end), end - begin)
+        return line.velocity(begin - stage, end - stage)
+
+    def _at(self, load_parameter: float) -> tuple[Polyline, int]:
+        """Path at a load parameter, and its stage."""
+        stage = stage_of(load_parameter, len(self.polylines)) if self.onward else 0
+        return self.polylines[stage], stage
 
     @property
     def corners(self) -> tuple[float, ...]:
         """Load parameters of the inner points of the path in every stage."""
-        return tuple(k + t if k else t for k, part in enumerate(self.polylines) for t in part.corners)
+        return tuple(k + t for k, part in enumerate(self.polylines) for t in part.corners)
 
     @property
     def turns(self) -> tuple[float, ...]:
@@ -152,7 +147,7 @@ class Pin:
         >>> Pin(name="pin", path=((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))).turns
         (0.5,)
         """
-        return tuple(k + t if k else t for k, part in enumerate(self.polylines) for t in part.turns)
+        return tuple(k + t for k, part in enumerate(self.polylines) for t in part.turns)
 
     def position(self, load_parameter: float) -> Point:
         """Position at a load parameter.
@@ -160,5 +155,9 @@ class Pin:
         >>> Pin(name="pin", path=((0.0, 0.0), (2.0, 0.0), (2.0, 2.0))).position(0.75)
         (2.0, 1.0)
         """
-        stage = stage_of(load_parameter, len(self.polylines)) if self.onward else 0
-        return self.polylines[stage].position(load_parameter - stage if stage else load_parameter)
+        line, stage = self._at(load_parameter)
+        return line.position(load_parameter - stage)
+
+
+def _mean(a: Point, b: Point, span: float) -> Point:
+    return ((b[0] - a[0]) / span, (b[1] - a[1]) / span)

@@ -104,12 +104,6 @@ class Springs:
         turned = q[self.second] - q[self.first]
         return float(self.ground_stiffness @ q[self.ground] ** 2 + self.stiffness @ turned**2) / 2
 
-    def pull(self, q: Array) -> Array:
-        """Force (2,) that the springs to the ground exert on the structure."""
-        held = np.bincount(self.ground % 3, self.ground_stiffness * q[self.ground], minlength=3)
-        pull: Array = -held[:2]
-        return pull
-
     def noise(self, extent: float, force: float) -> float:
         """Round-off of the residual in parts of `force`, for displacements up to `extent` and rotations up to 1."""
         units = np.where(self.ground % 3 == 2, 1.0 / extent, extent)

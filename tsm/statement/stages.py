@@ -31,9 +31,6 @@ class Increments:
     def at(self, load_parameter: float) -> Array:
         """Quantities at a load parameter."""
         stage = stage_of(load_parameter, len(self.rows))
-        if stage == 0:
-            first: Array = load_parameter * self.rows[0]
-            return first
         there: Array = self.before[stage] + (load_parameter - stage) * self.rows[stage]
         return there
 
@@ -44,13 +41,8 @@ class Increments:
 
     def change(self, begin: float, end: float) -> Array:
         """Changes between two load parameters."""
-        if len(self.rows) == 1:
-            only: Array = (end - begin) * self.rows[0]
-            return only
         return self.at(end) - self.at(begin)
 
     def dot(self, load_parameter: float, values: Array) -> float:
         """Scalar product of n quantities at a load parameter with other values (n,)."""
-        if stage_of(load_parameter, len(self.rows)) == 0:
-            return load_parameter * float(self.rows[0] @ values)
         return float(self.at(load_parameter) @ values)

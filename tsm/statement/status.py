@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 from enum import Enum
+from typing import Any
+
+_LEAST_PART = 0.1
+"""Shortest part of a refused step that is tried next."""
 
 
 class Status(Enum):
@@ -40,3 +44,19 @@ class Status(Enum):
         "a contact opened or closed under arc-length control, which follows a fixed set of contacts"
     )
     CHATTER = "contact opened and closed again and again at one load parameter"
+
+
+class StopError(Exception):
+    """The path ends here, by its status; `met` is the pair that meets an end of its beam there, and the state."""
+
+    def __init__(self, status: Status, met: Any = None) -> None:
+        super().__init__(status.value)
+        self.status, self.met = status, met
+
+
+class RefusedError(Exception):
+    """A step is given up, by its status; the fraction `part` of it is tried next."""
+
+    def __init__(self, status: Status = Status.ITERATION_LIMIT, part: float = 1 / 2) -> None:
+        super().__init__(status.value)
+        self.status, self.part = status, min(max(part, _LEAST_PART), 1 / 2)

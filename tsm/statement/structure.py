@@ -21,7 +21,6 @@ from tsm.statement.beam import (
     End,
     LineLoad,
     Point,
-    Section,
     check,
     checks,
     finite,
@@ -31,23 +30,6 @@ from tsm.statement.pin import Pin
 from tsm.statement.springs import Hinge, Spring
 
 Side = Literal["left", "right"]
-
-
-__all__ = [
-    "Beam",
-    "ContactPair",
-    "End",
-    "Hinge",
-    "LineLoad",
-    "Load",
-    "Pin",
-    "Point",
-    "Section",
-    "Side",
-    "Spring",
-    "Structure",
-    "Support",
-]
 
 
 MOST_FRICTION = 100.0

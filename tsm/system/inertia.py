@@ -44,14 +44,14 @@ def negatives(symmetric: Symmetric) -> int | None:
         reduced = corner - right.T @ inside
         if np.abs(reduced).max() < _SOFT:
             return _negatives_dense(reduced)
-    count, width = band.shape[1], len(corner)
+    count, width = right.shape
     if count + width > _DENSE:
         return _negatives_sparse(symmetric)
     whole = np.zeros((count + width, count + width))
     for k, diagonal in enumerate(band[:count]):
         whole[range(k, count), range(count - k)] = diagonal[: count - k] * units[k:] * units[: count - k]
-    whole[count:, :count], whole[count:, count:] = right.T * units, corner
-    return _negatives_dense(whole)
+    whole[count:, :count], whole[count:, count:] = right.T * units, np.tril(corner)
+    return _negatives_dense(whole + np.tril(whole, -1).T)
 
 
 def _negatives_sparse(symmetric: Symmetric) -> int | None:
@@ -60,21 +60,17 @@ def _negatives_sparse(symmetric: Symmetric) -> int | None:
     from scipy.sparse.linalg import splu
 
     band, right, corner, units, _ = symmetric
-    count = band.shape[1]
-    lower = dia_array((band, -np.arange(len(band))), shape=(count, count))
-    scale = dia_array((units[None], [0]), shape=(count, count))
-    inside = scale @ (lower + dia_array((band[1:], -np.arange(1, len(band))), shape=(count, count)).T) @ scale
+    shape = (band.shape[1],) * 2
+    lower = dia_array((band, -np.arange(len(band))), shape)
+    above = dia_array((band[1:], -np.arange(1, len(band))), shape)
+    inside = (lower + above.T).multiply(units).multiply(units[:, None])
     beside = coo_array(right * units[:, None])
     whole = block_array([[inside, beside], [beside.T, coo_array(corner)]] if len(corner) else [[inside]])
     fit = _equilibrating(np.asarray(abs(whole).max(axis=0).todense()).ravel())
-    whole = (
-        dia_array((fit[None], [0]), shape=whole.shape)
-        @ whole
-        @ dia_array((fit[None], [0]), shape=whole.shape)
-    )
+    scaled = whole.multiply(fit).multiply(fit[:, None]).tocsc()
     options = {"SymmetricMode": True, "Equil": False}
     try:
-        lu = splu(whole.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+        lu = splu(scaled, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
     except RuntimeError:
         return None
     pivots = lu.U.diagonal()
@@ -91,9 +87,8 @@ def _equilibrating(largest: Array) -> Array:
 
 
 def _negatives_dense(matrix: Array) -> int | None:
-    """Number of negative eigenvalues of a dense matrix from its lower triangle, by Bunch and Kaufman's factorisation."""
-    lower = np.abs(np.tril(matrix))
-    scale = _equilibrating(np.maximum(lower.max(axis=0, initial=0.0), lower.max(axis=1, initial=0.0)))
+    """Number of negative eigenvalues of a dense matrix, by Bunch and Kaufman's factorisation."""
+    scale = _equilibrating(np.abs(matrix).max(axis=0, initial=0.0))
     factors, exchanges, _ = lapack().dsytrf(matrix * scale * scale[:, None], lower=1)
     single = exchanges > 0
     pivots = factors.diagonal()[single]

@@ -11,7 +11,7 @@ from tsm.model.contact import chord_owner, handed_over
 from tsm.model.groups import Change
 from tsm.model.model import Model
 from tsm.model.scales import ROUND_OFF, SHARP, TURN, WAY, largest, units_of
-from tsm.model.state import State, Touch
+from tsm.model.state import State
 from tsm.statement.settings import Settings
 from tsm.statement.status import Status
 from tsm.system.system import Assembler, Drag, Linearisation
@@ -151,30 +151,24 @@ class Newton:
             else:
                 residuals.append(residual)
                 owners.append(tuple(touch.element for touch in state.touches if touch is not None))
-                status = self._status(system, residuals, owners, left)
                 more = self.with_more_nodes(state, system, residuals) if left else None
                 if more is not None:
                     state, taken = more, None
                     continue
+                status = self._status(system, residuals, owners, left)
                 step = (
                     self._step(system, across) if status is None else self._closer(system, residuals, status)
                 )
+                here = Equilibrium(
+                    state=state,
+                    status=status or Status.SINGULAR_TANGENT,
+                    iterations=iteration,
+                    residuals=tuple(residuals),
+                    system=system,
+                )
                 if step is None:
-                    return Equilibrium(
-                        state=state,
-                        status=status or Status.SINGULAR_TANGENT,
-                        iterations=iteration,
-                        residuals=tuple(residuals),
-                        system=system,
-                    )
-                if status is not None:
-                    near = Equilibrium(
-                        state=state,
-                        status=status,
-                        iterations=iteration,
-                        residuals=tuple(residuals),
-                        system=system,
-                    )
+                    return here
+                near = None if status is None else here
                 past = _PAST if past or _alternates(owners) else 0.0
                 (change, load), part = step, 1.0
                 taken = state, change, system
@@ -211,28 +205,22 @@ class Newton:
         if not np.isfinite(residuals[-1]):
             return Status.NOT_FINITE
         if self.converged(residuals, system):
-            return self.verdict(system)
+            rods = self.model.rods
+            if rods and rods.inaccurate(system.groups[rods.number], self.integration_tolerance):
+                return Status.INACCURATE
+            return Status.TWO_CONTACTS if system.crowded else Status.CONVERGED
         if left:
             return None
         return Status.PING_PONG if _alternates(owners) else Status.ITERATION_LIMIT
 
     def with_more_nodes(self, state: State, system: Linearisation, residuals: list[float]) -> State | None:
         """State with more Gauss nodes in the exact elements; None if it is far from equilibrium or needs no more."""
-        rods, near = self.model.rods, residuals[-1] <= _NEAR
-        if (
-            rods is None
-            or not near
-            or (len(residuals) > 1 and residuals[-2] <= _NEAR and not self.converged(residuals, system))
-        ):
+        rods = self.model.rods
+        if rods is None or not residuals[-1] <= _NEAR:
+            return None
+        if len(residuals) > 1 and residuals[-2] <= _NEAR and not self.converged(residuals, system):
             return None
         return rods.refined(state, system.groups[rods.number], self.integration_tolerance)
-
-    def verdict(self, system: Linearisation) -> Status:
-        """Status of a small residual."""
-        rods = self.model.rods
-        if rods and rods.inaccurate(system.groups[rods.number], self.integration_tolerance):
-            return Status.INACCURATE
-        return Status.TWO_CONTACTS if system.crowded else Status.CONVERGED
 
     def converged(self, residuals: list[float], system: Linearisation) -> bool:
         """Whether the last residual is small enough, or the last two are round-off."""
@@ -248,7 +236,7 @@ class Newton:
             return replace(state, load_parameter=t)
         q = state.q.copy()
         q[self.model.fixed] = self.model.motions.at(t)
-        self._share(q)
+        q[self.model.slaves] = q[self.model.masters]  # ends behind hinges move with their joints
         return replace(state, load_parameter=t, q=q)
 
     def update(
@@ -278,7 +266,7 @@ class Newton:
             state = self.prescribed(state, end)
         q = state.q.copy()
         q[model.free] += factor * dq
-        self._share(q)
+        q[model.slaves] = q[model.masters]
         if not np.isfinite(size):
             return replace(state, q=q)
         dofs = np.zeros(model.dof_count)
@@ -297,22 +285,13 @@ class Newton:
         if not state.touches:
             return moved
         dz_taken = (factor * dz).tolist()
-        touches = tuple(
-            self._moved(k, moved, touch, dz_taken) if touch is not None else None
-            for k, touch in enumerate(state.touches)
-        )
-        return handed_over(model, moved, touches, past)
-
-    def _share(self, q: Array) -> None:
-        """Give the ends behind hinges the displacements of their joints."""
-        if self.model.joints:
-            q[self.model.slaves] = q[self.model.masters]
-
-    def _moved(self, k: int, state: State, touch: Touch, dz: list[float]) -> Touch:
-        pair = self.model.pairs[k]
-        if pair.slot < 0:
-            return chord_owner(self.model, pair, state, touch)
-        return pair.moved(touch, dz[pair.slots])
+        touches = (
+            None if touch is None
+            else chord_owner(model, pair, moved, touch) if pair.slot < 0
+            else pair.moved(touch, dz_taken[pair.slots])
+            for pair, touch in zip(model.pairs, state.touches, strict=True)
+        )  # fmt: skip
+        return handed_over(model, moved, tuple(touches), past)
 
 
 def _alternates(owners: list[tuple[int, ...]]) -> bool:

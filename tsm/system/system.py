@@ -23,8 +23,8 @@ from tsm.model.contact_block import Bordered, ContactBlock, Units
 from tsm.model.groups import GroupForces
 from tsm.model.model import Model
 from tsm.model.state import State
+from tsm.statement.beam import Point
 from tsm.statement.stages import stage_of
-from tsm.statement.structure import Point
 from tsm.system.lapack import lapack
 
 _EPS = float(np.finfo(float).eps)
@@ -88,6 +88,9 @@ class Assembler:
         self.scatter = np.where((rows < banded) & (columns < banded), flat, self.band_size)
         self.dofs = [group.dofs.ravel() for group in model.groups]
         self.spring_values = model.springs.values if model.springs else np.zeros(0)
+        self.steady: Drive | None = None
+        if model.stages == 1 and all(len(pin.path) < 3 for pin in model.structure.pins):
+            self.steady = self.drive(0.0, 1.0)
         width, height = model.border, last + 1
         self.size = width * height
         if model.border_dofs:
@@ -163,6 +166,8 @@ class Assembler:
 
     def drive(self, begin: float, end: float | None = None) -> Drive:
         """What changes at a load parameter, or between it and another one in the same stage."""
+        if self.steady is not None:
+            return self.steady
         end, still = begin if end is None else end, (0.0, 0.0)
         velocities = tuple(pair.pin.velocity(begin, end) if pair.pin else still for pair in self.model.pairs)
         return Drive(velocities, stage_of(max(begin, end), self.model.stages))
@@ -229,29 +234,22 @@ class Assembler:
         """Newton step and the solutions for further right-hand sides, as columns; None if the tangent is singular."""
         model = self.model
         banded, border, count = model.banded, model.border, 1 + len(more)
-        rhs = np.empty((banded, count + border), order="F")
         tangent = system.tangent
         sides = np.stack([-(system.residual + tangent.condensed_residual), *more], axis=1)
         if self.units:
             tangent, sides = self.units.without(tangent, sides)
-        rhs[:, :count] = sides[:banded]
-        rhs[:, count:] = tangent.right[:banded]
-        lu, _, X, info = lapack().dgbsv(self.k, self.k, tangent.band.T, rhs, overwrite_b=True)
+        rhs = np.concatenate([sides[:banded], tangent.right[:banded]], axis=1)
+        lu, _, X, info = lapack().dgbsv(self.k, self.k, tangent.band.T, rhs)
         if border and (
             info != 0 or (np.abs(lu[2 * self.k]) <= _WEAK * np.abs(tangent.band).max(axis=1)).any()
         ):
             return self._solve_whole(tangent, sides)
-        if info != 0:
-            return None
-        if not border:
-            return self._with_units(X)
-        reduced = tangent.below[:, :banded] @ X
-        _, _, z, info = lapack().dgesv(
-            tangent.corner - reduced[:, count:], sides[banded:] - reduced[:, :count]
-        )
-        if info != 0:
-            return None
-        return self._with_units(np.concatenate([X[:, :count] - X[:, count:] @ z, z]))
+        if border:
+            reduced = tangent.below[:, :banded] @ X
+            left, right = tangent.corner - reduced[:, count:], sides[banded:] - reduced[:, :count]
+            _, _, z, info = lapack().dgesv(left, right)
+            X = np.concatenate([X[:, :count] - X[:, count:] @ z, z])
+        return None if info != 0 else self._with_units(X)
 
     def _with_units(self, x: Array) -> Array:
         return x if self.units is None else x * self.units.columns[:, None]
@@ -261,10 +259,9 @@ class Assembler:
         from scipy.sparse.linalg import splu
 
         try:
-            lu = splu(self.whole(tangent))
+            return self._with_units(splu(self.whole(tangent)).solve(sides))
         except RuntimeError:
             return None
-        return self._with_units(lu.solve(sides))
 
     def whole(self, tangent: Bordered) -> Any:
         """Tangent as one sparse matrix, by columns."""
