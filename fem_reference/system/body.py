@@ -121,7 +121,7 @@ def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:
         y = mesh.places[edge, 1] - mesh.places[edge[[0, -1]], 1].mean()
         across = strip.directions(0.0 if end == "start" else strip.length)[1]
         larger = int(abs(across[1]) >= abs(across[0]))
-        factor[2 * edge], factor[2 * edge + 1] = across if strip.clamp == "rod" else (0, 0)
+        factor[2 * edge], factor[2 * edge + 1] = (0, 0) if strip.clamp == "full" else across
         master[2 * edge], master[2 * edge + 1] = 2 * edge + larger, 2 * edge + larger
         if strip.clamp == "full":
             continue

@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
+from operator import itemgetter
 
 import numpy as np
 
@@ -23,11 +24,13 @@ from tsm.model.state import State
 from tsm.path.path import Point
 from tsm.statement.status import RefusedError
 from tsm.system.axis import axis_line
-from tsm.system.stability import IDLE, loose, mode
+from tsm.system.stability import IDLE, mode, softness
 from tsm.system.system import Drive
 
 _LOCATED = 1e-13
 """Tolerance of the search: width of the bracket of the critical load parameter, and the singular value over that at the ends of the step."""
+_BESIDE = 1e-7
+"""Singular value, over the largest entry of the tangent, of a point that stands for a bifurcation where no nearer one is found."""
 _LEAST = 1e-9
 """Singular value of the equations of rigid motions, in coordinates over the structure's size, that counts as zero."""
 _SHIFT = 1e-6
@@ -72,16 +75,23 @@ def locate_bifurcation(before: Point, after: Point, solve: Callable[[float], Poi
     ``before, after``: ends of a step between which the index changes. ``solve``: point of the path at a load
     parameter.
     """
+    nearest = before, softness(before.newton.assembler, before.system)
 
     def evaluate(point: Point) -> tuple[float, Point]:
-        soft = mode(point.newton.assembler, point.system)
-        size = 0.0 if soft is None else soft[1]
+        nonlocal nearest
+        size = softness(point.newton.assembler, point.system)
+        nearest = min(nearest, (point, size), key=itemgetter(1))
         return size if point.index == before.index else -size, point
 
-    (g0, _), (g1, _) = evaluate(before), evaluate(after)
-    apart, small = _LOCATED * max(1.0, after.t), _LOCATED * max(g0, -g1)
-    ends = (before.t, g0), (after.t, g1)
-    root = find_root(lambda t: evaluate(solve(t)), *ends, small=small, apart=apart) if g0 > 0 else None
+    ends = (before.t, nearest[1]), (after.t, evaluate(after)[0])
+    apart, small = _LOCATED * max(1.0, after.t), _LOCATED * max(abs(g) for _, g in ends)
+    if nearest[1] <= small:
+        return nearest[0]
+    try:
+        root = find_root(lambda t: evaluate(solve(t)), *ends, small=small, apart=apart)
+    except RefusedError:
+        # beside a singular tangent, the residual that Newton's method leaves is a large motion along the mode
+        root = nearest[0] if nearest[1] <= _BESIDE else None
     if root is None:
         raise RefusedError
     return root
@@ -154,7 +164,7 @@ def mechanism(point: Point, drive: Drive) -> bool:
 
 def _free(point: Point) -> bool:
     """Whether beams that are rigid can move, and no load stiffens the motion; the tangent of many slender elements is loose too."""
-    return loose(point.newton.assembler, point.system) and _moves(point.model, point.state)
+    return not softness(point.newton.assembler, point.system) and _moves(point.model, point.state)
 
 
 def _moves(model: Model, state: State) -> bool:

@@ -119,10 +119,10 @@ def mode(assembler: Assembler, system: Linearisation) -> tuple[Array, float, flo
     return x / x[np.abs(x).argmax()] * columns, abs(float(soft)), float(abs(plain).max())
 
 
-def loose(assembler: Assembler, system: Linearisation) -> bool:
-    """Whether the structure can move without strain: the tangent has an eigenvalue that is zero but for round-off."""
+def softness(assembler: Assembler, system: Linearisation) -> float:
+    """Smallest singular value of the tangent over its largest entry; 0 where it is round-off: the structure can move without strain."""
     soft = mode(assembler, system)
-    return soft is None or soft[1] <= _LOOSE * _EPS * soft[2]
+    return 0.0 if soft is None or soft[1] <= _LOOSE * _EPS * soft[2] else soft[1] / soft[2]
 
 
 def _symmetric(assembler: Assembler, system: Linearisation, multipliers: int) -> Symmetric:
