@@ -86,27 +86,6 @@ def test_first_touch_within_a_step_is_located():
     assert once.direction[-1] == often.direction[-1] == -1
 
 
-def test_pin_that_rubs_to_and_fro():
-    """Forces stay in the cone and on it in slip; energy is dissipated only; the second stroke repeats the first."""
-    y = -0.04
-    path = ((0.8, y), (0.8, y + 0.05), (0.85, y + 0.05), (0.75, y + 0.05), (0.85, y + 0.05))
-    values = {"radius": 0.03, "surface": "face", "penetration": 1e-10}
-    result, contact = rubbed(0.3, 12, path=path, mesh=(20, 1), **values)
-    cone = 0.3 * contact.normal_force
-    assert np.all(np.abs(contact.tangential_force) <= cone * (1 + 1e-8))
-    assert np.all(result.index == -1)
-    slips = contact.direction != 0
-    np.testing.assert_allclose(contact.tangential_force[slips], (contact.direction * cone)[slips], rtol=1e-9)
-    assert np.all(np.diff(contact.dissipated) >= 0)
-    late = [(t, way) for t, way in slip_changes(contact) if t > 0.3]
-    assert [way for _, way in late] == [0, -1, 0, 1]
-    np.testing.assert_allclose([t for t, _ in late], [1 / 3, 1 / 3, 2 / 3, 2 / 3], rtol=0, atol=5e-5)
-    first, second = (np.argmin(np.abs(result.load_parameter - t)) for t in (1 / 3, 1.0))
-    assert contact.force[second] == pytest.approx(contact.force[first], rel=1e-9)
-    assert contact.slip[second] == pytest.approx(contact.slip[first], abs=1e-5)
-    assert np.abs(contact.gap).max() < 1e-10
-
-
 def test_strip_rolls_on_a_round_pin_that_sticks():
     """``rho d zeta = s R d theta``: the contact moves along the strip without slip."""
     radius, n = 0.05, np.append(0.3, np.arange(0.6, 0.711, 0.005))
