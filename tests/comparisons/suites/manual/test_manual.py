@@ -67,15 +67,14 @@ def test_the_page_counts_the_problems_and_their_answers(stated):
     assert sum(len(read_problem(path).trials) for path in PROBLEMS.values()) == 96
 
 
-def test_a_card_states_the_digits_that_its_uncertainty_leaves(tmp_path, monkeypatch, capsys):
+def test_a_card_states_the_digits_that_its_uncertainty_leaves(in_folder, capsys):
     """Of a value they are significant ones, of zero decimals of the scale; the schema refuses what is no card."""
-    monkeypatch.chdir(tmp_path)
     (card, _), schema = cards(Path("cards"), "roll-up", "locking")
     reported = capsys.readouterr()
     assert reported.out == "2 cards and their schema in cards\n"
     assert reported.err == "roll-up: 3 quantities\nlocking: 2 quantities\n"
     files = {"card.schema.json", "cards", "locking.json", "roll-up.json"}
-    assert {path.name for path in tmp_path.rglob("[!.]*")} == files
+    assert {path.name for path in in_folder.rglob("[!.]*")} == files
     quarter, _, whole = card["quantities"]
     assert quarter["value"] == pytest.approx(2.0 / math.pi, rel=1e-15)
     assert quarter["uncertainty"] == pytest.approx(1e-14 * quarter["value"])
