@@ -13,15 +13,7 @@ from comparisons.answer import Response
 from comparisons.cli import main
 from comparisons.models import solve
 from comparisons.models.options import Options
-from comparisons.scene import (
-    BeamSpec,
-    ContactSpec,
-    PinSpec,
-    Scene,
-    SupportSpec,
-    load_scene,
-    to_toml,
-)
+from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene, SupportSpec, load_scene, to_toml
 from tests.laws.transform import Change, swapped
 
 MODELS = {
