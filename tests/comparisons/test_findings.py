@@ -82,6 +82,7 @@ ENDS = [
     # given up, though there are stable equilibria to the end, or answered wrongly with friction
     *((f"stopped/{name}", EXACT, counts, "COMPLETED", sure, True) for name, counts in STOPPED.items()),
     ("stopped/back-and-forth", BOTH, (None,), "COMPLETED", sure, True),
+    ("stopped/stack", MIXED, (1, 40), "COMPLETED", sure, True),
     # by the exact rod
     ("stopped/slips-off-in-a-step", EXACT, (None,), "COMPLETED", over, ("slip-off", pytest.approx(0.1599559326, abs=1e-8))),
     ("stopped/slips-off-in-a-step-2", EXACT, (None,), "COMPLETED", over, ("slip-off", pytest.approx(0.0287461850, abs=1e-8))),
