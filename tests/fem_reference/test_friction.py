@@ -5,7 +5,7 @@ import pytest
 
 import fem_reference as fr
 from comparisons.exact import rod_under_pin
-from tests.fem_reference.conftest import EA, EI, GA, PAIR, H, held, loads, make_problem, pressed, support
+from tests.fem_reference.strips import EA, EI, GA, PAIR, H, held, loads, make_problem, pressed, support
 from tests.oracles.elastica import three_point_limit
 
 

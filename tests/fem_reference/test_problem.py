@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import fem_reference as fr
-from tests.fem_reference.conftest import STRIP, held, load, make_problem, make_strip, support
+from tests.fem_reference.strips import STRIP, held, load, make_problem, make_strip, support
 
 NAN, INF = float("nan"), float("inf")
 

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 import fem_reference as fr
 from comparisons.exact import elastica_under_pin
-from tests.fem_reference.conftest import CLAMP, PAIR, STRIP, B, H, loads, make_problem, rotation
+from tests.fem_reference.strips import CLAMP, PAIR, STRIP, B, H, loads, make_problem, rotation
 from tests.oracles.elastica import slip_off_height
 
 

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from scipy.special import jn_zeros, jv
 
 import tsm
-from tests.tsm.structures import CLAMP, beam, cantilever, leaning, raised
+from tests.tsm.structures import CLAMP, beam, cantilever, raised
 
 
 def heavy_column(weight, element, elements):
@@ -63,21 +63,6 @@ def test_what_a_snap_releases_counts_the_work_of_loads_along_a_beam():
     assert snap.load_parameter * load == pytest.approx(limit, rel=1e-8)
     # the fall begins a little beyond the limit
     assert snap.released == pytest.approx(potential(fold) - potential(rest), rel=1e-3)
-
-
-def test_straight_mixed_beams_stand_beside_varying_ones():
-    """A tip of straight elements in closed form on a curved and tapered beam."""
-    loads = leaning().line_loads[:1]
-    push = tsm.Load(beam="up", end="end", force=(0.0, -1.0))
-    found = []
-    for element, elements in (("mixed", 16), ("exact", 1)):
-        beams = tuple(replace(one, element=element, elements=elements, nodes=()) for one in leaning().beams)
-        result = tsm.solve(replace(leaning(), beams=beams, line_loads=loads, loads=(push,)), [0.5, 1.0])
-        history = result.contacts["up.end->low"]
-        found.append([*history.force, *history.arc_position, *result.shape("low", -1)[-1]])
-        assert result.index.tolist() == [0, 0]
-        assert (result.deformation is None) == (element == "exact")
-    assert np.abs(np.subtract(*found)).max() <= 2e-6
 
 
 @pytest.mark.slow

@@ -7,16 +7,16 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from comparisons.referee import AnswerState, Equilibrium, SearchStatus, Verdict, certify, equilibrium
 from comparisons.scene import BeamSpec, ContactSpec, HingeSpec, LoadSpec, PinSpec, Scene
 from tests.comparisons.referee.forged import bent, stated
 from tests.laws.test_index import EA, GA, critical  # whose columns have one beam
+from tests.oracles.elastica import loaded
+from tests.oracles.shooting import RIGID, shot
 
 SECTION = {"youngs_modulus": 1.0, "shear_modulus": 1.0, "second_moment": 1.0}
-STIFF = {"area": 1e9, "shear_area": 1e9, **SECTION}
 
 
 def straight(scene: Scene, short: float = 1.0) -> Equilibrium:
@@ -39,12 +39,14 @@ def chain(load: float) -> Equilibrium:
     return straight(Scene(name="column", load_parameters=1, beams=beams, loads=(push,)), 1.0 - load / EA)
 
 
-RIGID = BeamSpec(name="b", start=(0.0, 0.0), end=(1.0, 0.0), clamped=("start",), **STIFF)
+STIFF = BeamSpec(
+    name="b", start=(0.0, 0.0), end=(1.0, 0.0), clamped=("start",), area=1e9, shear_area=1e9, **SECTION
+)
 
 
 def heavy(load: float) -> Equilibrium:
     """A column under its weight, that neither shears nor stretches."""
-    beam = replace(RIGID, density=load / RIGID.area)
+    beam = replace(STIFF, density=load / STIFF.area)
     return straight(Scene(name="heavy", load_parameters=1, beams=(beam,), gravity=(-1.0, 0.0)))
 
 
@@ -54,7 +56,7 @@ def hinged(load: float) -> Equilibrium:
         LoadSpec(beam="b", end="end", force=(-load, 0.0)),
         HingeSpec(beam="b", end="start", stiffness=2.0),
     )
-    return straight(Scene(name="hinged", load_parameters=1, beams=(RIGID,), loads=(push,), hinges=(hinge,)))
+    return straight(Scene(name="hinged", load_parameters=1, beams=(STIFF,), loads=(push,), hinges=(hinge,)))
 
 
 LOADS: dict[str, tuple[Callable[[float], Equilibrium], float, int, float]] = {
@@ -76,35 +78,22 @@ def test_the_index_grows_by_one_at_every_critical_load(case):
 
 def elastica(tc: float, offset: float) -> tuple[Scene, AnswerState]:
     """A pin under a stiff rod, EI = 1, where the tangent has the angle tc at s = .9, and the shape of an elastica."""
-    s = 0.9
-
-    def rate(_: float, state: np.ndarray, force: float) -> list[float]:
-        _, _, theta, m = state
-        return [math.cos(theta), math.sin(theta), m, -force * math.cos(theta - tc)]
-
-    def shot(force: float) -> np.ndarray:
-        back = solve_ivp(
-            rate, (s, 0.0), [0.0, 0.0, tc, 0.0], args=(force,), rtol=1e-11, atol=1e-12, dense_output=True
-        )
-        return np.array(back.sol(np.linspace(0.0, s, 91)).T)
-
-    force = brentq(lambda f: shot(f)[0, 2], 0.5, next(f for f in np.arange(1.0, 60.0) if shot(f)[0, 2] < 0.0))
-    line = shot(force)[:, :2]
-    line -= line[0]
+    part, s = loaded((2.0 * math.asin(math.sqrt(tc / math.pi))) ** 2, 1.0, 0.0), 0.9
+    force = float(part.force.real * (part.arc.real / s) ** 2)
     direction, normal = np.array([math.cos(tc), math.sin(tc)]), np.array([-math.sin(tc), math.cos(tc)])
-    tail = line[-1] + np.outer(np.linspace(0.01, 0.1, 10), direction)
+    start = [0.0, 0.0, 0.0, math.sqrt(2.0 * force * math.sin(tc))]
+    inner, outer = np.linspace(0.0, s, 46), np.linspace(s + 0.01, 1.0, 10)
+    line = np.array([[0.0, 0.0], *(shot(force * normal, start, arc, **RIGID)[0][:2] for arc in inner[1:])])
+    tail = line[-1] + np.outer(outer - s, direction)
     x, y = line[-1] - offset * normal
     scene = Scene(
-        name="fold",
-        load_parameters=1,
-        beams=(RIGID,),
+        name="fold", load_parameters=1, beams=(STIFF,),
         pins=(PinSpec(name="p", path=((1.5, -1.0), (float(x), float(y))), radius=offset or None),),
         contacts=(ContactSpec(node="p", beam="b", side="right"),),
-    )
-    arc = np.concatenate([np.linspace(0.0, s, 91), np.linspace(s + 0.01, 1.0, 10)])
+    )  # fmt: skip
     given = AnswerState(
         load_parameter=1.0, arcs={"p->b": s}, forces={"p->b": tuple((force * normal).tolist())},
-        axes={"b": (arc, np.vstack([line, tail]))},
+        axes={"b": (np.concatenate([inner, outer]), np.vstack([line, tail]))},
     )  # fmt: skip
     return scene, given
 
@@ -125,7 +114,7 @@ def test_beyond_the_fold_of_a_pin_the_elastica_is_unstable(offset):
 def test_the_straight_branch_of_a_column_is_unstable():
     """Under eight times Euler's load; the push aside is too small to bend it."""
     push = LoadSpec(beam="b", end="end", force=(-20.0, 1e-6))
-    scene = Scene(name="column", load_parameters=2, beams=(RIGID,), loads=(push,))
+    scene = Scene(name="column", load_parameters=2, beams=(STIFF,), loads=(push,))
     line = {"b": np.array([[0.0, 0.0], [1.0, 0.0]])}
     found = certify(stated(scene, [bent(scene, t, line) for t in (0.5, 1.0)]), scene)
     assert found.verdict is Verdict.UNSTABLE
