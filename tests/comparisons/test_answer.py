@@ -13,7 +13,7 @@ from comparisons.answer import Response
 from comparisons.cli import main
 from comparisons.models import solve
 from comparisons.models.options import Options
-from comparisons.report.answer import picture
+from comparisons.report.answer import picture  # what is drawn, before it is a file
 from comparisons.scene import load_scene
 
 EXACT = Options(element="exact")

@@ -82,6 +82,8 @@ ENDS = [
     # given up, though there are stable equilibria to the end, or answered wrongly with friction
     *((f"stopped/{name}", EXACT, counts, "COMPLETED", sure, True) for name, counts in STOPPED.items()),
     ("stopped/back-and-forth", BOTH, (None,), "COMPLETED", sure, True),
+    ("stopped/slender", MIXED, (None,), "COMPLETED", lambda found: found.tips["a"][-1, 1], pytest.approx(-0.01 / 6, rel=1e-3)),
+    ("stopped/stiff-stick", MIXED, (None,), "COMPLETED", lambda found: [item.kind for item in found.events][-1], "stick"),
     ("stopped/stack", MIXED, (1, 40), "COMPLETED", sure, True),
     # by the exact rod
     ("stopped/slips-off-in-a-step", EXACT, (None,), "COMPLETED", over, ("slip-off", pytest.approx(0.1599559326, abs=1e-8))),
@@ -98,6 +100,7 @@ SLOW = {
     ("col20", 20, "mixed"),
     *((f"stopped/{name}", count, "exact") for name, counts in STOPPED.items() for count in counts),
     *(("stopped/back-and-forth", None, element) for element in BOTH),
+    ("stopped/stiff-stick", None, "mixed"),
 }
 CASES = [
     pytest.param(

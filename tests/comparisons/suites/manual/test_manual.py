@@ -17,6 +17,7 @@ from comparisons.suites.manual import judged, problems, read_problem
 # not public: measures that no model has, and the styles of pictures
 from comparisons.suites.manual.measures import MEASURES, StoppedError
 from comparisons.suites.manual.write import STYLES
+from tests.fuzz.world import toml_text
 
 PROBLEMS = {path.stem: path for path in problems()}
 FAST = (
@@ -32,16 +33,6 @@ def cards(folder, *names):
     return [json.loads((folder / f"{name}.json").read_text()) for name in names], schema
 
 
-def toml(tables):
-    """Return the scene of a card as a scene file."""
-    lines = []
-    for kind, found in tables.items():
-        for table in found if isinstance(found, list) else [found]:
-            lines.append(f"[[{kind}]]" if isinstance(found, list) else f"[{kind}]")
-            lines += [f"{key} = {json.dumps(value)}" for key, value in table.items()]
-    return "\n".join(lines)
-
-
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=[pytest.mark.slow] * (name not in FAST)) for name in PROBLEMS]
 )
@@ -50,7 +41,7 @@ def test_a_problem_of_the_table_passes(name, tmp_path):
     problem = read_problem(PROBLEMS[name])
     (card,), schema = cards(tmp_path, name)
     schema.validate(card)
-    assert read_scene(toml(card["scene"]), name) == problem.scene
+    assert read_scene(toml_text(card["scene"]), name) == problem.scene
     assert [item.failure for item in judged(problem).judgements if not item.passed] == []
     for quantity, stated in zip(problem.quantities, card["quantities"], strict=True):
         assert math.isfinite(quantity.exact)
