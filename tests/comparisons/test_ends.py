@@ -37,11 +37,8 @@ def approach(seed: int) -> tuple[str, Scene, float | None]:
     The beam of length 1 ends at the origin. The pin's circle touches the end, a point or a segment across, from beyond along `normal`.
     """
     kind, rng = list(KINDS)[seed % len(KINDS)], np.random.default_rng(seed)
-    face, radius, half = (
-        bool(rng.integers(2)),
-        float(10 ** rng.uniform(-2, -0.7)),
-        float(10 ** rng.uniform(-2, -1)) / 2.0,
-    )
+    face, radius = bool(rng.integers(2)), float(10 ** rng.uniform(-2, -0.7))
+    half = float(10 ** rng.uniform(-2, -1)) / 2.0
     high = half if face else 0.0
     steep = rng.uniform(-1.5, 1.5)
     flat = face and rng.integers(3) == 0

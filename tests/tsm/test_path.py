@@ -95,6 +95,7 @@ def test_load_control_ends_at_the_limit_point_or_snaps_through():
     for count in (1, 7):
         result = tsm.solve(toggle, steps(count), throw=False)
         assert result.status is tsm.Status.LIMIT_POINT
+        assert result.cutbacks <= 20  # steps keep room before it: 12 and 6 are cut, and more than 30 without
         (point,) = result.critical
         assert point.kind.value == "limit point"
         assert point.load_parameter == pytest.approx(passed.load_parameter, abs=1e-8)
