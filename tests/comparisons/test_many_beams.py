@@ -10,13 +10,13 @@ from comparisons.models import solve
 from comparisons.scene import read_scene
 
 HEAD = '[scene]\nname = "many"\nload_parameters = 3\n'
-SECTION = "youngs_modulus = 2.1e11\npoissons_ratio = 0.3\nwidth = {0}\nheight = {0}\nelements = 2\n"
-LOAD = '[[load]]\nbeam = "{}"\nend = "end"\nforce = [0.0, {}]\n'
+SECTION = "youngs_modulus = 2.1e11\npoissons_ratio = 0.3\nwidth = 0.5\nheight = 0.5\nelements = 2\n"
+LOAD = '[[load]]\nbeam = "b{}"\nend = "end"\nforce = [0.0, {}]\n'
 
 
-def beam(name: str, start: tuple[int, int], end: tuple[int, int], foot: bool, thick: float = 0.02) -> str:
-    more = f"{SECTION.format(thick)}clamped = {['start'] if foot else []}\n"
-    return f'[[beam]]\nname = "{name}"\nstart = {list(start)}\nend = {list(end)}\n{more}'
+def beam(number: int) -> str:
+    clamped = 'clamped = ["start"]\n' if number == 0 else ""
+    return f'[[beam]]\nname = "b{number}"\nstart = [{number}, 0]\nend = [{number + 1}, 0]\n{SECTION}{clamped}'
 
 
 def chain(number: int) -> str:
@@ -24,8 +24,8 @@ def chain(number: int) -> str:
 
     They are thick: of a chain 100,000 times as long as it is high, positions in double precision do not resolve the forces.
     """
-    force = LOAD.format(f"b{number - 1}", 0.6 * 2.1e11 * 0.5**4 / 12 / number**2)
-    return HEAD + "".join(beam(f"b{i}", (i, 0), (i + 1, 0), i == 0, 0.5) for i in range(number)) + force
+    force = LOAD.format(number - 1, 0.6 * 2.1e11 * 0.5**4 / 12 / number**2)
+    return HEAD + "".join(map(beam, range(number))) + force
 
 
 def calls(work: Callable[[], Any]) -> int:

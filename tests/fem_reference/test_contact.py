@@ -21,10 +21,6 @@ from tests.fem_reference.strips import (
 )
 
 
-def augmented(surface="axis", **changes):
-    return make_problem(contact={"surface": surface, "penalty": None, "penetration": 1e-10}, **changes)
-
-
 @surfaces
 @pytest.mark.slow_at(
     "biot-linear-axis", "biot-linear-face", "neo-hookean-axis", "neo-hookean-face", "st-venant-kirchhoff-face"
@@ -32,7 +28,8 @@ def augmented(surface="axis", **changes):
 @pytest.mark.parametrize("material", fr.MATERIALS)
 def test_augmented_lagrangian_reaches_the_requested_penetration(surface, material, stated):
     """And the pin's work, by four Gauss points a tenth of the path, is the energy stored at its end."""
-    problem, panels = augmented(surface, material=material), 10
+    contact, panels = {"surface": surface, "penalty": None, "penetration": 1e-10}, 10
+    problem = make_problem(contact=contact, material=material)
     x, w = np.polynomial.legendre.leggauss(4)
     t = ((np.arange(panels)[:, None] + (1 + x) / 2) / panels).ravel()
     result = fr.solve(problem, np.append(t, 1.0))

@@ -12,24 +12,18 @@ import tsm
 from tests.tsm.structures import CLAMP, beam, cantilever, raised
 
 
-def heavy_column(weight, element, elements):
-    section = tsm.Section(EA=1e9, GA=1e9, EI=1.0)
-    return tsm.Structure(
-        beams=(beam("b", (0, 0), (0, 1), section=section, elements=elements, element=element),),
-        supports=(CLAMP,),
-        line_loads=(tsm.LineLoad(beam="b", force=((0.0, -weight),)),),
-    )
-
-
 @pytest.mark.parametrize(("element", "elements", "apart"), [("exact", 1, 1e-6), ("mixed", 8, 1e-4)])
 def test_heavy_column_gains_a_negative_eigenvalue_at_every_critical_weight(element, elements, apart):
     """Greenhill 1881: ``q L^3/EI = 9/4 z^2`` with the zeros z of the Bessel function of order -1/3; the first is 7.8373."""
     # zeros of J_(-1/3) lie just below those of J_0
     zeros = [brentq(lambda z: jv(-1 / 3, z), bound - 1.0, bound, xtol=1e-15) for bound in jn_zeros(0, 3)]
     assert 9 / 4 * zeros[0] ** 2 == pytest.approx(7.837347, abs=1e-6)
+    section = tsm.Section(EA=1e9, GA=1e9, EI=1.0)
+    rod = beam("b", (0, 0), (0, 1), section=section, elements=elements, element=element)
     for number, zero in enumerate(zeros):
         for factor, expected in ((1 - apart, number), (1 + apart, number + 1)):
-            column = heavy_column(9 / 4 * zero**2 * factor, element, elements)
+            load = tsm.LineLoad(beam="b", force=((0.0, -9 / 4 * zero**2 * factor),))
+            column = tsm.Structure(beams=(rod,), supports=(CLAMP,), line_loads=(load,))
             assert tsm.solve(column, [1.0], tsm.Settings(branch="primary")).index.tolist() == [expected]
 
 

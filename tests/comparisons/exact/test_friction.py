@@ -126,15 +126,3 @@ def test_states_along_a_path(points, friction, rod, elastica):
             assert np.isnan(path.magnitude[-1]) == np.isnan(path.work[-1]) == path.outcome[-1].ends
             ends += [event.load_parameter for event in path.events[-1:]]
     assert max(ends, default=0.0) == pytest.approx(min(ends, default=0.0), abs=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("k", "turn", "after"), [(1, -0.1, TO_CLAMP), (1, 0.1, STICK), (2, -0.1, STICK), (2, 0.1, TO_TIP)]
-)
-def test_a_pin_that_turns_at_an_event(k, turn, after):
-    """At the corner the force is on the edge of the cone: the slip goes on or begins, or the pin sticks."""
-    event = rod_under_pin(ks_pins([0.0, 1.0]), friction=0.3, **ELASTICA).events[k]
-    x, y = ks_pins([event.load_parameter])[0]
-    path = checked([[1.0, 0.0], [x, y], [x + turn, y]], 0.3, **ELASTICA)
-    assert path.outcome[1] is after
-    assert not path.outcome[-1].ends
