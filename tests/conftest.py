@@ -4,6 +4,7 @@ import os
 import signal
 from collections.abc import Callable, Generator
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -55,6 +56,13 @@ def _leave_to_the_slow_tier(items: list[pytest.Item], *, whole: bool) -> None:
 def stated(request: pytest.FixtureRequest) -> Callable[..., None]:
     """``stated(name, *values)`` judges what a test measures against the pages, see `tests.stated.check`."""
     return partial(check, write=request.config.getoption("write_results"))
+
+
+@pytest.fixture
+def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty folder, which is the current one."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
 
 
 @pytest.hookimpl(wrapper=True)

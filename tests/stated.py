@@ -12,8 +12,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_HALF_EVEN, Decimal
 from pathlib import Path
+from tempfile import gettempdir
 
-from comparisons.files import alone_in
+from filelock import FileLock
 
 ROOT = Path(__file__).parents[1]
 MARK = re.compile(r"<!--([a-z][\w.-]*)(?: x\d+)?-->")
@@ -120,7 +121,7 @@ def check(
         # no arithmetic is better than its last bit
         measured = tuple(max(abs(value), 0.0 if part else EPS) for value in measured)
     up = part or bound
-    with alone_in(ROOT / "docs"):
+    with FileLock(Path(gettempdir(), "crossval-pages.lock")):
         for path in pages():
             text = path.read_text(encoding="utf-8")
             for mark in reversed([mark for mark in MARK.finditer(text) if mark[1] == name]):

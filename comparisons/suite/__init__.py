@@ -2,8 +2,9 @@
 
 from comparisons.suite.case import Case
 from comparisons.suite.measure import Row, measure
+from comparisons.suite.settings import changed
 
-__all__ = ["Case", "Row", "measure"]
+__all__ = ["Case", "Row", "changed", "measure"]
 
 
 def __dir__() -> list[str]:

@@ -13,7 +13,7 @@ from comparisons.answer import Response
 from comparisons.cli import main
 from comparisons.models import solve
 from comparisons.models.options import Options
-from comparisons.report.answer import picture
+from comparisons.report.answer import picture  # what is drawn, before it is a file
 from comparisons.scene import load_scene
 
 EXACT = Options(element="exact")
@@ -101,8 +101,7 @@ def test_a_picture_has_shape_diagrams_and_forces():
         picture(without)
 
 
-def test_solve_writes_a_history_and_a_picture(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_solve_writes_a_history_and_a_picture(in_folder, capsys):
     files = ["--out", "a.csv", "--out", "a.svg", "--out", "a.json"]
     assert main(["solve", "two-pins", *files]) == 0
     rows = list(csv.DictReader(Path("a.csv").read_text().splitlines()))

@@ -1,8 +1,6 @@
 """VTU and PVD files: what is read back is what was computed, and no file of a user is replaced."""
 
-import contextlib
 import re
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -151,31 +149,3 @@ def test_a_series_removes_what_it_wrote_before_and_replaces_no_file_of_a_user(tm
         assert contents(tmp_path) == there, "nothing is written"
         (tmp_path / name).unlink()
         write_series(tmp_path, beams, SCENE)
-
-
-@pytest.mark.slow
-def test_a_run_goes_on_where_another_was_ended_among_its_files(tmp_path, monkeypatch):
-    """After every number of moves."""
-    beams, longer = solve(SCENE, "tsm"), replace(SCENE, load_parameters=4)
-    more = solve(longer, "tsm")
-    move = Path.replace
-    for number in range(21):
-        folder = tmp_path / str(number)
-        folder.mkdir()
-        write_series(folder, beams, SCENE)
-        left = iter([True] * number)
-
-        def ended(self: Path, target: Path, left: Iterator[bool] = left, folder: Path = folder) -> Path:
-            written = Path(target).parent == folder and self.suffix in (".vtu", ".vtm", ".pvd")
-            if written and not next(left, False):
-                raise MemoryError
-            return move(self, target)
-
-        monkeypatch.setattr(Path, "replace", ended)
-        with contextlib.suppress(MemoryError):
-            write_series(folder, more, longer)
-        monkeypatch.setattr(Path, "replace", move)
-        assert all_files(folder) <= contents(folder).keys()
-        write_series(folder, beams, SCENE)
-        assert contents(folder).keys() == all_files(folder)
-        assert len(contents(folder)) == 1 + 3 * 4

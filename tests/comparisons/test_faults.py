@@ -144,17 +144,16 @@ FULL = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, ({size}, {siz
     ("options", "size", "file"),
     [(["--out", "a.json"], 2 * KIB, "a.json"), (["--out", "v"], KIB, "v/tsm-0001-0.vtu")],
 )
-def test_no_room_for_a_file(options, size, file, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "v").mkdir()
+def test_no_room_for_a_file(options, size, file, in_folder):
+    (in_folder / "v").mkdir()
     kept = {"tsm-pin.vtu" if "v" in options else file}
     for name in kept:
-        write_text(tmp_path / name, "kept")
-    list_of_them = (tmp_path / WRITTEN).read_text()
+        write_text(in_folder / name, "kept")
+    list_of_them = (in_folder / WRITTEN).read_text()
     status, err = crossval(*SOLVE, *options, setup=FULL.format(size=size))
     assert (status, err.count("\n")) == (2, 1)
     assert re.fullmatch(rf"crossval: \S*{file}: cannot be written: File too large\n", err)
-    there = {path.name: path.read_text() for path in tmp_path.rglob("*") if path.is_file()}
+    there = {path.name: path.read_text() for path in in_folder.rglob("*") if path.is_file()}
     assert there.pop(WRITTEN) == list_of_them
     assert there == dict.fromkeys(kept, "kept")
 
@@ -198,8 +197,7 @@ NO_CLUSTER = ["run", "s.toml", "--out", "out", "--workers", "tcp://127.0.0.1:1"]
 
 @pytest.mark.slow_at("skfem")
 @pytest.mark.parametrize("library", ["numpy", "skfem", "distributed"])
-def test_a_missing_library(library, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_a_missing_library(library, in_folder):
     Path("s.toml").write_text('[study]\nname = "s"\nscene = "ks-cantilever"\n[[run]]\nmodel = "rod"\n')
     arguments = {"skfem": [*SOLVE[:-1], "solid"], "distributed": NO_CLUSTER}.get(library, SOLVE)
     status, err = crossval(*arguments, setup=f"import sys; sys.modules['{library}'] = None")

@@ -44,6 +44,19 @@ def critical(found: Response) -> float:
     return found.critical[0].load_parameter
 
 
+def sure(found: Response) -> bool:
+    return found.certificate.certified
+
+
+def over(found: Response) -> tuple[str, float]:
+    return found.events[-1].kind, found.events[-1].load_parameter
+
+
+STOPPED = {
+    **dict.fromkeys(("taut", "taut-over-a-pin"), (1, 5)),
+    **dict.fromkeys(("passes-by", "passes-by-under-loads", "soft-beside-stiff"), (1, 2, 5, 20)),
+    "slip-between-sticks": (None,),
+}
 BOTH, MIXED, EXACT = ("mixed", "exact"), ("mixed",), ("exact",)
 ENDS = [
     # an imperfect column bends, a perfect one ends at its bifurcation
@@ -65,8 +78,18 @@ ENDS = [
     ("twopins-8", BOTH, (1, 8), None, pressed("q->b"), pytest.approx(6750, rel=3e-3)),
     ("pin-29", BOTH, (1,), "COMPLETED", pressed("p->b"), 0.0),
     ("beams-146", BOTH, (7,), None, pressed("p->u"), pytest.approx(3.09, rel=1e-2)),
-    ("portal", MIXED, (None,), "COMPLETED", lambda found: found.certificate.certified, True),
-]
+    ("portal", MIXED, (None,), "COMPLETED", sure, True),
+    # given up, though there are stable equilibria to the end, or answered wrongly with friction
+    *((f"stopped/{name}", EXACT, counts, "COMPLETED", sure, True) for name, counts in STOPPED.items()),
+    ("stopped/back-and-forth", BOTH, (None,), "COMPLETED", sure, True),
+    ("stopped/slender", MIXED, (None,), "COMPLETED", lambda found: found.tips["a"][-1, 1], pytest.approx(-0.01 / 6, rel=1e-3)),
+    ("stopped/stiff-stick", MIXED, (None,), "COMPLETED", lambda found: [item.kind for item in found.events][-1], "stick"),
+    ("stopped/stack", MIXED, (1, 40), "COMPLETED", sure, True),
+    # by the exact rod
+    ("stopped/slips-off-in-a-step", EXACT, (None,), "COMPLETED", over, ("slip-off", pytest.approx(0.1599559326, abs=1e-8))),
+    ("stopped/slips-off-in-a-step-2", EXACT, (None,), "COMPLETED", over, ("slip-off", pytest.approx(0.0287461850, abs=1e-8))),
+    ("stopped/stiff-hinge", BOTH, (None,), "COMPLETED", lambda found: found.supports["a.start"].moment[-1], pytest.approx(-3.2477407512, rel=1e-7)),
+]  # fmt: skip
 """Scene, elements, numbers of load parameters, status, and a value of the last answer."""
 SLOW = {
     ("euler2", 1, "exact"),
@@ -75,6 +98,9 @@ SLOW = {
     ("col20", 1, "mixed"),
     ("euler2", 20, "exact"),
     ("col20", 20, "mixed"),
+    *((f"stopped/{name}", count, "exact") for name, counts in STOPPED.items() for count in counts),
+    *(("stopped/back-and-forth", None, element) for element in BOTH),
+    ("stopped/stiff-stick", None, "mixed"),
 }
 CASES = [
     pytest.param(

@@ -7,16 +7,16 @@ from typing import Any
 import pytest
 
 from comparisons.models import solve
-from comparisons.scene import BeamSpec, SupportSpec, read_scene
+from comparisons.scene import read_scene
 
 HEAD = '[scene]\nname = "many"\nload_parameters = 3\n'
-SECTION = "youngs_modulus = 2.1e11\npoissons_ratio = 0.3\nwidth = {0}\nheight = {0}\nelements = 2\n"
-LOAD = '[[load]]\nbeam = "{}"\nend = "end"\nforce = [0.0, {}]\n'
+SECTION = "youngs_modulus = 2.1e11\npoissons_ratio = 0.3\nwidth = 0.5\nheight = 0.5\nelements = 2\n"
+LOAD = '[[load]]\nbeam = "b{}"\nend = "end"\nforce = [0.0, {}]\n'
 
 
-def beam(name: str, start: tuple[int, int], end: tuple[int, int], foot: bool, thick: float = 0.02) -> str:
-    more = f"{SECTION.format(thick)}clamped = {['start'] if foot else []}\n"
-    return f'[[beam]]\nname = "{name}"\nstart = {list(start)}\nend = {list(end)}\n{more}'
+def beam(number: int) -> str:
+    clamped = 'clamped = ["start"]\n' if number == 0 else ""
+    return f'[[beam]]\nname = "b{number}"\nstart = [{number}, 0]\nend = [{number + 1}, 0]\n{SECTION}{clamped}'
 
 
 def chain(number: int) -> str:
@@ -24,18 +24,8 @@ def chain(number: int) -> str:
 
     They are thick: of a chain 100,000 times as long as it is high, positions in double precision do not resolve the forces.
     """
-    force = LOAD.format(f"b{number - 1}", 0.6 * 2.1e11 * 0.5**4 / 12 / number**2)
-    return HEAD + "".join(beam(f"b{i}", (i, 0), (i + 1, 0), i == 0, 0.5) for i in range(number)) + force
-
-
-def frame(number: int) -> str:
-    """Storeys of columns and girders, pushed from the side."""
-    wide = max(round((number / 2) ** 0.5), 2)
-    parts = [beam(f"c{i}-{j}", (i, j), (i, j + 1), j == 0) for j in range(wide) for i in range(wide)]
-    parts += [
-        beam(f"g{i}-{j}", (i, j), (i + 1, j), False) for j in range(1, wide + 1) for i in range(wide - 1)
-    ]
-    return HEAD + "".join(parts) + LOAD.format(f"c0-{wide - 1}", -100.0)
+    force = LOAD.format(number - 1, 0.6 * 2.1e11 * 0.5**4 / 12 / number**2)
+    return HEAD + "".join(map(beam, range(number))) + force
 
 
 def calls(work: Callable[[], Any]) -> int:
@@ -63,27 +53,11 @@ def whole(text: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", [chain, frame])
-def test_calls_grow_with_the_number_of_beams(kind):
+def test_calls_grow_with_the_number_of_beams():
     """From 50 over 100 to 200: the second rise is twice the first, of quadratic work four times."""
-    whole(kind(8))
-    few, some, many = (calls(lambda n=n: whole(kind(n))) for n in (50, 98, 200))  # type: ignore[misc]
+    whole(chain(8))
+    few, some, many = (calls(lambda n=n: whole(chain(n))) for n in (50, 98, 200))  # type: ignore[misc]
     assert (many - some) / 102 < 1.15 * (some - few) / 48
-
-
-def test_nobody_counts_the_pairs_of_beams_by_comparing_them(monkeypatch):
-    """Comparing records is not a call that is counted above."""
-    compared = 0
-
-    def never(self: object, other: object) -> bool:
-        nonlocal compared
-        compared += 1
-        return self is other
-
-    for kind in (BeamSpec, SupportSpec):
-        monkeypatch.setattr(kind, "__eq__", never)
-    whole(chain(60))
-    assert compared <= 60
 
 
 def test_a_long_chain_is_bent_in_few_iterations():

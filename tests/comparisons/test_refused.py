@@ -25,8 +25,7 @@ CASES = [
 @pytest.mark.parametrize(
     ("line", "said", "changed"), CASES, ids=[f"{line} {said}" for line, said, _ in CASES]
 )
-def test_what_is_refused_is_one_line_and_no_file(line, said, changed, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_what_is_refused_is_one_line_and_no_file(line, said, changed, in_folder, capsys):
     for name, text in (files := FILES | changed).items():
         Path(name).write_text(text)
     assert crossval(*line.split()) == 2
@@ -34,4 +33,4 @@ def test_what_is_refused_is_one_line_and_no_file(line, said, changed, tmp_path, 
     assert out == ""
     assert [one for one in err.splitlines() if one.startswith("crossval")] == err.splitlines()[-1:]
     assert said in err.splitlines()[-1]
-    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == files
+    assert {path.name: path.read_text() for path in in_folder.iterdir()} == files

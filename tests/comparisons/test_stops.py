@@ -35,8 +35,7 @@ STOPS = {
 @pytest.mark.parametrize(
     ("case", "model"), [(case, model) for case, row in STOPS.items() for model in row[2]]
 )
-def test_a_stop_has_its_name_and_status_3(case, model, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_a_stop_has_its_name_and_status_3(case, model, in_folder, capsys):
     name, contacts, _, reached = STOPS[case]
     Path("a.toml").write_text(BEAM + contacts)
     status = main(["solve", "a.toml", "--model", *model.split(), "--out", "a.json"])

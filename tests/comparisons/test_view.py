@@ -78,8 +78,7 @@ def coloured(path: Path) -> float:
 
 
 @pytest.mark.slow
-def test_pictures_and_motions_are_rendered(responses, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_pictures_and_motions_are_rendered(responses, in_folder, capsys):
     both, (beams, solid) = Path("both.png"), responses
     panels = [mises_panel(beams, SCENE, [2], "a"), mises_panel(solid, SCENE, [2], "b")]
     write_picture(panels, "stress", both)

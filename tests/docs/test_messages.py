@@ -76,9 +76,8 @@ def test_every_sentence_is_listed_once_and_none_is_stale():
 
 
 @pytest.mark.parametrize("message", LISTED, ids=lambda message: message.sentence)
-def test_every_message_is_provoked(message, tmp_path, monkeypatch, capsys):
+def test_every_message_is_provoked(message, in_folder, capsys):
     """By a change of a scene that is good without it."""
-    monkeypatch.chdir(tmp_path)
     assert message.cure.endswith(".")
     assert [part for part in message.sentence.split("{}") if part not in message.example] == []
     if message.python is not None:

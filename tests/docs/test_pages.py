@@ -36,9 +36,8 @@ SECONDS = {name for name in RUN if re.search(LENGTHY, name)}
         *(pytest.param(page, True, marks=pytest.mark.slow) for page in RUN if page in SECONDS | LONG),
     ],
 )
-def test_snippets_run_and_print_what_the_page_says(page, slow, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    run_page(RUN[page], tmp_path, slow=slow)
+def test_snippets_run_and_print_what_the_page_says(page, slow, in_folder):
+    run_page(RUN[page], in_folder, slow=slow)
     # yaml is for a CI system, py and bash are for programs of others
     assert {kind for kind, _ in blocks(RUN[page])} <= {"python", "toml", "sh", "text", "yaml", "py", "bash"}
 
@@ -81,8 +80,7 @@ MORE = (
     "line",
     [pytest.param(line, marks=pytest.mark.slow if line.startswith((*SLOW, *MORE)) else ()) for line in LINES],
 )
-def test_commands_run_and_print_what_they_are_for(line, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_commands_run_and_print_what_they_are_for(line, in_folder, capsys):
     if line.removeprefix("crossval ").startswith(ELSEWHERE):
         with pytest.raises(SystemExit):
             main([*shlex.split(line)[1:], "--invented"])
@@ -152,10 +150,9 @@ def test_the_readme_is_short_and_names_what_continuous_integration_runs():
     assert all(f"`make {target}`" in README for target in ran)
 
 
-def test_the_first_scene_of_the_readme_prints_what_it_says(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_the_first_scene_of_the_readme_prints_what_it_says(in_folder):
     section = README.partition("## A first scene\n")[2].partition("\n## ")[0]
     assert [kind for kind, _ in blocks(section)] == ["toml", "sh", "text"]
-    run_page(section, tmp_path, slow=False)
+    run_page(section, in_folder, slow=False)
     for model in ("tsm", "solid", "rod"):
         assert "COMPLETED" in run_line(f"crossval solve mine.toml --model {model}")

@@ -93,9 +93,8 @@ def check_schema(schema: dict, data: dict) -> None:
         pytest.param("ks-friction", "--model solid", marks=pytest.mark.slow),
     ],
 )
-def test_json_output_obeys_its_schema(scene, options, tmp_path, monkeypatch):
+def test_json_output_obeys_its_schema(scene, options, in_folder):
     """With friction, which slips both ways."""
-    monkeypatch.chdir(tmp_path)
     Path("my.toml").write_text(to_toml(replace(load_scene(scene), load_parameters=15)))
     run_line(f"crossval solve my.toml {options} --out a.json")
     found = json.loads(Path("a.json").read_text())

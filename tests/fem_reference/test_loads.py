@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fem_reference as fr
-from tests.fem_reference.conftest import (
+from tests.fem_reference.strips import (
     CLAMP,
     EI,
     GA,

@@ -26,7 +26,7 @@ from fem_reference.system.newton import (  # steps that are cut would hide a sta
 from fem_reference.system.state import at_rest
 from fem_reference.system.system import linearise  # the tangent: a wrong one costs iterations only
 from tests.fem_reference import bilinear_reference as reference
-from tests.fem_reference.conftest import (
+from tests.fem_reference.strips import (
     EA,
     EI,
     NU,

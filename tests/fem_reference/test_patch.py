@@ -12,7 +12,7 @@ from fem_reference.solid.assembly import deformation_gradient, element_entries, 
 from fem_reference.solid.factor import full
 from fem_reference.solid.mesh import from_basis, scalar_basis
 from fem_reference.statement.material import MATERIALS, PLANES, elastic_law, lame_constants
-from tests.fem_reference.conftest import NU, E, elements, make_strip, rotation
+from tests.fem_reference.strips import NU, E, elements, make_strip, rotation
 
 STEP = 1e-30
 laws = pytest.mark.parametrize("material", MATERIALS)

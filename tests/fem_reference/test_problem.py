@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import fem_reference as fr
-from tests.fem_reference.conftest import STRIP, held, load, make_problem, make_strip, support
+from tests.fem_reference.strips import STRIP, held, load, make_problem, make_strip, support
 
 NAN, INF = float("nan"), float("inf")
 
@@ -107,6 +107,7 @@ TOGETHER = {
     "SolidProblem.supports = .*: must not appear twice": lambda: held(support(), support()),
     "Support.*end = 'start': must not be a clamped end": lambda: held(support(), clamped=("start",)),
     "ends = 'other.start': must be an end without a clamp, at the pos": joint_apart,
+    "stiffness = .*: must be three finite numbers, none negative": lambda: spring(stiffness=(-1.0, 0.0, 0.0)),
     "strip = 's': must name a strip": lambda: held(point(), clamped=("start",)),
     "turn = 2.0: must leave the radius": lambda: make_strip(turn=2.0, height=1.3),
     "turn = 1.0: must be zero with a mesh file": lambda: make_strip(turn=1.0, mesh_file="a.msh"),

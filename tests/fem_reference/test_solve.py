@@ -7,8 +7,7 @@ from matplotlib.figure import Figure
 
 import fem_reference as fr
 from comparisons.exact import elastica_under_pin
-from fem_reference.system import newton
-from tests.fem_reference.conftest import CLAMP, PAIR, STRIP, B, H, loads, make_problem, rotation
+from tests.fem_reference.strips import CLAMP, PAIR, STRIP, B, H, loads, make_problem, rotation
 from tests.oracles.elastica import slip_off_height
 
 
@@ -66,15 +65,14 @@ def test_pin_that_jumps_past_the_clamp_is_not_taken_for_an_open_contact():
     ("contact", "n", "settings", "status", "said"),
     [
         ({}, 10, {"max_iterations": 2, "min_step": 0.02}, "CUTBACK_FLOOR", "because Newton's method did not converge"),
-        ({"penalty": 1.0, "penetration": 1e-12}, 4, {"min_step": 0.1}, "CUTBACK_FLOOR", fr.Status.AUGMENTATION_LIMIT.value),
+        ({"penalty": 1e-3, "penetration": 1e-12}, 4, {"min_step": 0.1}, "CUTBACK_FLOOR", fr.Status.AUGMENTATION_LIMIT.value),
         ({"penalty": 1.0}, 10, {}, "CUTBACK_FLOOR", fr.Status.TOO_DEEP.value),
         ({}, 2, {"max_iterations": 3, "max_attempts": 3}, "STEP_LIMIT", ""),
     ],
 )  # fmt: skip
 def test_a_path_that_ends_early_has_a_status_and_keeps_the_accepted_states(
-    contact, n, settings, status, said, monkeypatch
+    contact, n, settings, status, said
 ):
-    monkeypatch.setattr(newton, "_MAX_AUGMENTATIONS", 1)
     values = {"penalty": 1e4} | contact
     result = fr.solve(
         make_problem(mesh=(10, 1), contact=values), loads(n), fr.Settings(**settings), throw=False
@@ -84,35 +82,6 @@ def test_a_path_that_ends_early_has_a_status_and_keeps_the_accepted_states(
     assert "after load parameter" in result.message
     assert result.cutbacks > 0
     assert len(result.load_parameter) == len(result.states) < n
-
-
-@pytest.fixture(scope="module")
-def turned():
-    end, *path = np.array([[1.0, 0.0], [0.8, 0.0], [0.6, 0.4]]) @ rotation(0.9).T
-    scene = make_problem(end=tuple(end), path=tuple(map(tuple, path)), material="biot-linear")
-    return fr.solve(scene, loads(4))
-
-
-def test_section_forces_are_those_of_statics(turned):
-    """The pin's force alone gives f and M on every section between clamp and contact; both vanish beyond."""
-    forces, contact = fr.section_forces(turned, STRIP, -1), turned.contacts[PAIR]
-    p, pin, arc = contact.vector[-1], turned.model.problem.pins[0].position(1.0), contact.arc_position[-1]
-    axis = fr.axis_stations(turned, STRIP)
-    line = [np.interp(forces.stations, axis, x) for x in fr.axis_line(turned, STRIP, -1).T]
-    arm = pin[:, None] - line
-    M, scale = arm[0] * p[1] - arm[1] * p[0], np.hypot(*p)
-    inner = (forces.stations < arc - 0.06) & (forces.stations > 0.1)
-    beyond = forces.stations > arc + 0.06
-    c, s = np.cos(forces.rotation[inner]), np.sin(forces.rotation[inner])
-    for found, expected in (
-        (forces.force[inner], p + 0 * forces.force[inner]),
-        (forces.force[beyond], 0),
-        (forces.N[inner], c * p[0] + s * p[1]),
-        (forces.V[inner], c * p[1] - s * p[0]),
-    ):
-        np.testing.assert_allclose(found, expected, atol=2e-3 * scale)
-    np.testing.assert_allclose(forces.M[inner], M[inner], atol=1e-3 * np.abs(M).max())
-    np.testing.assert_allclose(forces.M[beyond], 0, atol=1e-4 * np.abs(M).max())
 
 
 def test_nodal_stress_is_the_bending_stress():

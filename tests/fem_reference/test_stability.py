@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import brentq
 
 import fem_reference as fr
-from tests.fem_reference.conftest import EA, EI, NU, STRIP, held, load, loads, make_problem, pressed, support
+from tests.fem_reference.strips import EA, EI, NU, STRIP, held, load, loads, make_problem, pressed, support
 
 
 def effective(P):

@@ -11,15 +11,11 @@ PATH = ("times", "critical", "events", "kinds")
 
 def last(found: Readings) -> Readings:
     """What is stated at the last load parameter, and of the path what is located."""
-    taken = {}
-    for name, (kind, values) in found.items():
-        path = name.partition(" ")[0] in (*PATH, "status")
-        taken[name] = kind, values if path else values[-1:]
-    completed = found["status"][1][0] == "COMPLETED"
+    completed, path = found["status"][1][0] == "COMPLETED", (*PATH, "status")
     return {
-        name: item
-        for name, item in taken.items()
-        if name != "times" and (completed or name in PATH or name == "status")
+        name: (kind, values if name.partition(" ")[0] in path else values[-1:])
+        for name, (kind, values) in found.items()
+        if name != "times" and (completed or name in path)
     }
 
 

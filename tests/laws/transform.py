@@ -67,14 +67,10 @@ class Change:
 
     def _beam(self, beam: BeamSpec) -> BeamSpec:
         L, F = self.length, self.force
-        powers = dict(
-            zip(
-                ("width", "height", "area", "second_moment", "shear_area"),
-                (L, L, L**2, L**4, L**2),
-                strict=True,
-            )
-        )
-        powers |= {"density": F / L**3, "youngs_modulus": F / L**2, "shear_modulus": F / L**2}
+        powers = {
+            "width": L, "height": L, "area": L**2, "second_moment": L**4, "shear_area": L**2,
+            "density": F / L**3, "youngs_modulus": F / L**2, "shear_modulus": F / L**2,
+        }  # fmt: skip
         scaled = {key: pair(getattr(beam, key), power.__mul__) for key, power in powers.items()}
         ends = {"start": self.point(beam.start), "end": self.point(beam.end)}
         return replace(beam, **scaled, **ends, turn=self.sign * beam.turn)  # type: ignore[arg-type]

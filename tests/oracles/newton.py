@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from comparisons.exact.section import COMPLEX_STEP, Array
+from tests.oracles.elastica import COMPLEX_STEP, Array
 
 State = tuple[float, Array, Array]
 """A parameter, unknowns (n,) and their rates."""

@@ -48,17 +48,9 @@ def last(path: Any) -> list[Any]:
     return [path.force[-1], path.arc_position[-1], path.clamp_moment[-1], path.tip[-1]]
 
 
-def elastica(_: Scene) -> list[Any]:
-    return last(elastica_under_pin(KS_PATH))
-
-
 def on_the_face(scene: Scene) -> list[Any]:
     points = [scene.pins[0].position(t) for t in (0.0, *scene.times)]
     return last(rod_under_pin(points, length=1.0, offset=scene.offset(scene.contacts[0]), **section(scene)))
-
-
-def with_friction(scene: Scene) -> list[Any]:
-    return last(rod_under_pin(KS_PATH, friction=0.3, length=1.0, **section(scene)))
 
 
 def coupled(scene: Scene) -> list[Any]:
@@ -74,14 +66,18 @@ def on_two_beams(exact: Equilibrium) -> list[Any]:
 
 
 SCENES: dict[str, tuple[Scene, Callable[[Equilibrium], list[Any]], Callable[[Scene], list[Any]]]] = {
-    "elastica": (PINNED, on_a_beam, elastica),
+    "elastica": (PINNED, on_a_beam, lambda _: last(elastica_under_pin(KS_PATH))),
     "dead-load": (
         LOADED,
         lambda found: [found.ends["cantilever.end"]],
         lambda _: [tip_under_dead_load(10.0)],
     ),
     "face": (load_scene("ks-face"), on_a_beam, on_the_face),
-    "friction": (load_scene("ks-friction"), on_a_beam, with_friction),
+    "friction": (
+        load_scene("ks-friction"),
+        on_a_beam,
+        lambda scene: last(rod_under_pin(KS_PATH, friction=0.3, length=1.0, **section(scene))),
+    ),
     "coupled": (load_scene("double-beam"), on_two_beams, coupled),
     "frame": (  # where Lee's frame has begun to fall
         load_scene("lees-frame"),

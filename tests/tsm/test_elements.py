@@ -6,13 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import root
 
-import tsm
-from tests.tsm.structures import cantilever, raised
-
 # what an element does at any state, in equilibrium or not, is nowhere public
-from tsm.elements import CLOSED_FORM, ClosedForm, beam
-from tsm.elements.kinds.paper import force_equation, law
-from tsm.elements.mixed_contact import compliance
+from tsm.elements import CLOSED_FORM, beam
 from tsm.elements.properties import Properties
 
 STEP = 1e-30j
@@ -125,23 +120,3 @@ def test_energy_is_the_reissner_rods_to_fourth_order(power, largest, order, Phi)
         element_energy = (e + polynomial[0]) ** 2 / polynomial[1] / 2 + bending + quartic
         errors.append(abs(element_energy - rod_energy(p, theta_i, theta_j, e)))
     assert -np.diff(np.log2(errors)) == pytest.approx(order, abs=0.2)
-
-
-def eliminated(p, xi):
-    """Matrix over ``[theta_i, theta_j, y_c]`` of a beam from which the contact force is eliminated: ``k + g g^T/C``."""
-    near, far = p.EI / p.l0 * np.array([4 + p.Phi, 2 - p.Phi]) / (1 + p.Phi)
-    w = p.l0 * xi * (1 - xi) / (1 + p.Phi) * np.array([1 - xi + p.Phi / 2, -(xi + p.Phi / 2), 0])
-    g = np.array([0, 0, 1]) - w
-    return np.array([[near, far, 0], [far, near, 0], [0, 0, 0]]) + np.outer(g, g) / compliance(p, xi)[0]
-
-
-def test_a_new_element_is_its_matrix(monkeypatch):
-    """Stated in the lines above, it is the paper's element in another form."""
-    contact = law(force_equation(eliminated))
-    kind = ClosedForm(name="new", source="", coefficients=beam.linear_coefficients, contact=contact)
-    monkeypatch.setitem(tsm.ELEMENTS, "new", kind)
-    found, expected = (
-        tsm.solve(cantilever(raised(0.83, 0.3), element=name, elements=4), [0.5, 1.0]).contacts["p0->b"].force
-        for name in ("new", "timoshenko")
-    )
-    assert found == pytest.approx(expected, rel=1e-9)

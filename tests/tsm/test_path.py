@@ -10,8 +10,7 @@ import pytest
 
 import tsm
 from comparisons.models.tsm import to_structure
-from comparisons.scene import load_scene
-from comparisons.suites.manual.measures import under_load  # a frame of the manual
+from comparisons.scene import LoadSpec, load_scene
 from tests.tsm.structures import beam, cantilever, steps
 
 EA, GA = 5000.0, 2000.0
@@ -88,12 +87,15 @@ def test_index_does_not_see_where_a_contact_cuts(element, elements):
 
 def test_load_control_ends_at_the_limit_point_or_snaps_through():
     """Where arc-length control finds it, to 1e-8; and to the stable branch at which it arrives."""
-    toggle = to_structure(under_load(load_scene("williams-toggle"), 40.0), elements=8)
+    frame, push = load_scene("williams-toggle"), LoadSpec(beam="left", end="end", force=(0.0, -40.0))
+    held = tuple(item for item in frame.supports if not item.moves)
+    toggle = to_structure(replace(frame, supports=held, loads=(push,)), elements=8)
     traced = tsm.trace(toggle, arc_length=0.02, steps=30)
     passed = next(event for event in traced.events if event.kind is tsm.EventKind.LIMIT_POINT)
     for count in (1, 7):
         result = tsm.solve(toggle, steps(count), throw=False)
         assert result.status is tsm.Status.LIMIT_POINT
+        assert result.cutbacks <= 20  # steps keep room before it: 12 and 6 are cut, and more than 30 without
         (point,) = result.critical
         assert point.kind.value == "limit point"
         assert point.load_parameter == pytest.approx(passed.load_parameter, abs=1e-8)

@@ -12,6 +12,8 @@ from tests.tsm.structures import KS, KS_PATH, as_mixed, cantilever, hook, leanin
 from tsm.model.model import Model
 from tsm.system.newton import Newton
 
+MOVING = tsm.Support(beam="b", end="start", uy=-0.03, rotation=-0.05)
+
 
 def moving_end(element):
     """A cantilever that the end of another beam presses down, which a support moves."""
@@ -22,41 +24,34 @@ def moving_end(element):
     return replace(plain, beams=(*plain.beams, other), supports=(*plain.supports, *ends), contacts=(contact,))
 
 
+def raised(y, x, depth, move=0.0):
+    """A way of a pin by a depth, and along the beam."""
+    return (x, y), (x + move, y + depth)
+
+
+RUBBED = {"element": "exact", "section": KS, "offset": 0.05, "radius": 0.03}
+CANTILEVERS = {  # ways of pins, coefficient of friction, more of the beam and its contacts
+    "rubbed mixed, two on an element": (
+        [raised(0.0, 0.55, 0.05, -0.01), raised(0.0, 0.95, 0.114, -0.01)],
+        0.3,
+        {},
+    ),
+    "rubbed mixed at once": ([((0.7, -0.03), (0.65, 0.1))], 0.3, {"offset": 0.03, "radius": 0.01}),
+    "two on an element": ([raised(-0.03, 0.55, 0.1), raised(-0.03, 0.95, 0.228)], 0.0, {"offset": 0.03}),
+    "rubbed exact": ([((1.0, -0.05), KS_PATH[1])], 0.3, RUBBED),
+    "beside a moving clamp": ([raised(-0.01, 0.3, 0.02)], 0.2, {"supports": (MOVING,)}),
+}
 SCENES = {
-    "varying, on a face": lambda: pushed(offset=0.04, end_offset=0.02),
-    "varying mixed": lambda: as_mixed(pushed(offset=0.03)),
-    "leaning": leaning,
-    "rubbed mixed, two on an element": lambda: cantilever(
-        *(((x, 0.0), (x - 0.01, depth)) for x, depth in ((0.55, 0.05), (0.95, 0.114))),
-        elements=2,
-        friction=0.3,
-    ),
-    "rubbed mixed at once": lambda: cantilever(
-        ((0.7, -0.03), (0.65, 0.1)), elements=2, offset=0.03, radius=0.01, friction=0.3
-    ),
-    "two on an element": lambda: cantilever(
-        *(((x, -0.03), (x, depth - 0.03)) for x, depth in ((0.55, 0.1), (0.95, 0.228))),
-        elements=2,
-        offset=0.03,
-    ),
-    "rubbed exact": lambda: cantilever(
-        ((1.0, -0.05), KS_PATH[1]),
-        section=KS,
-        element="exact",
-        elements=2,
-        offset=0.05,
-        radius=0.03,
-        friction=0.3,
-    ),
-    "beside a moving clamp": lambda: cantilever(
-        ((0.3, -0.01), (0.3, 0.01)),
-        elements=2,
-        supports=(tsm.Support(beam="b", end="start", uy=-0.03, rotation=-0.05),),
-        friction=0.2,
-    ),
-    "under a moving end": lambda: moving_end("exact"),
-    "mixed under a moving end": lambda: moving_end("mixed"),
-    "near a node": lambda: replace(pushed(), beams=(hook().beams[0].divided(0.504133),)),
+    "varying, on a face": pushed(offset=0.04, end_offset=0.02),
+    "varying mixed": as_mixed(pushed(offset=0.03)),
+    "leaning": leaning(),
+    "under a moving end": moving_end("exact"),
+    "mixed under a moving end": moving_end("mixed"),
+    "near a node": replace(pushed(), beams=(hook().beams[0].divided(0.504133),)),
+    **{
+        name: cantilever(*ways, elements=2, friction=friction, **more)
+        for name, (ways, friction, more) in CANTILEVERS.items()
+    },
 }
 
 
@@ -67,7 +62,7 @@ def test_the_tangent_is_the_derivative(name):
 
     Unknowns inside exact elements follow the others to second order, so central differences see the condensed tangent.
     """
-    result = tsm.solve(SCENES[name](), np.array([0.4, 0.64]))
+    result = tsm.solve(SCENES[name], np.array([0.4, 0.64]))
     newton = Newton(Model(result.model.structure), tsm.Settings())
     model = newton.model
     for equilibrium in result.equilibria:

@@ -9,16 +9,7 @@ from scipy.optimize import brentq
 from scipy.special import jn_zeros, jv
 
 import tsm
-from tests.tsm.structures import CLAMP, beam, cantilever, leaning, raised
-
-
-def heavy_column(weight, element, elements):
-    section = tsm.Section(EA=1e9, GA=1e9, EI=1.0)
-    return tsm.Structure(
-        beams=(beam("b", (0, 0), (0, 1), section=section, elements=elements, element=element),),
-        supports=(CLAMP,),
-        line_loads=(tsm.LineLoad(beam="b", force=((0.0, -weight),)),),
-    )
+from tests.tsm.structures import CLAMP, beam, cantilever, raised
 
 
 @pytest.mark.parametrize(("element", "elements", "apart"), [("exact", 1, 1e-6), ("mixed", 8, 1e-4)])
@@ -27,9 +18,12 @@ def test_heavy_column_gains_a_negative_eigenvalue_at_every_critical_weight(eleme
     # zeros of J_(-1/3) lie just below those of J_0
     zeros = [brentq(lambda z: jv(-1 / 3, z), bound - 1.0, bound, xtol=1e-15) for bound in jn_zeros(0, 3)]
     assert 9 / 4 * zeros[0] ** 2 == pytest.approx(7.837347, abs=1e-6)
+    section = tsm.Section(EA=1e9, GA=1e9, EI=1.0)
+    rod = beam("b", (0, 0), (0, 1), section=section, elements=elements, element=element)
     for number, zero in enumerate(zeros):
         for factor, expected in ((1 - apart, number), (1 + apart, number + 1)):
-            column = heavy_column(9 / 4 * zero**2 * factor, element, elements)
+            load = tsm.LineLoad(beam="b", force=((0.0, -9 / 4 * zero**2 * factor),))
+            column = tsm.Structure(beams=(rod,), supports=(CLAMP,), line_loads=(load,))
             assert tsm.solve(column, [1.0], tsm.Settings(branch="primary")).index.tolist() == [expected]
 
 
@@ -63,21 +57,6 @@ def test_what_a_snap_releases_counts_the_work_of_loads_along_a_beam():
     assert snap.load_parameter * load == pytest.approx(limit, rel=1e-8)
     # the fall begins a little beyond the limit
     assert snap.released == pytest.approx(potential(fold) - potential(rest), rel=1e-3)
-
-
-def test_straight_mixed_beams_stand_beside_varying_ones():
-    """A tip of straight elements in closed form on a curved and tapered beam."""
-    loads = leaning().line_loads[:1]
-    push = tsm.Load(beam="up", end="end", force=(0.0, -1.0))
-    found = []
-    for element, elements in (("mixed", 16), ("exact", 1)):
-        beams = tuple(replace(one, element=element, elements=elements, nodes=()) for one in leaning().beams)
-        result = tsm.solve(replace(leaning(), beams=beams, line_loads=loads, loads=(push,)), [0.5, 1.0])
-        history = result.contacts["up.end->low"]
-        found.append([*history.force, *history.arc_position, *result.shape("low", -1)[-1]])
-        assert result.index.tolist() == [0, 0]
-        assert (result.deformation is None) == (element == "exact")
-    assert np.abs(np.subtract(*found)).max() <= 2e-6
 
 
 @pytest.mark.slow

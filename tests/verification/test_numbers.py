@@ -11,7 +11,7 @@ from comparisons.answer.errors import errors
 from comparisons.models import find, solve
 from comparisons.models.options import Options
 from comparisons.scene import load_scene
-from comparisons.suite.settings import changed
+from comparisons.suite import changed
 from comparisons.suites.compare import ELASTICA, MIXED, PAPER, ROD, RUNS, SOLID
 
 COLUMNS = ("force", "arc", "moment", "tip")

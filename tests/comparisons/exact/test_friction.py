@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 
 from comparisons.exact import Outcome, rod_under_pin
-from comparisons.exact.section import GAUSS, WEIGHTS
 from tests.oracles.friction import rubbed
-from tests.oracles.shooting import KS as KS_SECTION
 from tests.oracles.shooting import RIGID, ks_pins, shot
 
-KS = {**KS_SECTION, "length": 1.0}
+GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(40)
 ELASTICA = {**RIGID, "length": 1.0}
 SECTION = {"EA": 300.0, "GA": 80.0, "EI": 1.0}
 OPEN, STICK, TO_TIP, TO_CLAMP, SLIPPED, LOST, JAMMED = map(
@@ -27,10 +25,10 @@ def states(path):
 def stored(path, k):
     """Strain energy of a rod with EI = L = 1 by quadrature; zero where it is straight."""
     Fx, Fy, _, s = path.unknowns[k]
-    part, (stretch, shear) = path.rod.sections(path.unknowns[k], GAUSS), path.rod.flexibility
+    part, (stretch, shear) = path.rod.sections(path.unknowns[k], (GAUSS + 1.0) / 2.0), path.rod.flexibility
     c, d = np.cos(part.theta), np.sin(part.theta)
     density = part.moment**2 + stretch * (Fx * c + Fy * d) ** 2 + shear * (Fy * c - Fx * d) ** 2
-    return s * (WEIGHTS @ density) / 2.0
+    return s * (WEIGHTS @ density) / 4.0
 
 
 def checked(points, friction, lost=1e-13, **given):
@@ -59,10 +57,7 @@ def checked(points, friction, lost=1e-13, **given):
 @pytest.mark.parametrize(
     ("friction", "stick", "slip", "F", "s", "moment"),
     [
-        (0.05, 0.62656173790590, 0.6486409617, 7.992147417325, 0.883057818696, 3.3778986185),
         (0.1, 0.62552021891215, 0.6579074196, 7.841931727558, 0.873153311584, 3.5777850768),
-        (0.2, 0.62324035484810, 0.6715734767, 7.639113310576, 0.858197305534, 3.9082538894),
-        (0.3, 0.62065097789095, 0.6825541119, 7.541844254804, 0.847105863940, 4.1787969211),
         (0.5, 0.61423836803155, 0.7011266178, 7.582736946124, 0.831181215881, 4.6121130165),
     ],
 )
@@ -100,15 +95,6 @@ def test_all_conditions_hold_when_integrated_from_the_clamp(offset, radius):
         assert end[4] == pytest.approx(stored(path, k), rel=1e-11)
 
 
-@pytest.mark.parametrize("offset", [0.0, 0.01])
-def test_little_friction_is_all_but_none(offset):
-    pins = ks_pins([0.0, 0.25, 0.5, 0.75, 1.0], offset)
-    path, free = (rod_under_pin(pins, friction=mu, offset=offset, **KS) for mu in (1e-8, 0.0))
-    for name in ("magnitude", "arc_position", "clamp_moment"):
-        np.testing.assert_allclose(getattr(path, name)[1:], getattr(free, name)[1:], rtol=1e-7)
-    assert np.abs(path.force[1:] / free.force[1:] - 1.0).max() > 1e-9
-
-
 UP = [(0.8, -0.1), (0.8, 0.3), (0.8, -0.2)]
 AGAIN = [(0.8, -0.1), (0.8, 0.7), (0.8, 0.6), (0.8, -0.1), (0.8, 0.1)]
 PAST = [(0.709, -0.01), (0.781, 0.236), (-0.6, 0.259)]
@@ -140,15 +126,3 @@ def test_states_along_a_path(points, friction, rod, elastica):
             assert np.isnan(path.magnitude[-1]) == np.isnan(path.work[-1]) == path.outcome[-1].ends
             ends += [event.load_parameter for event in path.events[-1:]]
     assert max(ends, default=0.0) == pytest.approx(min(ends, default=0.0), abs=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("k", "turn", "after"), [(1, -0.1, TO_CLAMP), (1, 0.1, STICK), (2, -0.1, STICK), (2, 0.1, TO_TIP)]
-)
-def test_a_pin_that_turns_at_an_event(k, turn, after):
-    """At the corner the force is on the edge of the cone: the slip goes on or begins, or the pin sticks."""
-    event = rod_under_pin(ks_pins([0.0, 1.0]), friction=0.3, **ELASTICA).events[k]
-    x, y = ks_pins([event.load_parameter])[0]
-    path = checked([[1.0, 0.0], [x, y], [x + turn, y]], 0.3, **ELASTICA)
-    assert path.outcome[1] is after
-    assert not path.outcome[-1].ends

@@ -65,24 +65,6 @@ def test_the_branch_of_the_straight_beam_ends_at_the_fold():
     assert angles[-1] == pytest.approx(2.983418, abs=2e-6)
 
 
-def test_outcomes_of_the_elastica():
-    places = {
-        (0.5, -0.1): OPEN,
-        (1.1, 0.0): OPEN,
-        (1.0, 0.0): CONTACT,
-        (0.9, 0.6): SLIPPED,
-        (-0.1, 0.2): LOST,
-    }
-    assert {place: elastica_under_pin([place]).outcome[0] for place in places} == places
-    assert elastica_under_pin([(1.0, 0.0)]).arc_position[0] == 1.0
-    path = elastica_under_pin([(0.9, 0.1), (0.9, 0.6), (0.5, 0.1), (0.5, -0.1)])
-    assert path.outcome == (CONTACT, SLIPPED, SLIPPED, OPEN)
-    assert path.slip_off == path.load_parameter[1]
-    assert path.magnitude[1] == 0.0
-    assert np.isnan(path.arc_position[1])
-    np.testing.assert_array_equal(path.shape(1, 3)[:, :2], [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0]])
-
-
 UP = [(0.8, -0.1), (0.8, 0.7), (0.8, 0.6), (0.8, -0.1), (0.8, 0.1), (0.8, 0.7)]
 
 

@@ -65,12 +65,7 @@ def stated(scene: Scene, path: list[Equilibrium], model: str = "tsm") -> Respons
             beam.name: np.array([exact.ends[f"{beam.name}.{scene.tip(beam.name)}"] for exact in path])
             for beam in scene.beams
         },
-        newton_iterations=np.zeros(steps, dtype=np.int64),
-        cutbacks=0,
-        unknowns=0,
-        wall_seconds=0.0,
         axis_line=axis_line,
-        grid=lambda _: None,  # type: ignore[arg-type, return-value]
     )
 
 

@@ -131,9 +131,7 @@ def weakened(response: Response, kept: list[float], factor: float) -> Response:
     """Multiply all forces away from the kept load parameters: they balance as before."""
     part = np.where(np.isin(response.load_parameter, kept), 1.0, factor)
     contacts = {
-        pair: replace(
-            item, force=part * item.force, vector=None if item.vector is None else part[:, None] * item.vector
-        )
+        pair: replace(item, force=part * item.force, vector=part[:, None] * item.vector)
         for pair, item in response.contacts.items()
     }
     supports = {

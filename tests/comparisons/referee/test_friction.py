@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,10 +12,7 @@ from comparisons.answer import Response
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.referee import Certificate, Equilibrium, Verdict, answer_state, certify, equilibrium
-
-# the states of slip and stick that the referee finds are no part of a certificate, and equilibria of others are made from them
 from comparisons.referee.friction import History, dissipated
-from comparisons.referee.grip import Grip
 from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene
 from tests.comparisons.referee.forged import contact, scene_of, stated
 
@@ -96,24 +94,22 @@ def test_the_dissipation_is_that_of_the_exact_elements():
     np.testing.assert_allclose(own, response.contacts[PAIR].friction.dissipated, rtol=1e-11)
 
 
-def elsewhere(response: Response, k: int, grip: Grip) -> Grip:
+def elsewhere(k: int, grip: Any) -> Any:
     """Sticks .001 beside the place where the slip ended."""
     hold = grip.hold
     return grip if hold is None else replace(grip, hold=replace(hold, arc_position=hold.arc_position + 1e-3))
 
 
-def against(response: Response, k: int, grip: Grip) -> Grip:
+def against(k: int, grip: Any) -> Any:
     """Slips against the pin at load parameter number 2."""
-    return Grip(friction=0.3, slip=1) if k == 2 else grip
+    return replace(grip, slip=1, hold=None) if k == 2 else grip
 
 
-def of_another_history(
-    response: Response, scene: Scene, other: Callable[[Response, int, Grip], Grip]
-) -> Response:
+def of_another_history(response: Response, scene: Scene, other: Callable[[int, Any], Any]) -> Response:
     """Exact equilibria that another friction holds, stated with their own numbers."""
     history, path = History(response, scene), list[Equilibrium]()
     for k in range(len(response.load_parameter)):
-        grips = {pair: other(response, k, grip) for pair, grip in history.grips(k).items()}
+        grips = {pair: other(k, grip) for pair, grip in history.grips(k).items()}
         path.append(equilibrium(scene, replace(answer_state(response, scene, k), grips=grips)))
     own = [item.contacts[PAIR] for item in path]
     slip = np.array(response.contacts[PAIR].friction.slip)

@@ -24,12 +24,7 @@ VALIDATOR = Draft202012Validator(SCHEMA)
 KEYS = {kind: {key for table, key in ALL if table == kind} for kind in SCHEMA["properties"]}
 KS = built_in_scenes()["ks-cantilever"]
 Output = pytest.CaptureFixture[str]
-
-
-@pytest.fixture(autouse=True)
-def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+pytestmark = pytest.mark.usefixtures("in_folder")
 
 
 def refused(arguments: list[str], capsys: Output) -> str:

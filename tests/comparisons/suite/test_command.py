@@ -13,7 +13,6 @@ from time import sleep
 import pytest
 
 from comparisons.cli import main
-from comparisons.suite.run import LOST
 from tests.comparisons.suite.conftest import (
     CASES,
     TINY,
@@ -160,7 +159,7 @@ def test_a_case_that_kills_its_worker_is_tried_once_more_and_blamed_alone(times,
     for status in [3, 0][2 - times :]:
         assert main(arguments) == status
         lost = [row["message"] for row in rows(tmp_path / "beside.csv") if row["status"] == "WORKER_LOST"]
-        assert lost == [LOST] * bool(status)
+        assert len(lost) == bool(status)
         out, err = capsys.readouterr()
         assert "COMPLETED 2" in out
         assert ("1 cases have no result; the same command tries them again" in err) == bool(status)

@@ -16,10 +16,9 @@ from comparisons.models.options import Options
 from comparisons.scene import load_scene
 
 # not public: a worker's exception cannot be brought about from outside, nor systems without /proc
-from comparisons.suite import Case, Row, measure
+from comparisons.suite import Case, Row, changed, measure
 from comparisons.suite import run as run_module
 from comparisons.suite.measure import unmeasured
-from comparisons.suite.settings import changed
 from comparisons.version import version
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=2)

@@ -46,8 +46,7 @@ def test_a_model_that_cannot_state_the_scene_is_left_out(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_run_that_stops_is_named_and_the_rest_goes_on(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_a_run_that_stops_is_named_and_the_rest_goes_on(in_folder, capsys):
     pin = replace(KS.pins[0], start=(0.9, 0.0), displacement=(0.0, 0.6))
     contact = replace(KS.contacts[0], keep=True)
     Path("slip.toml").write_text(to_toml(replace(KS, pins=(pin,), contacts=(contact,), load_parameters=4)))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
@@ -127,36 +126,6 @@ def test_contact_stiffness_near_an_end():
     assert sp.simplify(near - law) == 0
     assert sp.limit(law * b, b, 0) == EI / Psi
     assert sp.limit(law * b**3, b, sp.oo) == 3 * EI
-
-
-def force_errors(formulation, near, end, samples=30):
-    """Median error of the element forces in double precision, at the deformations of the element's own basic system."""
-    function = FORMULATIONS[formulation].correct
-    rng, errors = np.random.default_rng(15), []
-    for _ in range(samples):
-        distance = near * rng.uniform(1, 2)
-        xi = float(distance if end == "i" else 1 - distance)
-        one = Fraction(1)
-        exact = function(Properties(one, 0 * one, one, one, one, 0 * one), Fraction(xi))
-        forces = [Fraction(value) for value in rng.normal(size=3)]
-        K = sp.Matrix(3, 3, [sp.Rational(v.numerator, v.denominator) for v in exact.ravel()])
-        v = K.LUsolve(sp.Matrix([sp.Rational(f.numerator, f.denominator) for f in forces]))
-        found = function(Properties(1.0, 0.0, 1.0, 1.0, 1.0, 0.0), xi)
-        computed = found @ np.array([float(value) for value in v])
-        errors.append(np.abs(computed - [float(f) for f in forces]).max())
-    return np.median(errors)
-
-
-@pytest.mark.slow_at("(5)-(6)-i--2")
-@pytest.mark.parametrize(
-    ("formulation", "end", "power"),
-    [("(5)-(6)", "i", -2), ("(5)-(6)", "j", -2), ("(7)-(8)", "i", -1), ("(7)-(8)", "j", -3)],
-)
-def test_round_off_of_the_force_equation_in_double_precision(formulation, end, power):
-    """The cantilever gains a power at its clamp and loses one at its tip."""
-    distances = 10.0 ** -np.arange(2, 8)
-    errors = [force_errors(formulation, near, end) for near in distances]
-    assert np.polyfit(np.log10(distances), np.log10(errors), 1)[0] == pytest.approx(power, abs=0.15)
 
 
 def test_other_sentences_of_the_errata():

@@ -64,9 +64,8 @@ CONTROLS = "\x1b]0;owned\x07\x1b[31m\u202e\r\x9b2J\u2066"
     ids=["answers", "refuses", "crashes"],
 )
 def test_control_characters_of_a_program_reach_no_terminal_and_no_file(
-    lines, status, program, tmp_path, monkeypatch, capfd
+    lines, status, program, in_folder, capfd
 ):
-    monkeypatch.chdir(tmp_path)
     file = program(lines.format(repr(f"ready {CONTROLS} {'x' * 100_000}")))
     assert main(["solve", "ks.toml", "--model", file, "--out", "a.json", "--quiet"]) == status
     out, err = capfd.readouterr()

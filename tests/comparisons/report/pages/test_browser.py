@@ -9,7 +9,7 @@ import pytest
 from matplotlib.image import imread
 
 from comparisons.models import solve
-from comparisons.report.motion import motion_section
+from comparisons.report.motion import motion_section  # of scenes that no comparison draws at once
 from comparisons.report.pages import Section, page
 from comparisons.scene import SupportSpec
 from tests.comparisons.report.pages.conftest import Browser

@@ -12,7 +12,7 @@ import pytest
 
 from comparisons.answer.errors import error_histories, errors
 from comparisons.models import MODELS, solve
-from comparisons.report.motion import motion_section, tracks
+from comparisons.report.motion import motion_section, tracks  # of answers that no comparison has
 from comparisons.report.pages import Section, page, table
 from comparisons.scene import read_scene
 from comparisons.suites.compare import RUNS

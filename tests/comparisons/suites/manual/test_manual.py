@@ -16,6 +16,7 @@ from comparisons.suites.manual import judged, problems, read_problem
 
 # not public: measures that no model has
 from comparisons.suites.manual.measures import MEASURES, StoppedError
+from tests.fuzz.world import toml_text
 
 PROBLEMS = {path.stem: path for path in problems()}
 FAST = (
@@ -31,16 +32,6 @@ def cards(folder, *names):
     return [json.loads((folder / f"{name}.json").read_text()) for name in names], schema
 
 
-def toml(tables):
-    """Return the scene of a card as a scene file."""
-    lines = []
-    for kind, found in tables.items():
-        for table in found if isinstance(found, list) else [found]:
-            lines.append(f"[[{kind}]]" if isinstance(found, list) else f"[{kind}]")
-            lines += [f"{key} = {json.dumps(value)}" for key, value in table.items()]
-    return "\n".join(lines)
-
-
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=[pytest.mark.slow] * (name not in FAST)) for name in PROBLEMS]
 )
@@ -49,7 +40,7 @@ def test_a_problem_of_the_table_passes(name, tmp_path):
     problem = read_problem(PROBLEMS[name])
     (card,), schema = cards(tmp_path, name)
     schema.validate(card)
-    assert read_scene(toml(card["scene"]), name) == problem.scene
+    assert read_scene(toml_text(card["scene"]), name) == problem.scene
     assert [item.failure for item in judged(problem) if not item.passed] == []
     for quantity, stated in zip(problem.quantities, card["quantities"], strict=True):
         assert math.isfinite(quantity.exact)
@@ -65,15 +56,14 @@ def test_the_page_counts_the_problems_and_their_answers(stated):
     assert sum(len(read_problem(path).trials) for path in PROBLEMS.values()) == 96
 
 
-def test_a_card_states_the_digits_that_its_uncertainty_leaves(tmp_path, monkeypatch, capsys):
+def test_a_card_states_the_digits_that_its_uncertainty_leaves(in_folder, capsys):
     """Of a value they are significant ones, of zero decimals of the scale; the schema refuses what is no card."""
-    monkeypatch.chdir(tmp_path)
     (card, _), schema = cards(Path("cards"), "roll-up", "locking")
     reported = capsys.readouterr()
     assert reported.out == "2 cards and their schema in cards\n"
     assert reported.err == "roll-up: 3 quantities\nlocking: 2 quantities\n"
     files = {"card.schema.json", "cards", "locking.json", "roll-up.json"}
-    assert {path.name for path in tmp_path.rglob("[!.]*")} == files
+    assert {path.name for path in in_folder.rglob("[!.]*")} == files
     quarter, _, whole = card["quantities"]
     assert quarter["value"] == pytest.approx(2.0 / math.pi, rel=1e-15)
     assert quarter["uncertainty"] == pytest.approx(1e-14 * quarter["value"])

@@ -11,7 +11,7 @@ from matplotlib.image import imread
 
 from comparisons.cli import main
 from comparisons.suites.paper.fig7 import PRINTED
-from comparisons.suites.paper.reproduce import CLAIMS
+from comparisons.suites.paper.reproduce import CLAIMS  # that each is on the page is the contract
 from tests.comparisons.report.pages.markup import block, check_alone
 
 REPRODUCED, IN_DIRECTION = "reproduced", "reproduced in direction, not in size"

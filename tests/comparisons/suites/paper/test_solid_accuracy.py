@@ -10,7 +10,7 @@ from comparisons.cli import main
 from comparisons.models import solve
 from comparisons.models.solid import to_solid
 from comparisons.scene import load_scene
-from comparisons.suite.settings import changed
+from comparisons.suite import changed
 
 SCENES = ("ks-cantilever", "ks-face")
 
