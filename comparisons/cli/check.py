@@ -5,6 +5,7 @@ from argparse import Namespace
 
 from comparisons.cli.options import STANDARD, outputs, write
 from comparisons.cli.screen import DONE
+from comparisons.models import find
 from comparisons.models.options import Options
 from comparisons.models.outside.exchange import request
 from comparisons.report.sketch import draw, stated
@@ -15,6 +16,8 @@ from comparisons.scene.ends import near_ends
 def run(given: Namespace) -> int:
     """Say which models can state the scene, and draw it."""
     scene = load_scene(given.scene)
+    for name in given.others:
+        find(name)
     files = outputs(given.out, ".json", ".png", ".svg")
     printed = (".json", STANDARD) in files
     if not printed:
