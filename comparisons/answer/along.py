@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from functools import cache
-from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +13,8 @@ FIRST = 1e-9
 """Part of the largest value by which the first place of an extreme may be smaller, so that round-off does not choose between equals."""
 APART = 1e-12
 """Distance of two stations, over the length of the beam, that are the two sides of one place."""
+CLOSE = 0.9
+"""Part of the largest value at a station from which on the value between stations may be the largest."""
 UNEVEN = 1e-3
 """Smallest distance of two stations, over the largest near them, between which a polynomial is drawn."""
 ALONG = {
@@ -28,6 +29,10 @@ ALONG = {
 nominal ones at the faces, ``N/A + M h/2I`` and ``N/A - M h/2I``, the largest and the smallest."""
 
 
+Curve = tuple[Array, Array]
+"""Arc lengths and values of a quantity at them."""
+
+
 class Extreme(NamedTuple):
     """The extreme of a quantity along a beam over the load parameters: value (s,), and its distance (s,) along the axis from the start."""
 
@@ -35,22 +40,33 @@ class Extreme(NamedTuple):
     arc_position: Array
 
 
-def extremes_along(response: Answer, scene: Scene) -> dict[str, dict[str, Extreme]]:
-    """Return the extremes by beam and by quantity, a key of `ALONG`; without quantities that the model does not state."""
-    return {beam.name: _along(response, beam) for beam in scene.beams}
+def extremes_along(response: Answer, scene: Scene, *, every: bool = True) -> dict[str, dict[str, Extreme]]:
+    """Return the extremes by beam and by quantity, a key of `ALONG`; without quantities that the model does not state.
+
+    An extreme lies between stations, see `peak`; with `every` at each load parameter, else only where it may be the largest of all.
+    """
+    return {beam.name: _along(response, beam, every) for beam in scene.beams}
 
 
-def _along(response: Answer, beam: BeamSpec) -> dict[str, Extreme]:
-    rows: dict[str, list[tuple[float, float]]] = {}
+def _along(response: Answer, beam: BeamSpec, every: bool) -> dict[str, Extreme]:
+    rows: dict[str, list[list[Curve]]] = {}
     undeformed = cache(lambda arcs: np.array([beam.place(arc / beam.length) for arc in arcs]))
     section = cache(lambda arcs: _sections(beam, arcs))
     for k in range(len(response.load_parameter)):
         found = {} if response.sections is None else _forces(response.sections(beam.name, k), beam, section)
         arc, line = response.axis_line(beam.name, k)
-        found["displacement"] = peak(arc, np.hypot(*(line - undeformed(tuple(arc))).T))
-        for name, extreme in found.items():
-            rows.setdefault(name, []).append(extreme)
-    return {name: Extreme(*np.array(values).T) for name, values in rows.items()}
+        found["displacement"] = [(arc, np.hypot(*(line - undeformed(tuple(arc))).T))]
+        for name, curves in found.items():
+            rows.setdefault(name, []).append(curves)
+    return {name: _extreme(curves, every) for name, curves in rows.items()}
+
+
+def _extreme(rows: list[list[Curve]], every: bool) -> Extreme:
+    """Return the extreme of every row of curves, the first one of equal curves."""
+    sizes = [max(float(np.abs(values).max()) for _, values in curves) for curves in rows]
+    least = 0.0 if every else CLOSE * max(sizes)
+    found = [max((peak(*curve, least) for curve in curves), key=lambda one: abs(one[0])) for curves in rows]
+    return Extreme(*np.array(found).T)
 
 
 def _sections(beam: BeamSpec, arcs: tuple[float, ...]) -> Array:
@@ -65,19 +81,15 @@ def _sections(beam: BeamSpec, arcs: tuple[float, ...]) -> Array:
 
 def _forces(
     at: Sections, beam: BeamSpec, section: Callable[[tuple[float, ...]], Array]
-) -> dict[str, tuple[float, float]]:
+) -> dict[str, list[Curve]]:
     at = _once(at, APART * beam.length)
-    forces = {"axial_force": at.N, "shear_force": at.V, "bending_moment": at.M}
-    found = {name: peak(at.arc, values) for name, values in forces.items()}
-    if beam.height is None:
-        return found
-    area, lever = section(tuple(at.arc))
-    faces = np.stack([at.N / area + at.M * lever, at.N / area - at.M * lever])
-    for name, sign in (("tensile_stress", 1.0), ("compressive_stress", -1.0)):
-        ends = (peak(at.arc, np.maximum(sign * face, 0.0)) for face in faces)
-        value, arc = max(ends, key=itemgetter(0))
-        found[name] = sign * value, arc
-    return found
+    curves = {"axial_force": [at.N], "shear_force": [at.V], "bending_moment": [at.M]}
+    if beam.height is not None:
+        area, lever = section(tuple(at.arc))
+        faces = at.N / area + at.M * lever, at.N / area - at.M * lever
+        curves["tensile_stress"] = [np.maximum(face, 0.0) for face in faces]
+        curves["compressive_stress"] = [np.minimum(face, 0.0) for face in faces]
+    return {name: [(at.arc, values) for values in found] for name, found in curves.items()}
 
 
 def _once(at: Sections, apart: float) -> Sections:
@@ -90,11 +102,11 @@ def _once(at: Sections, apart: float) -> Sections:
     return Sections(arc=at.arc[kept], N=at.N[kept], V=at.V[kept], M=at.M[kept])
 
 
-def peak(arc: Array, values: Array) -> tuple[float, float]:
+def peak(arc: Array, values: Array, least: float = 0.0) -> tuple[float, float]:
     """Return the value of the largest magnitude, and its arc length: the first one of equal values.
 
     Between stations the value is that of the polynomial through the station and its neighbours, two on each side or one; there is none
-    across a jump, which has two stations at one place.
+    across a jump, which has two stations at one place, and about a station with less than a `least` magnitude.
 
     Examples
     --------
@@ -108,7 +120,7 @@ def peak(arc: Array, values: Array) -> tuple[float, float]:
     value, place = float(values[k]), float(arc[k])
     for reach in (2, 1):
         near = slice(k - reach, k + reach + 1)
-        if k < reach or k + reach >= len(arc):
+        if abs(value) < least or k < reach or k + reach >= len(arc):
             continue
         spacing = np.diff(arc[near])
         if spacing.min() > UNEVEN * spacing.max():

@@ -204,7 +204,7 @@ class _Page:
             yield f"contact force {pair}, {which}", self.with_unit(force, "force"), f"{t:.6g}", place
 
     def _along(self) -> Iterator[Row]:
-        along = {} if self.scene is None else extremes_along(self.response, self.scene)
+        along = {} if self.scene is None else extremes_along(self.response, self.scene, every=False)
         for name, (kind, words) in ALONG.items():
             own = {beam: extremes[name] for beam, extremes in along.items() if name in extremes}
             if not own:
