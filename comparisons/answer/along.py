@@ -10,13 +10,13 @@ from comparisons.answer.record import Answer, Array, Sections
 from comparisons.scene import BeamSpec, Scene
 
 FIRST = 1e-9
-"""Part of the largest value by which the first place of an extreme may be smaller, so that round-off does not choose between equals."""
+"""Relative difference up to which values count as equal, so that the first of them is taken whatever the round-off."""
 APART = 1e-12
-"""Distance of two stations, over the length of the beam, that are the two sides of one place."""
+"""Largest distance of two stations at one place, over the length of the beam."""
 CLOSE = 0.9
-"""Part of the largest value at a station from which on the value between stations may be the largest."""
+"""Fraction of the largest station value below which no value between stations is sought."""
 UNEVEN = 1e-3
-"""Smallest distance of two stations, over the largest near them, between which a polynomial is drawn."""
+"""Smallest ratio of the shortest to the longest station spacing at which a polynomial is used."""
 ALONG = {
     "axial_force": ("force", "axial force"),
     "shear_force": ("force", "shear force"),
@@ -26,7 +26,7 @@ ALONG = {
     "displacement": ("length", "displacement of the axis"),
 }
 """The quantities along a beam: their kinds and words. Forces and moments are the largest in magnitude with their signs. The stresses are the
-nominal ones at the faces, ``N/A + M h/2I`` and ``N/A - M h/2I``, the largest and the smallest."""
+nominal ones at the faces, ``N/A + M h/2I`` and ``N/A - M h/2I``; the other sign counts as 0."""
 
 
 Curve = tuple[Array, Array]
@@ -34,7 +34,7 @@ Curve = tuple[Array, Array]
 
 
 class Extreme(NamedTuple):
-    """The extreme of a quantity along a beam over the load parameters: value (s,), and its distance (s,) along the axis from the start."""
+    """Extremes of a quantity along a beam, one per load parameter: values (s,), and their arc positions (s,) from the start."""
 
     value: Array
     arc_position: Array
@@ -43,7 +43,7 @@ class Extreme(NamedTuple):
 def extremes_along(response: Answer, scene: Scene, *, every: bool = True) -> dict[str, dict[str, Extreme]]:
     """Return the extremes by beam and by quantity, a key of `ALONG`; without quantities that the model does not state.
 
-    An extreme lies between stations, see `peak`; with `every` at each load parameter, else only where it may be the largest of all.
+    An extreme may lie between stations, see `peak`. Without `every` it is sought there only if it may be the largest of all.
     """
     return {beam.name: _along(response, beam, every) for beam in scene.beams}
 
@@ -62,7 +62,7 @@ def _along(response: Answer, beam: BeamSpec, every: bool) -> dict[str, Extreme]:
 
 
 def _extreme(rows: list[list[Curve]], every: bool) -> Extreme:
-    """Return the extreme of every row of curves, the first one of equal curves."""
+    """Return one extreme per row (load parameter); of equal curves, the first."""
     sizes = [max(float(np.abs(values).max()) for _, values in curves) for curves in rows]
     least = 0.0 if every else CLOSE * max(sizes)
     found = [max((peak(*curve, least) for curve in curves), key=lambda one: abs(one[0])) for curves in rows]
@@ -93,7 +93,7 @@ def _forces(
 
 
 def _once(at: Sections, apart: float) -> Sections:
-    """Return the stations, with those at which nothing jumps stated once."""
+    """Return the stations without doubles at which no force jumps."""
     forces = np.stack([at.N, at.V, at.M])
     scale = np.array([[1.0], [1.0], [max(at.arc[-1], apart)]]) * max(float(np.abs(forces[:2]).max()), 1e-300)
     same = np.diff(at.arc) <= apart
@@ -105,8 +105,8 @@ def _once(at: Sections, apart: float) -> Sections:
 def peak(arc: Array, values: Array, least: float = 0.0) -> tuple[float, float]:
     """Return the value of the largest magnitude, and its arc length: the first one of equal values.
 
-    Between stations the value is that of the polynomial through the station and its neighbours, two on each side or one; there is none
-    across a jump, which has two stations at one place, and about a station with less than a `least` magnitude.
+    Around the largest station value, a polynomial through it and two neighbours on each side (or one) may be larger. There is none
+    at an end, across a jump (two stations at one place), or where that value is below `least`.
 
     Examples
     --------

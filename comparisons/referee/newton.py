@@ -148,7 +148,7 @@ def _reason_not_to_judge(layout: Layout, z: Array) -> str:
 
 def _first_grids(layout: Layout, z: Array) -> list[Array]:
     """About one element for 1.5 of the length sqrt(EI/n) over which the deflection varies, at most 50."""
-    EI, stretch, shear = np.array([part.rod.greatest for part in layout.parts]).T
+    EI, stretch, shear = np.array([part.rod.softest for part in layout.parts]).T
     n = np.hypot(*z[layout.forces].reshape(-1, 2).T)
     rate = np.sqrt(n * (1.0 + n * np.abs(stretch - shear)) / EI)
     counts = np.clip(np.ceil(np.diff(layout.extents(z))[:, 0] * rate / 1.5), 1, 50)
@@ -171,7 +171,7 @@ def _fitted(layout: Layout, mesh: Mesh, z: Array, rotation: Array, fit: Array) -
 def _newton(now: Equilibrium, iterations: int) -> Equilibrium:
     """Iterate until the corrections are round-off."""
     layout, last, error = now.layout, np.inf, np.inf
-    most = [part.rod.greatest for part in layout.parts]
+    most = [part.rod.softest for part in layout.parts]
     least = _LAST_PLACES / (_ROUND_OFF * min(min(stretch, shear or np.inf) for _, stretch, shear in most))
     turning = np.ones(now.mesh.unknowns, bool)
     turning[layout.forces] = turning[layout.moving] = False

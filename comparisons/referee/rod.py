@@ -7,7 +7,7 @@ the curvature is ``kappa0 + theta'`` and the moment ``EI theta'``. A dead load q
 
 The face is the envelope of circles about the points of the axis. Their radius is h/2 where the height h is constant, and ``h/2 /
 sqrt(1 + (h'/2)^2)`` where it tapers, so that the face of an undeformed straight beam is at h/2 from the axis. A round pin of radius R
-touches where its centre has the distance R more.
+touches with its centre R further from the axis.
 """
 
 import math
@@ -36,7 +36,7 @@ def units_of(scene: Scene) -> Units:
 
 
 class Strained(NamedTuple):
-    """Stiffness, flexibilities, forces N and Q, force n (2, ...) and ``r'`` minus the undeformed tangent (2, ...) at points of a rod."""
+    """EI, 1/EA, 1/GA, N, Q, force vector n (2, ...) and `way`, ``r'`` minus the undeformed tangent (2, ...), at points of a rod."""
 
     EI: Any
     stretch: Any
@@ -48,7 +48,7 @@ class Strained(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """A piece (1,) of a rod along which its load is a polynomial, or pieces (...) at once, in the units of a layout.
+    """A piece of a rod with a polynomial load, shape (1,), or an array (...) of pieces, in `Units`.
 
     Arc positions and rotations are arrays that broadcast against the pieces, and may be complex.
     """
@@ -56,20 +56,19 @@ class Piece(NamedTuple):
     coefficients: Array
     """Coefficients (5, 5, ...) of EI, EA, GA, W_x and W_y as polynomials in the arc position, ascending."""
     curvature: Array
-    begin: Array
+    start_angle: Array
     """Angle of the undeformed axis at the start of the rod."""
 
     def angle(self, s: Any) -> Any:
         """Angle beta of the undeformed axis."""
-        return self.curvature * s + self.begin
+        return self.curvature * s + self.start_angle
 
-    def flexibility(self, s: Any) -> tuple[Any, Any, Any]:
-        """Return EI, 1/EA and 1/GA."""
-        EI, EA, GA = polyval(s, self.coefficients[:, :3], tensor=False)
-        return EI, 1.0 / EA, 1.0 / GA
+    def EI(self, s: Any) -> Any:
+        """Return the bending stiffness."""
+        return polyval(s, self.coefficients[:, 0], tensor=False)
 
     def between(self, a: Any, b: Any) -> Array:
-        """Way (2, ...) of the undeformed axis from one arc position to another."""
+        """Vector (2, ...) between two points of the undeformed axis."""
         angle = self.angle((a + b) / 2.0)
         chord = (b - a) * np.sinc(self.curvature * (b - a) / (2.0 * math.pi))
         return np.array([chord * np.cos(angle), chord * np.sin(angle)])
@@ -79,7 +78,7 @@ class Piece(NamedTuple):
         return c - polyval(s, self.coefficients[:, 3:], tensor=False)
 
     def strained(self, c: Any, s: Any, theta: Any) -> Strained:
-        """Return the forces, and ``r' = (1 + N/EA) d1 + (Q/GA) d2`` minus the undeformed tangent, which small rotations leave its digits."""
+        """Return the forces, and ``r' = (1 + N/EA) d1 + (Q/GA) d2`` minus the undeformed tangent, without cancellation."""
         EI, EA, GA, *W = polyval(s, self.coefficients, tensor=False)
         stretch, shear, n, half = 1.0 / EA, 1.0 / GA, c - W, theta / 2.0
         angle, chord = theta + self.angle(s), 2.0 * np.sin(half)
@@ -101,11 +100,11 @@ class Rod:
     """A beam in the units of a layout."""
 
     length: float
-    greatest: tuple[float, float, float]
-    """EI, 1/EA and 1/GA; of a taper the smallest EI and the largest others."""
+    softest: tuple[float, float, float]
+    """Smallest EI, largest 1/EA and largest 1/GA along the beam."""
     pieces: tuple[Piece, ...]
     breaks: list[float]
-    """Arc positions between pieces, with both ends; inner ones are ends of loads and places of forces inside the beam."""
+    """Arc positions of the ends of pieces: the beam's ends, ends of line loads, and point loads inside."""
 
     @property
     def curvature(self) -> float:
@@ -157,7 +156,7 @@ def rod_of(scene: Scene, beam: BeamSpec, t: float, units: Units) -> Rod:
         W[0] += before
         before = polyval(b, W)
         pieces.append(Piece(np.hstack([stiffness, W])[..., None], *axis))
-    return Rod(length=extent, greatest=(EI, 1.0 / EA, 1.0 / GA), pieces=tuple(pieces), breaks=places)
+    return Rod(length=extent, softest=(EI, 1.0 / EA, 1.0 / GA), pieces=tuple(pieces), breaks=places)
 
 
 def _linear(given: float | tuple[float, float] | None, extent: float) -> Array:
@@ -167,7 +166,7 @@ def _linear(given: float | tuple[float, float] | None, extent: float) -> Array:
 
 
 class Face(NamedTuple):
-    """Where a node, or the centre of a round pin, touches a beam: at the distance `reach` from a point of the axis."""
+    """Place of a node, or of a round pin's centre, that touches a beam: at the distance `reach` from the axis."""
 
     left: float
     """1 on the left of the beam, -1 on its right."""

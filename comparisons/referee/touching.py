@@ -50,7 +50,7 @@ def rows(layout: Layout, touch: Touch, z: Array, moment: float) -> tuple[list[in
     x, y = (cos, sin) if face.slope else mean / a
     drag, push = force[0] * x + force[1] * y, face.left * (force[0] * y - force[1] * x)
     couple = lever * drag
-    stretch = a + lever * ((m - couple / 2.0) / piece.flexibility(s)[0] + piece.curvature)
+    stretch = a + lever * ((m - couple / 2.0) / piece.EI(s) + piece.curvature)
     shear = phi - theta - piece.angle(s)
     row, hold = drag - grip.slip * grip.friction * push, grip.hold
     if hold is not None:

@@ -1,6 +1,6 @@
 """March along the load parameters with step control, branch control and slip-off.
 
-A step, chosen automatically, is accepted if it departs little from the tangents at its ends, with the same index or other contacts.
+A step is accepted if it departs little from the tangents at its ends. A new index with the same contacts is a bifurcation.
 """
 
 from collections.abc import Iterator
@@ -51,20 +51,20 @@ _SEARCH_INTERVAL = 5
 _CLEARANCE_LIMIT = 0.05
 """Clearance below which contact along a line is searched ahead of a rejected attempt."""
 _TOUCHES_ALONG_A_LINE = 1e-2
-"""Clearance of a state that is at contact along a line: nearer to it Newton's method may not converge."""
+"""Clearance up to which a state counts as line contact: below it Newton's method may not converge."""
 _AT_END = 1e-2
 """Largest distance from an end, over the strip's length, of a contact that slips off there within the smallest step."""
 
 
 @dataclass(kw_only=True, eq=False)
 class Step:
-    """Progress to one requested load parameter; what it counts since the previous one."""
+    """Progress to one requested load parameter, counted since the previous one."""
 
     status: Status = Status.CONVERGED  # the reason why the march ended, else ``CONVERGED``
-    cause: Status = Status.CONVERGED  # status of the last attempt
+    cause: Status = Status.CONVERGED  # latest failure or path end
     pair: int | None = None  # index of the contact that the cause refers to
     load_parameter: float  # last accepted load parameter, or that of the event which ends the path
-    state: State  # last accepted state
+    state: State  # last state on track
     index: int  # its index
     iterations: int = 0  # number of linear solutions
     cutbacks: int = 0  # number of rejected attempts
@@ -83,7 +83,7 @@ class _March:
 
     def __init__(self, model: Model) -> None:
         start = accept(_start(model))
-        assert start is not None, "the undeformed stiffness is regular: no strip can move without strain"
+        assert start is not None, "singular undeformed stiffness: a strip moves without strain"
         self.model, self.settings = model, model.settings
         self.track: tuple[Accepted, ...] = (start,)
         self.trial, self.order, self.failures = _FIRST_STEP, ORDER, 0
@@ -137,7 +137,7 @@ class _March:
     def end(
         self, status: Status, at: Accepted | CriticalPoint | None = None, pair: int | None = None
     ) -> Status:
-        """End the path at a state, for a contact, or at a critical point."""
+        """End the path at a state or critical point, for contact `pair`."""
         step = self.step
         step.cause, step.pair = status, pair
         if isinstance(at, CriticalPoint):
@@ -202,7 +202,7 @@ class _March:
     def shorten(
         self, h: float, cause: Status | None = None, pair: int | None = None, reduction: float = 0.5
     ) -> Status | None:
-        """Reject an attempt over a step ``h``; the path goes on. A high-order extrapolation may be the reason of the failure."""
+        """Reject an attempt over a step ``h``: shorten the step and lower the order of the extrapolation. Returns None."""
         step = self.step
         step.cutbacks += 1
         if cause is not None:
@@ -212,7 +212,7 @@ class _March:
         return None
 
     def line_contact(self, end: float) -> Status | None:
-        """End the path where the least clearance vanishes up to a load parameter; None if it does not."""
+        """End the path where the least clearance vanishes before ``end``; None if it does not."""
         last, h = self.last.state, self.settings.min_step
         at = located(self.last, end, lambda at: clearance(at.state)[0]) if clearance(last)[0] > 0 else None
         least, pair = clearance(last if at is None else at.state)
@@ -226,7 +226,7 @@ class _March:
         return Status.LINE_CONTACT
 
     def obstacle(self, attempt: Attempt, goal: float, target: float) -> Status | None:
-        """Search for line contact or a limit point ahead of a rejected attempt; return a status if the path ends there."""
+        """After a rejected attempt, look for line contact, a limit point or slip-off; return a status if the path ends."""
         last, min_step = self.last, self.settings.min_step
         at_floor = self.trial < min_step
         if clearance(last.state)[0] <= _CLEARANCE_LIMIT and attempt.status is not Status.CONVERGED:
@@ -249,7 +249,7 @@ class _March:
         return second > _RATE_GROWTH * first
 
     def at_smallest_step(self, attempt: Attempt, goal: float) -> Status | None:
-        """Release a contact that opens or slips off; return a status if the path ends here."""
+        """Go on after a contact slips off; else return the status that ends the path."""
         last, step = self.last, self.step
         limit = opening_limit(last)
         if limit is not None:
@@ -285,7 +285,7 @@ def _start(model: Model) -> State:
 
 
 def slipped_off(before: State, attempt: Attempt) -> int | None:
-    """Contact that an attempt lost over an end which its node had reached before; one that diverges may lose any."""
+    """Contact that an attempt lost, if its node was near an end before. A diverging attempt may lose any contact."""
     if attempt.status is not Status.LOST_CONTACT or attempt.pair is None:
         return None
     touch = before.touches[attempt.pair]
@@ -295,7 +295,7 @@ def slipped_off(before: State, attempt: Attempt) -> int | None:
 
 
 def after_slip(before: State, goal: float, number: int) -> Attempt | None:
-    """Equilibrium without a contact that slipped off; a strip that nothing holds springs back. None if it is kept."""
+    """Equilibrium without a lost contact; with no tie or contact left, its strip starts undeformed. None if kept."""
     model, lost = before.model, before.touches[number]
     if lost.pair.contact.keep or not lost.closed:
         return None
@@ -322,7 +322,7 @@ def after_slip(before: State, goal: float, number: int) -> Attempt | None:
 
 
 def _slid_without_friction(guess: State) -> State:
-    """Return the equilibrium without friction, with slip in the directions that lead there; the guess without friction."""
+    """Return the frictionless equilibrium, with the slip that leads to it; the guess if nothing rubs or none is found."""
     if not guess.rubbing:
         return guess
     touches = [replace(one, begin=None, direction=0, tangential=0.0) for one in guess.touches]

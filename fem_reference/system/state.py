@@ -24,7 +24,7 @@ class State:
     t: float  # load parameter
     touches: tuple[Touch, ...]  # contacts, in the order of the model's pairs
     poses: tuple[Pose, ...]  # motions of the model's end sections
-    tie_forces: Floats  # forces and moments of the model's ties on their ends ``(c,)`` [N or N m]
+    tie_forces: Floats  # forces and moments of the model's ties on their ends ``(k,)`` [N or N m]
 
     @cached_property
     def closed(self) -> tuple[Touch, ...]:
@@ -52,7 +52,7 @@ class State:
 
     @cached_property
     def residuals(self) -> Floats:
-        """Residuals ``(c,)`` of the constraints in the order of `forces` [m, in slip N, or rad]."""
+        """Residuals ``(c,)`` of the constraints, ordered as `forces` [m or rad; N in slip]."""
         ties = zip(self.model.ties, self.tie_forces, strict=True)
         return np.array(
             [
@@ -64,7 +64,7 @@ class State:
 
     @cached_property
     def residual(self) -> Floats:
-        """Internal forces minus dead loads, contact and tie forces, ``(n, 2)``; in equilibrium the clamp forces [N]."""
+        """Internal forces minus those of loads, contacts and ties, ``(n, 2)``; in equilibrium clamp reactions [N]."""
         R: Floats = self.internal_force - amount(self.model.loads, self.t)
         for touch in self.closed:
             R -= (touch.slopes[:, :2] @ (touch.force, touch.tangential)).reshape(-1, 2)
@@ -93,7 +93,7 @@ class State:
 
     @property
     def force_scale(self) -> float:
-        """Largest of contact and tie forces, dead loads and ``E I / L^2``, to which tolerances refer; moments count over L [N]."""
+        """Scale of tolerances: largest of contact and tie forces, dead loads and ``E I / L^2``; moments count over L [N]."""
         model, forces = self.model, np.abs(self.forces)
         turning = [tie.component == ROTATION for tie in model.ties]
         forces[forces.size - len(turning) :] /= np.where(turning, model.length, 1.0)
@@ -157,7 +157,7 @@ def reactions(state: State) -> dict[str, Reaction]:
 
 
 def tie_reactions(state: State, *, springs: bool) -> dict[str, Reaction]:
-    """Forces and moments by end of the supports, or of the ``springs`` to the ground, at the means of sections."""
+    """Reactions by end, at the sections' mean positions: of supports, or with ``springs`` of ground springs."""
     forces, places = dict[str, Floats](), dict[str, Floats]()
     for tie, value in zip(state.model.ties, state.tie_forces, strict=True):
         if tie.other is None and (tie.flexibility > 0) == springs:
@@ -190,7 +190,7 @@ def imbalance(state: State) -> float:
 
 
 def stored_energy(state: State) -> tuple[float, float]:
-    """Strain energy, and energy ``eps g^2 / 2`` of all closed contacts [J]."""
+    """Strain and contact energy ``eps g^2 / 2``, springs left out [J]."""
     strain = sum(body.strain_energy(state.u[body.part]) for body in state.model.bodies)
     return strain, sum(touch.pair.penalty * touch.gap**2 / 2 for touch in state.closed)
 

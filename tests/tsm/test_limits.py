@@ -40,6 +40,13 @@ BY_THE_PAPER = "such elements are straight and uniform, without loads along them
 STRAIGHT = beam("b", (0.0, 0.0), (1.0, 0.2), element="mixed", elements=4)
 BOTH = replace(leaning(), beams=(as_mixed(leaning()).beams[0], leaning().beams[1]))
 FREE_JOINT = replace(ONE, pins=(), contacts=(), hinges=(tsm.Hinge(beam="b", end="end"),))
+PARTED = tsm.Structure(
+    beams=(beam("a", (0.0, 0.0), (1.0, 0.0)), beam("c", (1.0, 0.0), (2.0, 0.0))),
+    supports=(
+        tsm.Support(beam="a", end="end"),
+        tsm.Support(beam="c", end="start", onward=((0.0, 0.1, 0.0),)),
+    ),
+)
 LONG = replace(ONE.beams[0], elements=600_000)
 BAD = {
     "far end": (of_beam(end=(1e155, 0)), r"Beam\(b\)\.end = \(1e\+155, 0\): must be two finite numbers, of at most 1e\+50"),
@@ -71,6 +78,7 @@ BAD = {
     "no such beam": (structure(contacts=(tsm.ContactPair(node="p0", beam="x"),)), "beam = 'x': names no beam"),
     "itself": (structure(contacts=(tsm.ContactPair(node="b.end", beam="b"),)), "does not touch itself"),
     "hinge on nothing": (solved(FREE_JOINT), r"Hinge\(b.end\): the joint turns freely"),
+    "supports that part": (solved(PARTED), r"Support\(c.start\): contradicts another at the joint"),
     "spring that pushes": (lambda: tsm.Spring(beam="b", end="end", y=-2.0), "y = -2"),
     "past the last stage": (solved(STAGED, [1.0, 2.5]), r"must increase within \(0, 2\]"),
     "arc length over stages": (lambda: tsm.trace(STAGED, arc_length=0.1, steps=2), "arc-length control follows a single stage"),

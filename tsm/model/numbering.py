@@ -27,15 +27,15 @@ _CONTACT_KINDS = np.arange(6, 10)
 class Numbering(Mesh):
     """Conditions and equations of a structure.
 
-    ``free`` (equations,): degree of freedom of every equation, banded ones first. ``banded``: number of these.
-    ``border``: number of border unknowns: border equations, then the contacts' own unknowns.
+    ``free`` (equations,): degree of freedom of every equation. ``banded``: number of banded ones, the first.
+    ``border``: number of border unknowns: ``border_dofs`` equations, then the contacts' own.
     ``rubbed``: whether a contact has friction.
     ``turns``: load parameters at which a stage ends and another follows, and at which the paths of the pins
         turn; with friction, every corner, since each may reverse a slip.
     ``loads``: dead loads on all degrees of freedom.
-    ``supports``: by supported end, the node and the components (3,) that the support holds and none before it.
-    ``prescribed``: values prescribed at load parameter 1, by degree of freedom. ``fixed``: these degrees of
-        freedom, ``motions``: their values, ``moves``: whether one is not zero in some stage.
+    ``supports``: by supported end, the node and a mask (3,) of the components that no support before it holds.
+    ``prescribed``: changes prescribed in every stage, by degree of freedom. ``fixed``: these degrees of
+        freedom, ``motions``: their values by stage, ``moves``: whether any is not zero.
     ``springs``: springs to the ground and in hinges, None without.
     ``units, row_units``: of unknowns and equations.
     """
@@ -43,7 +43,7 @@ class Numbering(Mesh):
     def __init__(self, structure: Structure) -> None:
         super().__init__(structure)
         self.supports: dict[str, tuple[int, Array]] = {}
-        self.prescribed: dict[int, float] = {}
+        self.prescribed: dict[int, tuple[float, ...]] = {}
         self._hold()
         self.loads, self.springs = self._dead_loads(), self._springs()
         self._place_pairs(structure)
@@ -54,28 +54,26 @@ class Numbering(Mesh):
         self.turns = tuple(sorted(turns.union(map(float, range(1, self.stages)))))
 
     def _hold(self) -> None:
-        """Take the supports; of those at one joint, the first moves it.
+        """Collect the supports; the first to hold a component moves it.
 
         Raises ValueError if two supports at one joint prescribe different values.
         """
         for support in self.structure.supports:
-            name = f"{support.beam}.{support.end}"
-            node = self.end_node(name)
-            motion = (support.ux, support.uy, support.rotation)
-            own = np.array([value is not None for value in motion])
-            own &= [3 * node + k not in self.prescribed for k in range(3)]
-            self.supports[name] = node, own
-            for k, value in enumerate(motion):
-                if value is not None and self.prescribed.setdefault(3 * node + k, value) != value:
+            name, given = f"{support.beam}.{support.end}", (support.ux, support.uy, support.rotation)
+            node, held = self.end_node(name), np.array([value is not None for value in given])
+            rates = np.zeros((self.stages, 3))
+            rates[0] = [value or 0.0 for value in given]
+            rates[1 : 1 + len(support.onward)] = np.reshape(support.onward, (-1, 3))
+            self.supports[name] = node, held & [3 * node + k not in self.prescribed for k in range(3)]
+            for k in np.flatnonzero(held).tolist():
+                rate = tuple(rates[:, k].tolist())
+                if self.prescribed.setdefault(3 * node + k, rate) != rate:
                     raise ValueError(f"Support({name}): contradicts another at the joint")
         self.fixed = np.array(sorted(self.prescribed), dtype=int)
-        changes = np.zeros((self.stages, self.dof_count))
-        changes[0, self.fixed] = [self.prescribed[dof] for dof in self.fixed]
-        for support in self.structure.supports:
-            node, held = self.supports[f"{support.beam}.{support.end}"]
-            for stage, motion in enumerate(support.onward, 1):
-                changes[stage, 3 * node : 3 * node + 3] += np.where(held, motion, 0.0)
-        self.motions, self.moves = Increments(changes[:, self.fixed]), bool(changes.any())
+        changes = np.array([self.prescribed[dof] for dof in sorted(self.prescribed)]).T.reshape(
+            self.stages, -1
+        )
+        self.motions, self.moves = Increments(changes), bool(changes.any())
 
     def _dead_loads(self) -> Increments:
         """Return the dead loads of all stages on the degrees of freedom."""
@@ -124,8 +122,8 @@ class Numbering(Mesh):
             integrated = isinstance(target.kind, Integrated)
             rule = f'elements "{target.beam.element}" have contacts without friction only'
             of_pair("friction", integrated or not pair.friction, rule)
-            envelope = integrated or pair.end_offset is None
-            of_pair("end_offset", envelope, f'belongs to a beam that tapers or has elements "{EXACT.name}"')
+            suits = integrated or pair.end_offset is None
+            of_pair("end_offset", suits, f'belongs to a beam that tapers or has elements "{EXACT.name}"')
             self.pairs.append(
                 PairModel(
                     pair=pair,
@@ -157,7 +155,7 @@ class Numbering(Mesh):
         self.border_dofs = len(border_dofs)
         self.border = len(border_dofs) + self.contact_unknowns
         self.equations = len(self.free)
-        # fixed degrees of freedom point past the last equation
+        # prescribed ones, slaves: past the last equation
         self.equation = np.full(self.dof_count, self.equations)
         self.equation[self.free] = np.arange(self.equations)
         self.element_equations = self.equation[self.dofs]

@@ -35,7 +35,7 @@ from tsm.system.newton import Newton
 from tsm.system.system import Drive
 
 _STRAIGHT = 0.02
-"""Largest unexplained fraction of a step that passes a bifurcation. A step that changes the index with a larger one may have left the path."""
+"""Largest unexplained fraction of a step that changes the index: a bifurcation. With a larger one it may have left the path."""
 _AHEAD = 1e-4
 """Load parameter beyond a critical point at which a fall starts."""
 _MOST_ATTEMPTS = 1000
@@ -60,14 +60,14 @@ class Follower:
         self.model, self.branch = model, settings.branch
         self.newton = Newton(model, settings)
         self.step = 1.0  # length of the next load step
-        self.target = 0.0  # next prescribed load parameter
-        self.turned = -1.0  # last corner of a pin's path
+        self.target = 0.0  # load parameter to reach next
+        self.turned = -1.0  # last kink; -1 before any
         start = Point(self.newton, self.newton.solve(initial_state(model)))
         self.track = Track(start)
         self.log = Step(equilibrium=start.equilibrium)  # since the last yielded step
         if model.rubbed:
             self.log.spent = np.zeros(1 + len(model.pairs))
-        self.chatter: Counter[tuple[int, float]] = Counter()  # changes of every pair at every load parameter
+        self.chatter: Counter[tuple[int, float]] = Counter()  # number of changes by pair and load parameter
         # margins of the events that the contacts of the last point may have next
         self.margins = self._measure(start) if start.equilibrium.converged else []
 
@@ -75,7 +75,7 @@ class Follower:
         return margins(point, self._drive(point.t))
 
     def _drive(self, t: float) -> Drive:
-        """What changes on the way to t; at the last point, on the way ahead."""
+        """Drive from the last point to t, or from there to the target."""
         begin = self.track.last.t
         return self.newton.assembler.drive(*((begin, t) if t > begin else (t, max(t, self.target))))
 
@@ -106,7 +106,7 @@ class Follower:
         check_ends(self.model, start.state, start.state)
 
     def _try_step(self, attempt: int) -> bool:
-        """Take a step, or shorten the next one; return whether one was taken."""
+        """Take a step or fall from a limit point; False if refused."""
         if attempt == _MOST_ATTEMPTS:
             raise StopError(Status.STEP_LIMIT)
         left, step = self.target - self.track.last.t, min(self.step, self.track.room())
@@ -127,18 +127,18 @@ class Follower:
         return True
 
     def _take(self, step: float, left: float) -> None:
-        """Take a step of a length, or one to the next prescribed load parameter, if it is the rest that is left."""
+        """Advance the load parameter by `step`, or to the target if no more than that is `left`."""
         if step < SMALLEST:
             raise RefusedError
         self._turn_corner()
         self._reach(self.target if left <= step * (1 + 1e-6) else self.track.last.t + step)
 
     def _turn_corner(self) -> None:
-        """Go on as the load does, at the start, where a path has a corner and where a stage begins.
+        """Restart the path at a kink: at the start, a turn of a pin's path, or a stage's beginning.
 
-        Contacts with friction may slip or stick from there. A stage begins just after the load parameter at
-        which the last one ends, so that all rates are its own. The path has a kink there, and no state before
-        it serves for a prediction.
+        Only with friction or stages. Contacts may then slip or stick anew. A stage begins just after
+        the load parameter at which the last one ends, so that all rates are its own. States before the kink
+        do not enter predictions.
         """
         here, t = self.track.last, self.track.last.t
         if t == self.turned or not (self.model.rubbed or self.model.stages > 1):
@@ -153,7 +153,7 @@ class Follower:
         self._begin(self._gripped(here, here.state))
 
     def _gripped(self, point: Point, last: State) -> Point:
-        """Point whose contacts with friction slip or stick from here, after a state `last`; a change is an event."""
+        """Point with slip or stick chosen anew where there is friction; `last`: state before. Logs the changes."""
         if not self.model.rubbed:
             return point
         before, gripped = grips(point.state), regripped(point, self._drive(point.t), last)
@@ -198,16 +198,16 @@ class Follower:
         return Search(self.track.last, self.margins, goal, self._solve, self._measure)
 
     def _solve(self, t: float) -> Point:
-        """Point at t from the predicted state, if the tangent leads to it."""
+        """Point at t from the prediction; refused if it is off the path."""
         last, start = self.track.last, self.track.predicted(t)
-        reached = self._solved(start, last.state)
+        reached = self._converged(start, last.state)
         reached.behind = self.track.unexplained(last, reached)
         if self.track.strays(start, reached.state):
             raise RefusedError
         return reached
 
-    def _solved(self, start: State, before: State | None = None) -> Point:
-        """Equilibrium near a start; contacts in stick have not slipped since a state before."""
+    def _converged(self, start: State, before: State | None = None) -> Point:
+        """Converged point near `start`; contacts in stick have no slip since `before`."""
         equilibrium = self.newton.solve(start)
         if before is not None and self.model.rubbed:
             equilibrium = rolled(self.newton, before, equilibrium)
@@ -217,7 +217,7 @@ class Follower:
         return Point(self.newton, equilibrium)
 
     def _advance(self, reached: Point) -> None:
-        """Accept a point if the step has no event, has followed the path and has passed no critical point."""
+        """Accept a point, or meet the bifurcation before it; refuse a step that may have left the path."""
         last, track = self.track.last, self.track
         unexplained = max(reached.behind, track.unexplained(reached, reached))
         if 0 <= reached.index != track.index and (reached.index > track.index or last.index == track.index):
@@ -256,18 +256,18 @@ class Follower:
         self.log.events += passes(self.model, self.track.last.equilibrium, ahead.equilibrium)
         self._accept(ahead)
         if self.branch != "primary":
-            self._turn(singular, Status.BIFURCATION)
+            self._end_or_fall(singular, Status.BIFURCATION)
 
     def _meet_limit_point(self) -> None:
         """End the path beside a limit point, or let the structure fall to the stable branch."""
         self._note_critical(CriticalKind.LIMIT_POINT, self.track.last, self.track.limit())
-        self._turn(self.track.last, Status.LIMIT_POINT)
+        self._end_or_fall(self.track.last, Status.LIMIT_POINT)
 
     def _note_critical(self, kind: CriticalKind, point: Point, load_parameter: float) -> None:
         self.log.critical.append(critical_point(kind, point, load_parameter))
         self.log.events.append(Event(kind=EventKind[kind.name], load_parameter=load_parameter))
 
-    def _turn(self, critical: Point, status: Status) -> None:
+    def _end_or_fall(self, critical: Point, status: Status) -> None:
         """End the path, or let the structure fall from a critical point, pushed along its mode in both directions."""
         if self.branch != "stable":
             raise StopError(status)
@@ -303,16 +303,16 @@ class Follower:
             raise
 
     def _resume(self, event: Point, state: State, *, jump: bool) -> None:
-        """Find equilibrium with the changed contacts and accept it."""
+        """Accept the new contacts; a higher index is a limit point."""
         if jump:
             found, released = self._fall().after(event, state)
             self.log.release(EventKind.SLIP_OFF, released)
             if grips(found.state):
                 raise StopError(Status.REST_UNKNOWN)
         else:
-            found = self._solved(state)
+            found = self._converged(state)
         check_ends(self.model, found.state, event.state)
-        gripped, held = self._gripped(found, event.state), self.track.index
+        gripped, before = self._gripped(found, event.state), self.track.index
         self._begin(gripped)
-        if self.track.index > held and self.branch != "primary":
+        if self.track.index > before and self.branch != "primary":
             self._meet_limit_point()
