@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from comparisons.answer import ContactHistory, Response
@@ -92,33 +93,36 @@ def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotati
     z = np.zeros(layout.unknowns)
     for touch in layout.touches:
         z[touch.arc] = answer.arcs[touch.spec.pair] / layout.length
-    turns = _rotations(layout, answer)
-    for part, arcs in zip(layout.parts, layout.extents(z), strict=True):
-        axis, line = answer.axes[layout.scene.beams[part.beam].name]
-        for number, s in zip((part.first, part.last), arcs, strict=True):
-            station, theta = layout.stations[number], np.interp(s, *turns[part.beam])
-            seen = np.array([np.interp(s * layout.length, axis, way) for way in line.T])
-            moved = (seen - layout.scene.beams[0].start) / layout.length - station.reference
-            free = (station.numbers >= 0) & [station.touch is None, station.touch is None, True]
-            z[station.numbers[free]] = np.append(moved, theta)[free]
-            if station.touch is not None and station.touch.angle != NONE:
-                z[station.touch.angle] = part.piece.angle(s)[0] + theta + math.asin(station.touch.face.tilt)
-    _balance(layout, answer, z)
+    for _ in range(2):  # the shear follows from the forces
+        turns = _rotations(layout, answer, z)
+        for part, arcs in zip(layout.parts, layout.extents(z), strict=True):
+            axis, line = answer.axes[layout.scene.beams[part.beam].name]
+            for number, s in zip((part.first, part.last), arcs, strict=True):
+                station, theta = layout.stations[number], np.interp(s, *turns[part.beam])
+                seen = np.array([np.interp(s * layout.length, axis, way) for way in line.T])
+                moved = (seen - layout.scene.beams[0].start) / layout.length - station.reference
+                free = (station.numbers >= 0) & [station.touch is None, station.touch is None, True]
+                z[station.numbers[free]] = np.append(moved, theta)[free]
+                if station.touch is not None and station.touch.angle != NONE:
+                    z[station.touch.angle] = (
+                        part.piece.angle(s)[0] + theta + math.asin(station.touch.face.tilt)
+                    )
+        _balance(layout, answer, z)
     return z, turns
 
 
-def _rotations(layout: Layout, answer: AnswerState) -> list[Rotations]:
+def _rotations(layout: Layout, answer: AnswerState, z: Array) -> list[Rotations]:
     """Rotations of all beams, with multiples of 2 pi, so that beams agree with prescribed rotations and, at joints, with each other."""
     known: dict[int, float] = {
         k: float(layout.given[item.numbers[2]])
         for k, item in enumerate(layout.stations)
         if item.numbers[2] < 0
     }
-    own: list[list[Part]] = [[] for _ in layout.scene.beams]
-    for part in layout.parts:
-        own[part.beam].append(part)
-    turns = [_rotation(layout, answer, parts[0]) for parts in own]
-    ends = [(parts[0].first, parts[-1].last) for parts in own]
+    own: list[list[tuple[Part, Array]]] = [[] for _ in layout.scene.beams]
+    for part, extent in zip(layout.parts, layout.extents(z), strict=True):
+        own[part.beam].append((part, extent))
+    turns = [_rotation(layout, answer, parts, z) for parts in own]
+    ends = [(parts[0][0].first, parts[-1][0].last) for parts in own]
     left = list(range(len(turns)))
     while left:
         number = next((b for b in left if any(k in known for k in ends[b])), left[0])
@@ -133,15 +137,31 @@ def _rotations(layout: Layout, answer: AnswerState) -> list[Rotations]:
     return turns
 
 
-def _rotation(layout: Layout, answer: AnswerState, part: Part) -> Rotations:
-    """Angles of the chords of a beam from the undeformed direction, extrapolated to the ends."""
+def _rotation(layout: Layout, answer: AnswerState, own: list[tuple[Part, Array]], z: Array) -> Rotations:
+    """Angles of a beam's chords from the undeformed direction, less the shear of the forces in z, extrapolated to the ends.
+
+    ``r' = d1 + (N/EA) d1 + (Q/GA) d2`` gives ``r' - n/GA = (1 + N/EA - N/GA) d1``. In strong shear the factor of d1 is negative; its
+    sign is the one that agrees with N.
+    """
+    part = own[0][0]
     length, (arc, line) = part.rod.length, answer.axes[layout.scene.beams[part.beam].name]
     chords, extents = np.diff(line, axis=0) @ (1.0, 1.0j), np.diff(arc)
     long = (np.abs(chords) > 0.0) & (extents > 0.0)
     if not long.any():
         return np.array([0.0, length]), np.zeros(2)
     s = (arc[:-1] + arc[1:])[long] / (2.0 * layout.length)
-    theta = np.unwrap(np.angle(chords[long] * np.exp(-1.0j * part.piece.angle(s))))
+    way, back = chords[long] / extents[long], np.exp(-1.0j * part.piece.angle(s))
+    theta = np.angle(way * back)
+    for part, (first, last) in own:
+        _, EA, GA, *_ = polyval(s, part.piece.coefficients, tensor=False)
+        force = np.array([1.0, 1.0j]) @ part.piece.force(part.constant(z), s)
+        along = way - force / GA
+        size = np.abs(along)
+        d1 = along / np.where(size > 0.0, size, 1.0)
+        factor = (1.0 / EA - 1.0 / GA) * (d1 * force.conjugate()).real
+        d1 = np.where(np.abs(1.0 + factor - size) <= np.abs(1.0 - factor + size), d1, -d1)
+        theta = np.where((s >= first) & (s <= last) & (size > 0.0), np.angle(d1 * back), theta)
+    theta = np.unwrap(theta)
     slope = np.append(np.diff(theta) / np.diff(s), 0.0)[[0, max(len(s) - 2, 0)]]
     ends = theta[[0, -1]] + slope * ([0.0, length] - s[[0, -1]])
     return np.array([0.0, *s, length]), np.array([ends[0], *theta, ends[1]])
