@@ -19,11 +19,20 @@ from tsm.model.pairs import PairModel
 from tsm.model.projection import nearest_chord, slide
 from tsm.model.state import State, Touch
 
+_AT_NODE = 1e-6
+"""Part of an element's length from a node within which a contact lies on it."""
+
 
 def closed(model: Model, state: State) -> list[tuple[int, PairModel, Touch]]:
     """Closed pairs with their numbers and contacts."""
     there = enumerate(zip(model.pairs, state.touches, strict=True))
     return [(k, pair, touch) for k, (pair, touch) in there if touch is not None]
+
+
+def on_rigid_nodes(model: Model, state: State) -> list[PairModel]:
+    """Pairs whose contact lies on a node of the paper's elements, which do not give way there."""
+    there = ((pair, touch) for _, pair, touch in closed(model, state) if pair.slot < 0)
+    return [pair for pair, touch in there if min(touch.xi, 1 - touch.xi) < _AT_NODE]
 
 
 def with_touches(model: Model, state: State, touches: tuple[Touch | None, ...]) -> State:

@@ -18,6 +18,7 @@ import numpy as np
 from tsm.contact.contact_set import crowded, initial_state, rearm
 from tsm.contact.events import Event, EventKind, passes
 from tsm.elements.properties import Array
+from tsm.model.contact import on_rigid_nodes
 from tsm.model.model import Model
 from tsm.model.state import UNDECIDED, State
 from tsm.path.critical import CriticalKind, critical_point, locate_bifurcation, mechanism
@@ -121,7 +122,8 @@ class Follower:
                 raise StopError(Status.FOLDED) from refused
             if refused.status in _NAMED:
                 raise StopError(refused.status) from refused
-            if self.track.last.speed <= FOLD:
+            last = self.track.last
+            if not last.speed > FOLD or on_rigid_nodes(self.model, last.state):
                 raise StopError(Status.CUTBACK_FLOOR) from refused
             self._meet_limit_point()
         return True

@@ -9,7 +9,7 @@ import numpy as np
 
 from tsm.contact.events import Event, normal_force, traction
 from tsm.elements.properties import Array
-from tsm.model.contact import closed
+from tsm.model.contact import on_rigid_nodes
 from tsm.model.groups.base import Stations
 from tsm.model.model import Model
 from tsm.path.critical import CriticalPoint
@@ -21,9 +21,6 @@ from tsm.statement.status import Status
 from tsm.system.axis import axis_line
 from tsm.system.newton import Equilibrium
 from tsm.system.system import Assembler
-
-_AT_NODE = 1e-6
-"""Part of an element's length from a node within which a contact lies on it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -266,14 +263,13 @@ def _where(model: Model, steps: list[Step], status: Status) -> str:
     reached = next((s.equilibrium.state.load_parameter for s in reversed(steps) if s.requested), 0.0)
     stopped = state.load_parameter if state else 0.0
     where = f"; stopped at load parameter {stopped:.6g}, last reported {reached:.6g}"
-    if status in {Status.CUTBACK_FLOOR, Status.LIMIT_POINT} and state:
-        for _, pair, touch in closed(model, state):
-            if pair.slot < 0 and min(touch.xi, 1 - touch.xi) < _AT_NODE:
-                beam = pair.target.beam
-                where += (
-                    f'; {pair.pair.name}: the contact lies on a node, where elements "{beam.element}" are rigid: '
-                    f"try {beam.elements + 1} elements"
-                )
+    if status is Status.CUTBACK_FLOOR and state:
+        for pair in on_rigid_nodes(model, state):
+            beam = pair.target.beam
+            where += (
+                f'; {pair.pair.name}: the contact lies on a node, where elements "{beam.element}" are rigid: '
+                f"try {beam.elements + 1} elements"
+            )
     if status is Status.END_CONTACT:
         event = steps[-1].events[-1]
         pair = next(pair for pair in model.pairs if pair.pair.name == event.pair)
