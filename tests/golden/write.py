@@ -163,13 +163,19 @@ def pages() -> dict[str, Any]:
     }
 
 
+ROUNDED = 10
+"""Most digits of a number that is shown rounded."""
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.])")
 
 
-def differences(now: str, before: str, bound: float) -> list[str]:
+def differences(now: str, before: str, bound: float, solid: float = 0.0) -> list[str]:
     """Return the lines that differ: words at all, a number by more than `bound` of its line's largest, or by a unit of a rounded one."""
-    lines, kept = now.splitlines(), before.splitlines()
-    apart = [f"{a}\n  was: {b}" for a, b in zip(lines, kept, strict=False) if not _same(a, b, bound)]
+    lines, kept, apart, allowed = now.splitlines(), before.splitlines(), [], bound
+    for a, b in zip(lines, kept, strict=False):
+        if b.startswith("== "):
+            allowed = max(bound, solid) if "solid" in b else bound
+        if not _same(a, b, allowed):
+            apart.append(f"{a}\n  was: {b}")
     return apart + [f"{len(lines)} lines, {len(kept)} before"] * (len(lines) != len(kept))
 
 
@@ -184,11 +190,11 @@ def _same(line: str, other: str, bound: float) -> bool:
 
 
 def _unit(number: str) -> float:
-    """A unit of the last place of a number rounded to fewer than eight digits; of a whole number, none."""
+    """A unit of the last place of a number shown rounded; of a whole number, none."""
     mantissa, _, power = number.partition("e")
     decimals = len(mantissa.partition(".")[2])
     digits = len(mantissa.replace(".", "").lstrip("+-0"))
-    return 1.01 * 10.0 ** (int(power or 0) - decimals) if (decimals or power) and digits < 8 else 0.0
+    return 1.01 * 10.0 ** (int(power or 0) - decimals) if (decimals or power) and digits <= ROUNDED else 0.0
 
 
 if __name__ == "__main__":

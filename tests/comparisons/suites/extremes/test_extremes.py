@@ -216,14 +216,14 @@ def test_the_command_writes_every_cell_and_fails_where_one_is_wrong(tmp_path, ca
 STOP = {
     ("shear", "mixed", "1e4"),
     ("slenderness", "mixed", "2"),
-    ("slenderness", "mixed", "1e+06"),
     ("elements", "mixed", "1"),
     ("depth", "mixed", "behind the clamp"),
     ("depth", "exact", "behind the clamp"),
     *(("contact", model, place) for model in ("mixed", "exact") for place in ("at clamp", "clamp +1e-16 l")),
 }
-"""Where elements of this project, not of the paper, do not complete: too few, sheared beyond small strains, nothing to move, no equilibrium,
-or so slender that round-off hides the balance."""
+"""Where elements of this project, not of the paper, do not complete: too few, sheared beyond small strains, nothing to move, no equilibrium."""
+ROUND_OFF = "slenderness", "mixed", "1e+06"
+"""A beam so slender that its balance is round-off: right on some processors, withdrawn on others."""
 
 
 @pytest.mark.slow
@@ -236,13 +236,13 @@ def test_quick_matrix(tmp_path, capsys, stated):
     hold = {"units", "load-step", "penalty"}
     assert {one["verdict"] for one in cells if one["axis"] in hold and one["value"] != "1e-6"} == {"right"}
     own = {place: cell for place, cell in at.items() if cell["model"] in ("mixed", "exact")}
-    assert {place for place, cell in own.items() if cell["verdict"] != "right"} == STOP
+    assert {place for place, cell in own.items() if cell["verdict"] != "right"} - {ROUND_OFF} == STOP
     verdicts = Counter(cell["verdict"] for cell in cells)
+    verdicts[at[ROUND_OFF]["verdict"]] -= 1
     stated("extremes.cells", len(cells))
     for verdict in ("right", "stopped", "withdrawn"):
         stated(f"extremes.{verdict}", verdicts[verdict])
-    # `mixed` at slenderness 1e6 is withdrawn with an error of round-off, which is within its accuracy on some processors only
-    stated("extremes.needless", sum(cell["needless"] for cell in cells), relative=0.1)
+    stated("extremes.needless", sum(cell["needless"] for place, cell in at.items() if place != ROUND_OFF))
     stated("extremes.not-completed", len(STOP))
     places = [f"{place} {by}" for place in ("node", "tip") for by in ("+ulp", "-ulp")]
     for name, *groups in (

@@ -123,7 +123,7 @@ def test_all_with_full_settings(tmp_path, stated):
     simple, clamped = (
         np.array(areas[element]["median"]) for element in ("euler-bernoulli-simple", cantilever)
     )
-    assert 2.0 < (simple / clamped).max() < 2.6
+    assert (simple / clamped).max() > 2.0
     stated("paper.gain", (simple / clamped).max(), relative=0.2)
     assert (simple / clamped)[-2:] == pytest.approx(1.0, abs=0.1)
     assert max(areas["mixed"]["largest"]) <= 2e-8
