@@ -31,7 +31,7 @@ BEAMS, RODS = "TSM mixed, 10 elements a beam", "exact rods, coupled"
 """The runs on the page."""
 NAMES = {UPPER: "pin on upper", TIP: "upper's tip on lower", LOWER: "pin on lower"}
 """The contact pairs in words."""
-COLOURS = {UPPER: palette.VERMILION, TIP: palette.PURPLE, LOWER: palette.GREEN}
+COLOURS = {UPPER: palette.VERMILION, TIP: palette.PURPLE, LOWER: palette.BLUE}
 ARROW = 0.16
 """Length of the line of a force per force [m/N]."""
 Columns = Mapping[str, Array]
