@@ -271,7 +271,7 @@ def dense_index(state):
 
 
 def test_index_is_that_of_the_dense_reduced_hessian_on_every_drawn_state():
-    """Of the states above without friction, compressed along the strips more and more."""
+    """Every state above without friction is compressed along its strips, more and more."""
     seen = Counter()
     for case, make in CASES.items():
         state = make()

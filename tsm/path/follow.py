@@ -225,7 +225,8 @@ class Follower:
         if 0 <= reached.index != track.index and (reached.index > track.index or last.index == track.index):
             if unexplained > _STRAIGHT:
                 raise RefusedError
-            return self._meet_bifurcation(reached)
+            self._meet_bifurcation(reached)
+            return
         if self.model.rubbed:
             more, between = spent(track, reached, self._drive(reached.t))
             self._search(reached.t).check_dips([*between, reached])
@@ -235,7 +236,6 @@ class Follower:
         # the next step, after one that could have been `fitting` times as long
         fitting, taken = allowed(unexplained), reached.t - last.t
         self.step = min(max(min(2.0, fitting) * taken, self.step if fitting >= 1 else 0.0), 1.0)
-        return None
 
     def _accept(self, point: Point) -> None:
         """Make a point the last of the path."""

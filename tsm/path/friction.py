@@ -29,8 +29,7 @@ _STILL = 1e-9
 _FLAT = 1e-6
 """Rate at which a force leaves its cone, in ``EI/L^2`` per whole load, that counts as zero. Where a slip ends, the
 force moves along the cone. A slip at the rate `_STILL` moves the force of a stick by up to EA times this
-rate, which
-counts as zero where no other state is admissible."""
+rate, which counts as zero where no other state is admissible."""
 _MOST = 4096
 """Combinations of states that are tried: six contacts without force."""
 
