@@ -64,6 +64,8 @@ def _draw(axes: Any, trade: Trade, scope: str, cost: str, *, own: bool) -> None:
     title = "against what each model converges to, Pareto fronts" if own else "against the exact rod"
     axes.set(xscale="log", yscale="log", ylabel=f"error of {SHOWN}, {state}", title=title)
     axes.margins(x=0.3, y=0.06)
+    low, high = np.log10(axes.get_xlim())  # whole decades have labels that do not overlap
+    axes.set_xlim(10.0 ** np.floor(low), 10.0 ** np.ceil(high))
     if own:
         axes.set_xlabel(AXES[cost])
         doubt = trade.uncertainty(SOLID.name, scope, SHOWN)
