@@ -26,7 +26,7 @@ from comparisons.suite.settings import Changes, changed
 
 TIMES = (0.25, 0.5, 0.75, 1.0)
 """Load parameters of the budget."""
-STEPS = 20
+STEPS = 8
 """Load steps of the solutions that the budget is computed from; the part for load steps compares with twice as many."""
 ELEMENTS = 20
 """TSM elements, of the type `mixed`."""
