@@ -2,9 +2,10 @@
 
 from collections.abc import Callable
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from comparisons.answer.record import Answer, Array, Sections
 from comparisons.scene import BeamSpec, Scene
@@ -14,7 +15,7 @@ FIRST = 1e-9
 APART = 1e-12
 """Largest distance of two stations at one place, over the length of the beam."""
 CLOSE = 0.9
-"""Fraction of the largest station value below which no value between stations is sought."""
+"""Fraction of the largest station value of all load parameters below which a largest value cannot be."""
 UNEVEN = 1e-3
 """Smallest ratio of the shortest to the longest station spacing at which a polynomial is used."""
 ALONG = {
@@ -29,8 +30,8 @@ ALONG = {
 nominal ones at the faces, ``N/A + M h/2I`` and ``N/A - M h/2I``; the other sign counts as 0."""
 
 
-Curve = tuple[Array, Array]
-"""Arc lengths and values of a quantity at them."""
+Curve = tuple[Array, Array, Callable[[], Any]]
+"""Arc lengths, values of a quantity at them, and what chooses the stations without doubles."""
 
 
 class Extreme(NamedTuple):
@@ -43,7 +44,7 @@ class Extreme(NamedTuple):
 def extremes_along(response: Answer, scene: Scene, *, every: bool = True) -> dict[str, dict[str, Extreme]]:
     """Return the extremes by beam and by quantity, a key of `ALONG`; without quantities that the model does not state.
 
-    An extreme may lie between stations, see `peak`. Without `every` it is sought there only if it may be the largest of all.
+    An extreme may lie between stations, see `peak`. Without `every` it is 0 where it cannot be the largest over the load parameters.
     """
     return {beam.name: _along(response, beam, every) for beam in scene.beams}
 
@@ -55,7 +56,7 @@ def _along(response: Answer, beam: BeamSpec, every: bool) -> dict[str, Extreme]:
     for k in range(len(response.load_parameter)):
         found = {} if response.sections is None else _forces(response.sections(beam.name, k), beam, section)
         arc, line = response.axis_line(beam.name, k)
-        found["displacement"] = [(arc, np.hypot(*(line - undeformed(tuple(arc))).T))]
+        found["displacement"] = [(arc, np.hypot(*(line - undeformed(tuple(arc))).T), lambda: slice(None))]
         for name, curves in found.items():
             rows.setdefault(name, []).append(curves)
     return {name: _extreme(curves, every) for name, curves in rows.items()}
@@ -63,15 +64,19 @@ def _along(response: Answer, beam: BeamSpec, every: bool) -> dict[str, Extreme]:
 
 def _extreme(rows: list[list[Curve]], every: bool) -> Extreme:
     """Return one extreme per row (load parameter); of equal curves, the first."""
-    sizes = [max(float(np.abs(values).max()) for _, values in curves) for curves in rows]
+    sizes = [max(float(np.abs(values).max()) for _, values, _ in curves) for curves in rows]
     least = 0.0 if every else CLOSE * max(sizes)
-    found = [max((peak(*curve, least) for curve in curves), key=lambda one: abs(one[0])) for curves in rows]
+    peaks = ((peak(arc[own()], values[own()]) for arc, values, own in curves) for curves in rows)
+    found = [
+        max(row, key=lambda one: abs(one[0])) if size >= least else (0.0, 0.0)
+        for row, size in zip(peaks, sizes, strict=True)
+    ]
     return Extreme(*np.array(found).T)
 
 
 def _sections(beam: BeamSpec, arcs: tuple[float, ...]) -> Array:
-    """Return area and half the height over the second moment at arc lengths, shape (2, m); of a uniform beam (2, 1)."""
-    found, arcs = [], arcs if beam.tapers else (0.0,)
+    """Return area and half the height over the second moment at arc lengths, shape (2, m)."""
+    found = []
     for arc in arcs:
         fraction = min(arc / beam.length, 1.0)
         area, inertia, _ = beam.section(fraction)
@@ -82,31 +87,30 @@ def _sections(beam: BeamSpec, arcs: tuple[float, ...]) -> Array:
 def _forces(
     at: Sections, beam: BeamSpec, section: Callable[[tuple[float, ...]], Array]
 ) -> dict[str, list[Curve]]:
-    at = _once(at, APART * beam.length)
     curves = {"axial_force": [at.N], "shear_force": [at.V], "bending_moment": [at.M]}
     if beam.height is not None:
-        area, lever = section(tuple(at.arc))
-        faces = at.N / area + at.M * lever, at.N / area - at.M * lever
+        area, lever = section(tuple(at.arc) if beam.tapers else (0.0,))
+        axial, bending = at.N / area, at.M * lever
+        faces = axial + bending, axial - bending
         curves["tensile_stress"] = [np.maximum(face, 0.0) for face in faces]
         curves["compressive_stress"] = [np.minimum(face, 0.0) for face in faces]
-    return {name: [(at.arc, values) for values in found] for name, found in curves.items()}
+    own = cache(lambda: _once(at, APART * beam.length))
+    return {name: [(at.arc, values, own) for values in found] for name, found in curves.items()}
 
 
-def _once(at: Sections, apart: float) -> Sections:
-    """Return the stations without doubles at which no force jumps."""
+def _once(at: Sections, apart: float) -> NDArray[np.bool_]:
+    """Return which stations are no doubles at which no force jumps."""
     forces = np.stack([at.N, at.V, at.M])
     scale = np.array([[1.0], [1.0], [max(at.arc[-1], apart)]]) * max(float(np.abs(forces[:2]).max()), 1e-300)
-    same = np.diff(at.arc) <= apart
     jumps = np.any(np.abs(np.diff(forces, axis=1)) > FIRST * scale, axis=0)
-    kept = np.append(True, ~same | jumps)
-    return Sections(arc=at.arc[kept], N=at.N[kept], V=at.V[kept], M=at.M[kept])
+    return np.append(True, (np.diff(at.arc) > apart) | jumps)
 
 
-def peak(arc: Array, values: Array, least: float = 0.0) -> tuple[float, float]:
+def peak(arc: Array, values: Array) -> tuple[float, float]:
     """Return the value of the largest magnitude, and its arc length: the first one of equal values.
 
     Around the largest station value, a polynomial through it and two neighbours on each side (or one) may be larger. There is none
-    at an end, across a jump (two stations at one place), or where that value is below `least`.
+    at an end or across a jump (two stations at one place).
 
     Examples
     --------
@@ -120,9 +124,7 @@ def peak(arc: Array, values: Array, least: float = 0.0) -> tuple[float, float]:
     value, place = float(values[k]), float(arc[k])
     for reach in (2, 1):
         near = slice(k - reach, k + reach + 1)
-        if abs(value) < least or k < reach or k + reach >= len(arc):
-            continue
-        spacing = np.diff(arc[near])
+        spacing = np.diff(arc[near]) if reach <= k < len(arc) - reach else np.zeros(1)
         if spacing.min() > UNEVEN * spacing.max():
             return _vertex(arc[near] - place, values[near], value, place)
     return value, place
