@@ -11,7 +11,7 @@ import numpy as np
 
 from comparisons.answer import ContactEvent, Response
 from comparisons.models import MODELS
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.scene import load_scene
 
 RUNS = {

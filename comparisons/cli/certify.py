@@ -9,7 +9,7 @@ from comparisons.cli.options import STANDARD, outputs, write
 from comparisons.cli.screen import DONE, STOPPED, WRONG, watching
 from comparisons.files import OutputError
 from comparisons.models import TSM, certified, restored, solve
-from comparisons.models.options import ModelError
+from comparisons.models.model import ModelError
 from comparisons.output import json_text
 from comparisons.referee import Judgement, Verdict, certify
 from comparisons.scene import load_scene

@@ -6,7 +6,7 @@ from argparse import Namespace
 from comparisons.cli.options import STANDARD, outputs, write
 from comparisons.cli.screen import DONE
 from comparisons.models import find
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.models.outside.exchange import request
 from comparisons.report.sketch import draw, stated
 from comparisons.scene import load_scene

@@ -15,7 +15,7 @@ from comparisons.cli.options import STATED, add_command
 from comparisons.cli.screen import BAD_INPUT, DONE, INTERRUPTED, STOPPED, WRONG, report
 from comparisons.extras import EXTRAS, install
 from comparisons.files import OutputError, printable
-from comparisons.models.options import ModelError
+from comparisons.models.model import ModelError
 from comparisons.scene import InputError
 from comparisons.suites.names import SUITES
 

@@ -18,7 +18,7 @@ from comparisons.cli.screen import (
 )
 from comparisons.files import writable_folder, write_text
 from comparisons.models import TSM, find
-from comparisons.models.options import ModelError
+from comparisons.models.model import ModelError
 from comparisons.output import tabulated
 from comparisons.report.table import table_text
 from comparisons.scene import Scene, built_in_scenes, load_scene

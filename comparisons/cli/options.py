@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from comparisons.files import OutputError, result_file, write_text
 from comparisons.models import MODELS
-from comparisons.models.options import BRANCHES, ModelError, Options
+from comparisons.models.model import BRANCHES, ModelError, Options
 from comparisons.scene import rules
 from comparisons.scene.rules import Rule, RuleError
 from comparisons.suites.names import SUITES

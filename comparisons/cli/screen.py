@@ -7,7 +7,7 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 from comparisons.files import printable
-from comparisons.models.progress import REDRAW, Count, Reached, Watch, bar
+from comparisons.models.model import REDRAW, Count, Reached, Watch, bar
 
 if TYPE_CHECKING:
     from comparisons.answer import Response

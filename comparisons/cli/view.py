@@ -9,7 +9,7 @@ from comparisons.answer import Response
 from comparisons.cli.screen import DONE, exit_status, files_named, report, staging, watching
 from comparisons.files import writable_folder
 from comparisons.models import SOLID, TSM, solve
-from comparisons.models.options import ModelError, Options
+from comparisons.models.model import ModelError, Options
 from comparisons.report.export import Series, read_series, solved_series
 from comparisons.report.render import film, show, write_film
 from comparisons.scene import Scene, load_scene

@@ -1,6 +1,6 @@
 """The models, by name in a registry. Each model solves a scene and returns its response."""
 
-from comparisons.models.base import Model, Style
+from comparisons.models.model import Model, Style
 from comparisons.models.registry import MODELS, Certify, certified, find, restored, solve
 from comparisons.models.rod import ELASTICA, ROD
 from comparisons.models.solid import SOLID

@@ -20,7 +20,7 @@ from comparisons.answer import (
     SupportHistory,
 )
 from comparisons.exact import Outcome, RodPath
-from comparisons.models.options import ModelError
+from comparisons.models.model import ModelError
 from comparisons.models.shared import POINTS
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 from comparisons.scene.ends import BeamEnd

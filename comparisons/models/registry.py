@@ -7,12 +7,11 @@ from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal
 
-from comparisons.models.options import ModelError, Options
-from comparisons.models.progress import Watch, unwatched
+from comparisons.models.model import ModelError, Options, Watch, unwatched
 
 if TYPE_CHECKING:
     from comparisons.answer import Response
-    from comparisons.models.base import Model
+    from comparisons.models.model import Model
     from comparisons.scene import Scene
 
 Certify = Literal["last", "all", "none"]

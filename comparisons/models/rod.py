@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from comparisons.models.base import Model, Style, refused
-from comparisons.models.options import ModelError, Options
+from comparisons.models.model import Model, ModelError, Options, Style, refused
 from comparisons.models.shared import kept
 from comparisons.models.tsm import beams_refusal
 from comparisons.scene.keys import ONE_ROD, RODS
@@ -13,7 +12,7 @@ from comparisons.scene.keys import ONE_ROD, RODS
 if TYPE_CHECKING:
     from comparisons.answer import Response
     from comparisons.models.cantilever import RodScene
-    from comparisons.models.progress import Watch
+    from comparisons.models.model import Watch
     from comparisons.models.theory import Bending
     from comparisons.scene import Scene
 

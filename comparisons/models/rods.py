@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.answer import Array, ContactHistory, FrictionHistory, Response, Sections, SupportHistory
-from comparisons.models.progress import Watch
+from comparisons.models.model import Watch
 from comparisons.models.shared import POINTS, Axis, rows
 from comparisons.models.tsm import TSM
 from comparisons.referee import Equilibrium, Verdict, certify

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from comparisons.answer import Array, Response
-    from comparisons.models.options import Options
+    from comparisons.models.model import Options
     from comparisons.scene import BeamSpec, PinSpec, Scene
 
 POINTS = 401

@@ -5,9 +5,7 @@ from __future__ import annotations
 from math import ceil
 from typing import TYPE_CHECKING, Any
 
-from comparisons.models.base import Model, Style, refused
-from comparisons.models.options import ModelError, Options
-from comparisons.models.progress import Reached, Watch
+from comparisons.models.model import Model, ModelError, Options, Reached, Style, Watch, refused
 from comparisons.models.shared import joints, kept, line_loads, occupied, of_result, result_of, ways
 from comparisons.scene.conditions import COMPONENTS
 from comparisons.scene.keys import STRIPS

@@ -22,8 +22,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.answer import Response
-from comparisons.models.options import Options
-from comparisons.scene import BeamSpec, Scene
+from comparisons.scene import BeamSpec
 
 MESH = 4.0
 """Allowed error over the first neglected term, for a contact on straight elements or on solids."""
@@ -86,11 +85,9 @@ def ordinal(order: int) -> str:
     return words.get(order, f"{order}th")
 
 
-def element_lengths(scene: Scene, options: Options) -> tuple[float, float]:
-    """Return the longest and the shortest beam element of the first beam, over the length."""
-    beam = scene.beams[0]
-    if options.elements or not beam.nodes:
-        count = options.elements or beam.divisions
-        return 1 / count, 1 / count
+def element_lengths(beam: BeamSpec, elements: int | None) -> tuple[float, float]:
+    """Return the longest and the shortest of a beam's elements, or of another number of equal ones, over the length."""
+    if elements or not beam.nodes:
+        return (1 / (elements or beam.divisions),) * 2
     lengths = np.diff([0.0, *beam.nodes, 1.0])
     return float(lengths.max()), float(lengths.min())

@@ -8,9 +8,7 @@ from itertools import accumulate
 from math import hypot, nan, sqrt
 from typing import TYPE_CHECKING, Any
 
-from comparisons.models.base import Model, Style
-from comparisons.models.options import ModelError, Options
-from comparisons.models.progress import Reached, Watch
+from comparisons.models.model import Model, ModelError, Options, Reached, Style, Watch
 from comparisons.models.shared import kept, line_loads, of_result, result_of, rows, ways
 from comparisons.scene.keys import BEAMS
 
@@ -164,7 +162,7 @@ class Tsm(Model):
         kind, beam = self.kind(scene, options), scene.beams[0]
         if not isinstance(kind, ClosedForm):
             return {"accuracy of the integration": theory.EXACT}
-        longest, shortest = theory.element_lengths(scene, options)
+        longest, shortest = theory.element_lengths(beam, options.elements)
         turn = min(bent.curvature * longest, bent.turn)
         force = bent.force * beam.EI / beam.length**2
         slip, stretch = force / beam.GA, force / beam.EA

@@ -17,7 +17,7 @@ import numpy as np
 from comparisons.answer import Array
 from comparisons.extras import install
 from comparisons.files import OutputError, replacing
-from comparisons.models.progress import Count, uncounted
+from comparisons.models.model import Count, uncounted
 from comparisons.report.export import Series
 from comparisons.report.panel import COLOURS, Panel, Scale, panel
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from comparisons.answer import Array
 from comparisons.answer.table import unit_names
 from comparisons.models import MODELS, find
-from comparisons.models.options import ModelError
+from comparisons.models.model import ModelError
 from comparisons.models.outside.programs import offered
 from comparisons.report import palette
 from comparisons.report.plot import WIDTH, arrow, figure, save

@@ -18,8 +18,7 @@ import numpy as np
 from comparisons.answer import Array
 from comparisons.answer.quantities import forces, moments, size
 from comparisons.models import ROD, SOLID, TSM, solve
-from comparisons.models.options import ModelError, Options
-from comparisons.models.progress import Count, uncounted
+from comparisons.models.model import Count, ModelError, Options, uncounted
 from comparisons.scene import Scene
 from comparisons.suite import Case
 from comparisons.suite.settings import Changes, changed

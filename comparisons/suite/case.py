@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from comparisons.models import Model, find
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.scene import Scene, to_toml
 from comparisons.version import version
 

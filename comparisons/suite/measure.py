@@ -25,7 +25,7 @@ from comparisons.answer.errors import Errors, error_histories, largest
 from comparisons.answer.file import as_dict, restated
 from comparisons.answer.quantities import SCOPES
 from comparisons.models import certified, find, solve
-from comparisons.models.options import ModelError
+from comparisons.models.model import ModelError
 from comparisons.output import plain
 from comparisons.referee import Verdict
 from comparisons.scene import to_toml

@@ -9,7 +9,7 @@ from pathlib import Path
 from time import monotonic
 from typing import Any
 
-from comparisons.models.progress import REDRAW, bar
+from comparisons.models.model import REDRAW, bar
 from comparisons.suite.case import Case
 from comparisons.suite.measure import Row
 from comparisons.suite.run import COMPLETED, Results, run

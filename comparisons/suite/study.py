@@ -12,7 +12,7 @@ import numpy as np
 
 from comparisons.answer import Response
 from comparisons.models import TSM, find
-from comparisons.models.options import BRANCHES, ModelError, Options
+from comparisons.models.model import BRANCHES, ModelError, Options
 from comparisons.output import tabulated
 from comparisons.scene import Scene, built_in_scenes, load_scene, rules
 from comparisons.scene.read import LISTS

@@ -14,8 +14,7 @@ from comparisons.answer.quantities import event_differences, names
 from comparisons.answer.table import unit_names
 from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.models import Model, certified, find, solve
-from comparisons.models.options import ModelError, Options
-from comparisons.models.progress import Count, Watch, uncounted, unwatched
+from comparisons.models.model import Count, ModelError, Options, Watch, uncounted, unwatched
 from comparisons.models.theory import bending
 from comparisons.output import Report, json_text
 from comparisons.report.budget_plot import budget_section, plot_budget, write_budget

@@ -8,7 +8,7 @@ from comparisons.answer import Response
 from comparisons.answer.errors import difference, worst_place
 from comparisons.answer.quantities import QUANTITIES
 from comparisons.models import ROD, certified, find, solve
-from comparisons.models.options import ModelError, Options
+from comparisons.models.model import ModelError, Options
 from comparisons.referee.certify import ALLOWED
 from comparisons.scene import Scene
 from comparisons.suites.finding import Finding, junit_text

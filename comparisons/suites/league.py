@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.models import MODELS, ROD, Model, find
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.models.outside.programs import used
 from comparisons.output import write_numbers, write_rows
 from comparisons.report import palette

@@ -19,7 +19,7 @@ import tsm
 from comparisons.answer.errors import difference
 from comparisons.cli import main
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.models.solid import to_solid
 from comparisons.models.tsm import to_structure
 from comparisons.scene import load_scene

@@ -12,7 +12,7 @@ import pytest
 from comparisons.answer import Response
 from comparisons.cli import main
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.report.answer import picture  # what is drawn, before it is a file
 from comparisons.scene import load_scene
 

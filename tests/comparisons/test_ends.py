@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from comparisons.answer import Response
 from comparisons.cli import main
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.scene import (
     BeamSpec,
     ContactSpec,

@@ -11,7 +11,7 @@ import pyvista
 
 from comparisons.answer import Response
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.report.export import CONTACTS, HINGES, SUPPORTS, blocks, write_series
 from comparisons.scene import load_scene
 from tests.comparisons.report.specimen import SPECIMEN

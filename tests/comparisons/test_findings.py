@@ -11,7 +11,7 @@ import pytest
 from comparisons.answer import Response
 from comparisons.exact import rod_under_pin
 from comparisons.models import certified, solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.referee import certify
 from comparisons.scene import Scene, load_scene
 from tests.fuzz.world_judge import findings, run

@@ -12,7 +12,7 @@ from comparisons.answer.errors import difference
 # the coefficient of friction that a clamp shows is in no answer
 from comparisons.answer.material import frictions_found, material_forces
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.scene import LoadSpec, Scene, SupportSpec, load_scene
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)

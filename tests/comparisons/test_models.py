@@ -9,7 +9,7 @@ import pytest
 
 from comparisons.answer import Response
 from comparisons.models import MODELS, TSM, Model, certified, find, solve
-from comparisons.models.options import ModelError, Options
+from comparisons.models.model import ModelError, Options
 from comparisons.models.solid import to_solid
 from comparisons.scene import (
     HingeSpec,

@@ -9,8 +9,7 @@ import pytest
 
 from comparisons.cli import screen as shown  # its clock: a command draws what its own speed lets it
 from comparisons.models import solve
-from comparisons.models.options import Options
-from comparisons.models.progress import Reached
+from comparisons.models.model import Options, Reached
 from comparisons.scene import load_scene
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=4)

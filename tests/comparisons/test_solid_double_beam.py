@@ -7,7 +7,7 @@ import pytest
 
 import fem_reference
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.models.solid import to_solid
 from comparisons.scene import Scene, load_scene
 

@@ -10,7 +10,7 @@ import pytest
 
 from comparisons.answer import Response
 from comparisons.models import certified, solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.scene import Scene, load_scene, read_scene
 
 FINDINGS = Path(__file__).parent / "findings"

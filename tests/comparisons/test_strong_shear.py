@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.referee import certify
 from comparisons.scene import read_scene
 

@@ -9,7 +9,7 @@ import pytest
 
 from comparisons.answer import Deformation, Response
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.models.verify import CHECK_FAILED, CHECKS, verified
 from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene
 from tests.comparisons.referee.forged import contact, support

@@ -12,7 +12,7 @@ from PIL import Image
 from comparisons.answer import Response
 from comparisons.cli import main
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.report import render  # a machine without OpenGL
 from comparisons.report.export import HINGES, blocks, read_series, solved_series, write_series
 from comparisons.report.panel import Panel, mises_panel, panel  # what is drawn, before it is pixels

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from tests.fuzz.command import one
 from tests.fuzz.held import drawn_held
 from tests.fuzz.world_judge import Row, apart, findings

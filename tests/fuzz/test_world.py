@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.scene import SPECIAL, Scene, load_scene, read_scene, to_tables, to_toml
 from tests.fuzz.broken import TABLES
 from tests.fuzz.special import DRAW

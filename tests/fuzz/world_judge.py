@@ -13,7 +13,7 @@ import numpy as np
 
 from comparisons.answer import Response
 from comparisons.models import solve
-from comparisons.models.options import ModelError, Options
+from comparisons.models.model import ModelError, Options
 from comparisons.models.verify import penetration
 from comparisons.referee import Judgement, Verdict, certify
 from comparisons.scene import Scene, to_toml

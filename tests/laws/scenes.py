@@ -10,7 +10,7 @@ import pytest
 import tsm
 from comparisons.answer import Response
 from comparisons.models import MODELS, solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.referee import certify
 from comparisons.scene import SPECIAL, Scene, load_scene, unstated
 from tests.fuzz.special import DRAW

@@ -6,7 +6,7 @@ import pytest
 
 import tsm
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.referee import certify
 from comparisons.scene import BeamSpec, LoadSpec, Scene, SupportSpec
 from tests.laws.scenes import answer, scene

@@ -9,7 +9,7 @@ from scipy.special import ellipe, ellipk
 
 from comparisons.exact import elastica_under_pin, rod_under_pin
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.scene import load_scene
 from comparisons.suites.manual import problems, read_problem
 from comparisons.suites.manual.measures import (

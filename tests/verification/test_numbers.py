@@ -9,7 +9,7 @@ import pytest
 
 from comparisons.answer.errors import errors
 from comparisons.models import find, solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.scene import load_scene
 from comparisons.suite import changed
 from comparisons.suites.compare import ELASTICA, MIXED, PAPER, ROD, RUNS, SOLID

@@ -9,7 +9,7 @@ import tsm
 from comparisons.answer.errors import errors
 from comparisons.exact import rod_under_pin
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.models.tsm import to_structure
 from comparisons.scene import load_scene
 from tests.oracles.coupled import pair_of

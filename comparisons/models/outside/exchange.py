@@ -12,7 +12,7 @@ from comparisons.answer import Response
 from comparisons.answer.axis import sampled_axes
 from comparisons.answer.file import NotFiniteError, contradictions, parsed, require, restated
 from comparisons.files import one_line
-from comparisons.models.options import ModelError, Options
+from comparisons.models.model import ModelError, Options
 from comparisons.models.outside.adapters.exchange import Histories
 from comparisons.models.outside.child import ProgramError, ProgramStatus
 from comparisons.models.shared import joints, kept

@@ -19,8 +19,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from comparisons.extras import install
-from comparisons.models.base import Model, Style
-from comparisons.models.options import ModelError, Options
+from comparisons.models.model import Model, ModelError, Options, Style
 from comparisons.models.outside.child import ProgramError, ProgramStatus, found, run
 from comparisons.scene import rules
 from comparisons.scene.keys import PROGRAMS
@@ -31,8 +30,8 @@ if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
     from comparisons.answer import Response
+    from comparisons.models.model import Watch
     from comparisons.models.outside.adapters.exchange import Refusal, States
-    from comparisons.models.progress import Watch
     from comparisons.scene import Scene
 
 SUFFIX = ".toml"

@@ -12,7 +12,7 @@ from comparisons.answer import Array, Response
 from comparisons.answer.file import SCHEMA
 from comparisons.answer.quantities import QUANTITIES, names
 from comparisons.models import MODELS, SOLID, TSM, Model, solve
-from comparisons.models.options import ModelError, Options
+from comparisons.models.model import ModelError, Options
 from comparisons.scene import BeamSpec, Scene
 from comparisons.suite.accuracy import trials
 from tsm.elements import ClosedForm

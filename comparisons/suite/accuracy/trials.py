@@ -11,7 +11,7 @@ from comparisons.answer import Array, Response
 from comparisons.answer.errors import difference
 from comparisons.answer.quantities import QUANTITIES, size
 from comparisons.models import SOLID, TSM, solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.scene import Scene
 from tsm.elements import EXACT, MIXED, ClosedForm
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.models import MODELS, ROD, SOLID, TSM, Model
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
 from comparisons.scene.rules import Point
 from comparisons.suite import Case

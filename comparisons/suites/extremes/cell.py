@@ -120,7 +120,7 @@ def circle(case: Case, own: Response, _: Results) -> Finding:
     error = float(np.hypot(*(own.tips[beam.name] / beam.length - exact).T).max(initial=0.0))
     allowed, why = FLOOR, "accuracy of the integration"
     if isinstance(kind, ClosedForm):
-        turns = angle * element_lengths(case.scene, case.options)[0]
+        turns = angle * element_lengths(case.scene.beams[0], case.options.elements)[0]
         term = float((chord_term(turns, kind.order) * np.hypot(*exact.T)).max(initial=0.0))
         allowed, why = FLOOR + NEXT_TERM * term, f"{ordinal(kind.order)} order of the element"
     return Finding(name="circle", error=error, allowed=allowed, why=why)

@@ -14,7 +14,7 @@ from comparisons.answer.axis import STATIONS, axes_at_stations
 from comparisons.answer.errors import difference
 from comparisons.answer.table import table
 from comparisons.models import ROD, SOLID, solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.models.solid import to_solid
 from comparisons.models.tsm import to_structure
 from comparisons.scene import LoadSpec, Scene, read_scene

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.scene import InputError, Scene, built_in_scenes, load_scene, read_scene
 from comparisons.suite.settings import changed
 

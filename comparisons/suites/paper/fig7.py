@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from comparisons.answer import Array, Response
 from comparisons.models import ROD, TSM, solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.models.tsm import to_structure
 from comparisons.output import Report, Row
 from comparisons.scene import Scene, load_scene

@@ -9,7 +9,7 @@ from comparisons.answer.axis import STATIONS, axes_at_stations
 from comparisons.answer.errors import errors
 from comparisons.answer.quantities import KEPT, SCOPES
 from comparisons.models import find, solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.output import Report, Row
 from comparisons.report.motion import motion_section, tracks
 from comparisons.report.pages import Section

@@ -8,7 +8,7 @@ import numpy as np
 
 from comparisons.answer import Array, Response
 from comparisons.models import ROD, TSM, solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.output import Report, Row
 from comparisons.report import palette
 from comparisons.report.motion import motion_section, tracks

@@ -5,7 +5,7 @@ from dataclasses import replace
 from math import log
 
 from comparisons.models import MODELS, SOLID, TSM, Model
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.models.solid import REFINED
 from comparisons.scene import Scene
 from comparisons.suite import Case

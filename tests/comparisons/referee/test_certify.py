@@ -10,7 +10,7 @@ import pytest
 from comparisons.answer import Response, Sections
 from comparisons.exact import rod_under_pin
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.referee import Distance, Verdict, certify
 from comparisons.scene import ContactSpec, PinMove, PinSpec, Scene, StageSpec, load_scene
 from tests.comparisons.referee.forged import bent, contact, scene_of, stated

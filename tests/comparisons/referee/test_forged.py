@@ -12,7 +12,7 @@ import pytest
 
 from comparisons.cli import main
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.referee import certify
 from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene, to_toml
 from tests.comparisons.referee.forged import scene_of

@@ -10,7 +10,7 @@ import pytest
 
 from comparisons.answer import Response
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.referee import Certificate, Equilibrium, Verdict, answer_state, certify, equilibrium
 from comparisons.referee.friction import History, dissipated
 from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene

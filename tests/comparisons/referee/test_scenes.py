@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.referee import SearchStatus, Verdict, answer_state, certify, equilibrium
 from comparisons.scene import LoadSpec, PinSpec, Scene, StageSpec, load_scene
 from tests.comparisons.referee.forged import bent, scene_of, seen, stated, support

@@ -8,7 +8,7 @@ import pytest
 
 from comparisons.answer import Response
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.referee import (
     AnswerState,
     Equilibrium,

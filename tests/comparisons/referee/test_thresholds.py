@@ -9,7 +9,7 @@ import pytest
 
 from comparisons.answer import ContactHistory, Deformation, Response
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.models.verify import CHECK_FAILED, verified
 from comparisons.referee import certify
 from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene

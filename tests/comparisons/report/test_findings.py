@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from comparisons.models import ELASTICA, SOLID, TSM, certified, solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.referee import Verdict
 from comparisons.report.findings import BUDGET, findings  # sentences on data that no scene gives at will
 from comparisons.report.table import table_csv

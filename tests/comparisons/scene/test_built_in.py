@@ -11,7 +11,7 @@ import pytest
 from comparisons.answer import Response
 from comparisons.answer.errors import errors
 from comparisons.models import MODELS, certified, solve
-from comparisons.models.options import ModelError
+from comparisons.models.model import ModelError
 from comparisons.referee import Verdict
 from comparisons.scene import Scene, built_in_scenes, load_scene
 from tests.oracles.frames import Frame

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from comparisons.models import MODELS, find, solve
-from comparisons.models.options import ModelError
+from comparisons.models.model import ModelError
 from comparisons.scene import (
     SPECIAL,
     BeamSpec,

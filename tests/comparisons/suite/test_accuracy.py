@@ -9,7 +9,7 @@ import pytest
 from comparisons.answer.errors import difference
 from comparisons.answer.quantities import KEPT
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.scene import SPECIAL, BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene, read_scene
 from comparisons.suite.accuracy import solve_to
 from tests.comparisons.scene.test_special_keys import BEAM, USES

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparisons.models.options import ModelError
+from comparisons.models.model import ModelError
 from comparisons.scene import load_scene
 from comparisons.suite.budget import PARTS, TIMES, budget_rows, error_budget
 

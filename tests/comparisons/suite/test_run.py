@@ -12,7 +12,7 @@ import pytest
 from comparisons.answer.quantities import KEPT, SCOPES
 from comparisons.files import OutputError
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.scene import load_scene
 
 # not public: a worker's exception cannot be brought about from outside, nor systems without /proc

@@ -10,7 +10,7 @@ import pytest
 
 from comparisons.cli import main
 from comparisons.models import solve
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.scene import load_scene
 from docs.extensions.messages import SCENES
 from tests.comparisons.suite.conftest import MANY, crossval, rows

@@ -10,7 +10,7 @@ import pytest
 from comparisons import models
 from comparisons.answer import Response
 from comparisons.cli import main
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.scene import Scene, load_scene, to_toml
 from comparisons.suites import compare as compared
 from comparisons.suites.compare import ROD, compare

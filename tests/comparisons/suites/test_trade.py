@@ -12,7 +12,7 @@ from comparisons.answer.axis import STATIONS, SampledAxes
 from comparisons.answer.quantities import KEPT, SCOPES
 from comparisons.cli import main
 from comparisons.models import MODELS
-from comparisons.models.options import Options
+from comparisons.models.model import Options
 from comparisons.scene import built_in_scenes, load_scene
 from comparisons.suite import Case, Row, measure
 

@@ -12,7 +12,7 @@ import pytest
 
 from comparisons.answer import Response
 from comparisons.models import certified, find, solve
-from comparisons.models.options import ModelError, Options
+from comparisons.models.model import ModelError, Options
 from comparisons.models.outside import Functions, Program
 from comparisons.scene import LoadSpec, Scene, load_scene
 

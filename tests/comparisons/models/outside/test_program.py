@@ -14,7 +14,7 @@ import pytest
 
 from comparisons.cli import main
 from comparisons.models import find, solve
-from comparisons.models.options import ModelError, Options
+from comparisons.models.model import ModelError, Options
 
 # the registry of the statuses, for the contract that each is forced here
 from comparisons.models.outside.child import ProgramStatus

@@ -1,4 +1,4 @@
-"""The contract of a model. Comparison, report, studies, cost, extremes and pictures use a model through it alone."""
+"""The contract of a model, the options of one run, and its progress. All that uses a model uses it through this contract alone."""
 
 from __future__ import annotations
 
@@ -6,15 +6,74 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import nan
-from typing import TYPE_CHECKING, ClassVar
-
-from comparisons.models.options import Options
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, get_args
 
 if TYPE_CHECKING:
     from comparisons.answer import Response
-    from comparisons.models.progress import Watch
     from comparisons.models.theory import Bending
     from comparisons.scene import Scene
+
+Branch = Literal["stop", "stable", "primary"]
+BRANCHES: tuple[str, ...] = get_args(Branch)
+"""Ways to go on at a critical point."""
+
+
+class ModelError(ValueError):
+    """A model cannot state a scene, or an option does not fit the model: one line."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """Options of one run. None keeps the value of the scene, or the default of the model."""
+
+    elements: int | None = None
+    """TSM elements of every beam."""
+    element: str | None = None
+    """Type of the TSM elements; without one, `mixed` where the options or the scene give a number of elements, else `exact`."""
+    integration_tolerance: float | None = None
+    """Bound on the error of the integration inside exact TSM elements."""
+    mesh: tuple[int, int] | None = None
+    """Elements of the solid along and across."""
+    branch: Branch | None = None
+    """At a critical point the path ends by name, turns to the stable branch of least energy, or goes on unstable."""
+
+
+WIDTH = 30
+REDRAW = 0.1
+"""Seconds between two drawings of a progress bar."""
+
+
+class Reached(NamedTuple):
+    """An accepted step: its load parameter, the iterations since the step before, and closed contacts, as ``pin->beam on element 8 of 20``."""
+
+    load_parameter: float
+    iterations: int
+    contacts: tuple[str, ...]
+
+
+Watch = Callable[[Reached], None]
+Count = Callable[[int, int], None]
+"""Receives how many parts of a work are done, and how many there are."""
+
+
+def unwatched(_: Reached) -> None:
+    """Ignore the progress."""
+
+
+def uncounted(_done: int, _parts: int) -> None:
+    """Ignore the progress."""
+
+
+def bar(part: float) -> str:
+    """Return a progress bar that is filled to `part`.
+
+    Examples
+    --------
+    >>> bar(0.5)
+    '[###############...............]'
+    """
+    filled = int(WIDTH * min(max(part, 0.0), 1.0))
+    return f"[{'#' * filled}{'.' * (WIDTH - filled)}]"
 
 
 @dataclass(frozen=True, kw_only=True)
