@@ -161,6 +161,11 @@ class Answer:
     definition: Scene | None = None  #: The scene itself; None for a response that was read from a file.
 
     @property
+    def named(self) -> str:
+        """Name of the model and, where it is known, its setting, as ``tsm mixed 20``."""
+        return f"{self.model} {self.setting}".rstrip()
+
+    @property
     def completed(self) -> bool:
         """Whether the solution is complete, and neither a check nor the referee refused it."""
         return self.status == "COMPLETED"

@@ -16,8 +16,7 @@ class Response(Answer):
     def __repr__(self) -> str:
         reached = len(self.load_parameter)
         last = f", the last {self.load_parameter[-1]:g}" if reached else ""
-        named = " ".join(filter(None, (self.model, self.setting)))
-        return f"<Response {self.scene} by {named}: {self.status}, {reached} load parameters{last}>"
+        return f"<Response {self.scene} by {self.named}: {self.status}, {reached} load parameters{last}>"
 
     def _repr_html_(self) -> str:
         from comparisons.answer.page import html

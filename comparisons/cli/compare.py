@@ -79,8 +79,7 @@ def _held(scene: Scene, given: argparse.Namespace) -> int:
     found = gate(scene, given.model or TSM.name, chosen(given), dict(given.max_error), given.against)
     for _, file in files:
         write_text(file, found.junit())
-    what = f"{found.response.model} {found.response.setting}".rstrip()
-    print(f"{scene.name}: {what} against {found.reference.model}")
+    print(f"{scene.name}: {found.response.named} against {found.reference.model}")
     for item in found.bounds:
         sign = "<=" if item.holds else "> "
         bound = f"  {item.name:8s} {item.error:9.3g}  {sign} {item.allowed:<6g} {found.place(item.name)}"

@@ -85,10 +85,10 @@ def _kind(response: Response, model: Model | None) -> dict[str, Any]:
 
 def restored(response: Response, scene: Scene) -> Response:
     """Return a response from a file with the kind that its model is registered with, and checked as when it was solved."""
-    from comparisons.models.outside.programs import ADAPTERS
+    from comparisons.models.outside.programs import known
     from comparisons.models.verify import CHECK_FAILED, verified
 
-    kind = _kind(response, MODELS.get(response.model) or ADAPTERS.get(response.model))
+    kind = _kind(response, MODELS.get(response.model) or known(response.model))
     if response.completed and not response.reported_success:
         contradiction = f"the status is {response.status}, and reported_success is false"
         return replace(response, **kind, status=CHECK_FAILED, message=contradiction)

@@ -216,19 +216,20 @@ def outside(name: str, taken: Container[str] = ()) -> Model | None:
     The name is that of a program file ``NAME.toml``, of one read before, of an adapter, or of an entry point. An `InputError` is
     raised if the file cannot be read or states a name in `taken`, a `ModelError` if an entry point yields no model.
     """
-    if not known(name):
+    model = read_program(Path(name)) if name.endswith(SUFFIX) else known(name)
+    if model is None and name in offered():
+        model = loaded(offered()[name], Model)
+    if model is None:
         return None
-    model = read_program(Path(name)) if name.endswith(SUFFIX) else ADAPTERS.get(name) or _USED.get(name)
-    model = model or loaded(offered()[name], Model)
     if model.name in taken or model is not ADAPTERS.get(model.name, model):
         raise InputError(name, f'program.name = "{model.name}": must not be the name of a model')
     _USED[model.name] = model
     return model
 
 
-def known(name: str) -> bool:
-    """Whether a name may be one of a model from outside; nothing is read or imported."""
-    return name.endswith(SUFFIX) or name in _USED or name in ADAPTERS or name in offered()
+def known(name: str) -> Model | None:
+    """Return the adapter of a name, or the model from outside that this process has used by it; None if there is none."""
+    return ADAPTERS.get(name) or _USED.get(name)
 
 
 def used() -> tuple[Model, ...]:

@@ -234,3 +234,17 @@ def test_a_program_gets_the_stated_environment_alone(program, tmp_path, monkeypa
     assert got.keys() - {"LC_CTYPE"} == {name for name in named if name in os.environ}
     assert solve(KS, program(seen, environment=["LICENSE_SERVER", "NOT_THERE"])).completed
     assert json.loads((tmp_path / "seen").read_text()) == {**got, "LICENSE_SERVER": "here"}
+
+
+def test_a_stored_answer_is_judged_as_what_the_file_of_its_program_says(program, in_folder, capsys):
+    """The answer itself is not asked: whoever claims to be a body would be allowed more."""
+    file, more = program(continuum=True), ["--scene", "ks.toml"]
+    assert main(["solve", "ks.toml", "--model", file, "--certify", "none", "--out", "a.json"]) == 0
+    stated = json.loads(Path("a.json").read_text())
+    Path("b.json").write_text(json.dumps(stated | {"model": "other", "continuum": True}))
+    capsys.readouterr()
+    for name, said in {"a.json": "liar, COMPLETED\n  CERTIFIED within 7 %", "b.json": "within 5 %"}.items():
+        assert main(["certify", name, *more]) == 0
+        assert said in capsys.readouterr().out
+    assert main(["certify", "ks.toml"]) == 0
+    assert capsys.readouterr().out.startswith("ks-cantilever, model tsm exact 1, COMPLETED\n")
