@@ -25,7 +25,7 @@ import numpy as np
 from comparisons.answer.record import Array
 from comparisons.answer.response import Response
 from comparisons.scene import BeamSpec, ContactSpec, Scene, SupportSpec
-from comparisons.scene.keys import MATERIAL, unstated
+from comparisons.scene.keys import unstated
 
 UNDEFINED = "no touched beam is held by one clamp alone and loaded by contacts alone"
 """Reason why a scene has no material force."""
@@ -51,7 +51,7 @@ def clamped(scene: Scene) -> dict[str, SupportSpec]:
     Such a beam is touched, and it is held by one clamp alone. It has no load, no joint, and no end that touches another beam.
     """
     found: dict[str, SupportSpec] = {}
-    if unstated(scene, "the material force", MATERIAL) is not None:
+    if unstated(scene, "the material force", ("turn",)) is not None:
         return found
     acting = {load.beam for load in scene.loads} | {contact.node.split(".")[0] for contact in scene.contacts}
     touched = {contact.beam for contact in scene.contacts} - acting

@@ -24,7 +24,7 @@ from comparisons.models.model import ModelError
 from comparisons.models.shared import POINTS
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 from comparisons.scene.ends import BeamEnd
-from comparisons.scene.keys import ONE_ROD, unstated
+from comparisons.scene.keys import unstated
 
 STOPS = {
     "LOST": "no stable equilibrium is connected with the straight beam",
@@ -73,7 +73,7 @@ def to_rod(scene: Scene, who: str = "the exact rod") -> RodScene:
     ModelError
         Unless the scene is one beam, clamped at one end, under one pin.
     """
-    unknown = unstated(scene, who, ONE_ROD)
+    unknown = unstated(scene, who)
     if unknown is not None:
         raise ModelError(unknown)
     have, beam = "the exact models have", scene.beams[0]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from comparisons.models.model import Model, ModelError, Options, Style, refused
 from comparisons.models.shared import kept
 from comparisons.models.tsm import beams_refusal
-from comparisons.scene.keys import ONE_ROD, RODS
+from comparisons.scene.keys import SPECIAL
 
 if TYPE_CHECKING:
     from comparisons.answer import Response
@@ -24,7 +24,7 @@ class Rod(Model):
     label = "exact rod"
     libraries = ("comparisons.models.cantilever",)
     meshed = False
-    keys = RODS
+    keys = SPECIAL
     reference = Options()
     style = Style(colour="#000000", width=1.2, unbroken=True)
 
@@ -67,7 +67,6 @@ class Elastica(Model):
     libraries = ("comparisons.models.cantilever",)
     meshed = False
     rod = False
-    keys = ONE_ROD
     style = Style(colour="#444444", width=1.2)
 
     def apart(self, scene: Scene) -> float:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from comparisons.models.model import Model, ModelError, Options, Reached, Style, Watch, refused
 from comparisons.models.shared import joints, kept, line_loads, occupied, of_result, result_of, ways
 from comparisons.scene.conditions import COMPONENTS
-from comparisons.scene.keys import STRIPS
+from comparisons.scene.keys import SPECIAL
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -38,7 +38,7 @@ class Solid(Model):
     libraries = ("fem_reference", "skfem")
     refinable = True
     continuum = True
-    keys = STRIPS
+    keys = SPECIAL
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why the solid cannot state `scene`; None if it can."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from comparisons.models.model import Model, ModelError, Options, Reached, Style, Watch
 from comparisons.models.shared import kept, line_loads, of_result, result_of, rows, ways
-from comparisons.scene.keys import BEAMS
+from comparisons.scene.keys import SPECIAL
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -34,7 +34,7 @@ class Tsm(Model):
     options = ("elements", "element", "integration_tolerance", "branch")
     libraries = ("tsm",)
     refinable = True
-    keys = BEAMS
+    keys = SPECIAL
     reference = Options(element=EXACT)
 
     def element(self, options: Options) -> ElementType:

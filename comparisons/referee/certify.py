@@ -18,7 +18,7 @@ from comparisons.referee.passing import changes, misstated, passages
 from comparisons.referee.path import changes_of, departures
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import Scene
-from comparisons.scene.keys import REFEREE, unstated
+from comparisons.scene.keys import SPECIAL, unstated
 
 ALLOWED = 5e-2
 """Default of the largest difference allowed to an answer; ten straight elements of a beam that bends to a half circle need it."""
@@ -46,7 +46,7 @@ def certify(
         Largest difference allowed; the default is `default_allowance`.
     """
     began = perf_counter()
-    unknown = unstated(scene, "the referee", REFEREE)
+    unknown = unstated(scene, "the referee", SPECIAL)
     if unknown is not None:
         allowed = ALLOWED if allowance is None else allowance
         return Certificate(

@@ -1,6 +1,6 @@
 """Keys that not every model, check and study knows, and the sentence that refuses a scene which uses one of them."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterator
 from typing import Final
 
 from comparisons.scene.scene import Scene
@@ -16,12 +16,6 @@ SPECIAL: Final = {
     "stage": "a stage after the first one ([[stage]])",
 }
 """The keys and what each states, in the order in which they are refused."""
-BEAMS = STRIPS = REFEREE = RODS = frozenset(SPECIAL)
-"""Keys that beams, solids, the referee, and the exact rods state."""
-ONE_ROD = PROGRAMS = frozenset[str]()
-"""Keys that the exact answers by quadrature state, and the resolved scene that programs of others read."""
-MATERIAL: Final = frozenset({"turn"})
-"""Keys under which the material force is defined."""
 
 
 def special_keys(scene: Scene) -> Iterator[str]:
@@ -33,7 +27,7 @@ def special_keys(scene: Scene) -> Iterator[str]:
     yield from (key for key, uses in zip(SPECIAL, used, strict=True) if uses)
 
 
-def unstated(scene: Scene, who: str, known: Iterable[str] = ()) -> str | None:
+def unstated(scene: Scene, who: str, known: Collection[str] = ()) -> str | None:
     """Return the line with which `who` refuses the first special key that it does not know; None if it knows all that `scene` uses.
 
     Examples
@@ -42,5 +36,5 @@ def unstated(scene: Scene, who: str, known: Iterable[str] = ()) -> str | None:
     >>> unstated(load_scene("ks-cantilever"), "the elastica") is None
     True
     """
-    missing = next((key for key in special_keys(scene) if key not in set(known)), None)
+    missing = next((key for key in special_keys(scene) if key not in known), None)
     return None if missing is None else f"{who} does not state {SPECIAL[missing]}, which the scene uses"

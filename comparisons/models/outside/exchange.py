@@ -19,7 +19,7 @@ from comparisons.models.shared import joints, kept
 from comparisons.models.verify import CHECK_FAILED
 from comparisons.referee.certificate import Verdict
 from comparisons.scene import BeamSpec, Scene
-from comparisons.scene.keys import PROGRAMS, unstated
+from comparisons.scene.keys import unstated
 from comparisons.scene.rules import MISSING, FieldError
 
 COMPLETED, REFUSED = "COMPLETED", "REFUSED"
@@ -38,7 +38,7 @@ def request(scene: Scene, options: Options, load_parameters: Sequence[float]) ->
     of elements in place of the scene's. No load parameters ask only whether the program can state the scene. A `ModelError` names a key
     that the resolved scene does not state.
     """
-    unknown = unstated(scene, "the resolved scene", PROGRAMS)
+    unknown = unstated(scene, "the resolved scene")
     if unknown is not None:
         raise ModelError(unknown)
     data = {

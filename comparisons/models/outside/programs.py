@@ -22,7 +22,6 @@ from comparisons.extras import install
 from comparisons.models.model import Model, ModelError, Options, Style
 from comparisons.models.outside.child import ProgramError, ProgramStatus, found, run
 from comparisons.scene import rules
-from comparisons.scene.keys import PROGRAMS
 from comparisons.scene.rules import RecordError, Rule, ValueRule
 from comparisons.scene.tables import InputError, check_keys, head_values, in_order, read_tables, read_text
 
@@ -126,8 +125,6 @@ def _digest(text: bytes, *files: Path) -> str:
 
 class Program(Model):
     """A program of others; its source says how it is asked: in a child process (`Command`) or in this one (`Functions`)."""
-
-    keys = PROGRAMS
 
     def __init__(self, source: Source) -> None:
         self.source = source
