@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Iterable, Set
 from dataclasses import dataclass
 from math import nan
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, get_args
@@ -112,7 +112,7 @@ class Model(ABC):
     #: Options at which the answer has no mesh error and can be a reference; None if there are none.
     reference: ClassVar[Options | None] = None
     #: The keys of `comparisons.scene.SPECIAL` that the model states; a scene with another one is refused.
-    keys: ClassVar[Collection[str]] = ()
+    keys: ClassVar[Set[str]] = frozenset()
     style: Style | None = None  #: How figures draw its answers, where they are drawn alike; else `styles`.
 
     def unstated(self, scene: Scene) -> str | None:

@@ -24,7 +24,7 @@ class Rod(Model):
     label = "exact rod"
     libraries = ("comparisons.models.cantilever",)
     meshed = False
-    keys = SPECIAL
+    keys = SPECIAL.keys()
     reference = Options()
     style = Style(colour="#000000", width=1.2, unbroken=True)
 

@@ -38,7 +38,7 @@ class Solid(Model):
     libraries = ("fem_reference", "skfem")
     refinable = True
     continuum = True
-    keys = SPECIAL
+    keys = SPECIAL.keys()
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why the solid cannot state `scene`; None if it can."""

@@ -34,7 +34,7 @@ class Tsm(Model):
     options = ("elements", "element", "integration_tolerance", "branch")
     libraries = ("tsm",)
     refinable = True
-    keys = SPECIAL
+    keys = SPECIAL.keys()
     reference = Options(element=EXACT)
 
     def element(self, options: Options) -> ElementType:
