@@ -54,7 +54,8 @@ def test_a_passed_pair_is_armed_again_off_the_beam_or_back_on_its_side(place, ar
     [
         ((0.9, -0.1), (1.1, 0.1), True),  # through the tip itself
         ((0.7, -0.1), (1.1, 0.1), True),  # through the beam
-        ((0.99, -0.01), (1.2, 0.1), False),  # around the tip
+        ((1.05, -0.05), (1.3, 0.1), False),  # around the tip
+        ((0.99, -0.01), (1.2, 0.1), True),  # so near to the tip that a shorter step must tell
         ((0.9, 0.1), (1.1, 0.1), False),  # behind the beam from the start
         ((0.9, 1e-3), (1.1, 0.1), False),
         ((0.9, 0.0), (1.1, 0.1), True),  # on the line, over the beam

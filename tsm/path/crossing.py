@@ -24,6 +24,8 @@ from tsm.statement.status import Status, StopError
 
 _CROSSED = 1e-14
 """Tolerance of a crossing: its gap over the longest beam, and the width of the bracket of its load parameter."""
+_UNSURE = 0.3
+"""Distance off the beam at a crossing, over that at the end of the step, up to which the step is taken anew to the crossing."""
 _SAMPLES, _NARROWED = 33, 5
 """States of a step at which a clearance is measured, and how often as many are measured about the least of them."""
 
@@ -53,7 +55,8 @@ def _passage(model: Model, pair: PairModel, before: State, after: State) -> floa
         return t0 if first.gap >= -small and over(model, first) else None
     ends = (t0, first.gap), (t1, last.gap)
     t = find_root(lambda t: (seen(t).gap, t), *ends, small=_CROSSED * model.length, apart=_CROSSED)
-    return t if t is not None and over(model, seen(t)) else None
+    # where points move on curves, the node may have been over the beam: a shorter step will tell
+    return t if t is not None and seen(t).overshoot <= _UNSURE * last.overshoot else None
 
 
 def through_end(model: Model, before: State, after: State) -> tuple[float, int] | None:
