@@ -59,7 +59,7 @@ class BeamSpec(Record):
     )
     solid_mesh_file: str | None = optional(
         rules.text,
-        "File with a mesh of the solid and named edges, instead of `mesh`: `fem_reference.solid.mesh_file.read_mesh`.",
+        "File with a mesh of the solid, instead of `mesh`: `fem_reference.solid.mesh_file.read_mesh`.",
     )
     solid_element: str = optional(rules.choice("Q1", "Q2", "Q2-full"), "Elements of the solid.", "Q2")
     material: str = optional(

@@ -33,29 +33,27 @@ class MeshError(ValueError):
 
 
 def read_mesh(strip: Strip) -> Discretisation:
-    """Read ``strip.mesh_file``, a mesh of straight-sided quadrilaterals in the strip's frame with four named edges.
+    """Read ``strip.mesh_file``, a mesh of straight-sided quadrilaterals in the strip's frame.
 
-    The mesh lies in the plane z = 0 and fills the strip. The edges "start" and "end" lie at x = 0 and at the strip's length,
-    "right" and "left" at half the height below and above the axis. An edge is a named set of lines, either a physical
-    group of Gmsh or a cell set of meshio.
+    The mesh lies in the plane z = 0 and fills the strip: its boundary lies at x = 0 and at the strip's length, and at half the
+    height below and above the axis.
 
-    Raises ValueError if the file is not a regular file of at most 16 MB or cannot be read; if an edge is
-    missing or misplaced; if an element is clockwise, not convex or has no area; if a node belongs to no
-    element; if the mesh has several parts or holes.
+    Raises ValueError if the file is not a regular file of at most 16 MB or cannot be read; if the boundary lies
+    elsewhere; if an element is clockwise, not convex or has no area; if a node belongs to no element; if the mesh
+    has several parts or holes.
     """
     from skfem import MeshQuad
 
     assert strip.mesh_file is not None, "structured strips have no file"
     try:
-        points, quads, lines = _contents(_read(Path(strip.mesh_file)))
+        points, quads = _contents(_read(Path(strip.mesh_file)))
         _check_elements(points, quads)
         # the first side of every element has the largest increase of x
         x = points[quads, 0]
         first = np.argmax(np.roll(x, -1, axis=1) - x, axis=1)
         quads = np.take_along_axis(quads, (first[:, None] + np.arange(4)) % 4, axis=1)
         basis = scalar_basis(MeshQuad(points.T, quads.T), strip.element)
-        edges = _edges(basis, lines)
-        _check_position(strip, basis.doflocs.T, edges)
+        edges = _edges(strip, basis)
     except MeshError as error:
         raise ValueError(f"Strip({strip.name!r}).mesh_file = {strip.mesh_file!r}: {error}") from None
     stations = basis.doflocs[0, edges["right"]]
@@ -85,17 +83,16 @@ def _read(path: Path) -> Any:
         raise MeshError(f"cannot be read ({reason})") from None
 
 
-def _contents(mesh: Any) -> tuple[Floats, Ints, dict[str, Ints]]:
-    """Corners ``(n, 2)``, quadrilaterals ``(e, 4)`` and the lines ``(l, 2)`` of each named edge."""
+def _contents(mesh: Any) -> tuple[Floats, Ints]:
+    """Corners ``(n, 2)`` and quadrilaterals ``(e, 4)``."""
     points, used = mesh.points, np.zeros(len(mesh.points), dtype=bool)
     flat = points.ndim == 2 and points.shape[-1] in (2, 3)
     _require(not flat, "must hold nodes with two or three coordinates")
     _require(~np.isfinite(points).all(axis=1), "node # must have finite coordinates")
     off = np.abs(points[:, 2:]).sum(axis=1) > _ROUND_OFF * np.ptp(points[:, :2], axis=0).max(initial=0.0)
     _require(off, f"node # must have z = 0, it has {points[np.argmax(off), -1]:g}" if off.any() else "")
-    quads, lines = list[Ints](), dict[str, list[Ints]]()
-    tags, groups = mesh.cell_data.get("gmsh:physical"), mesh.field_data.items()
-    for number, block in enumerate(mesh.cells):
+    quads = list[Ints]()
+    for block in mesh.cells:
         nodes, kind = np.asarray(block.data), block.type
         if not nodes.size:
             continue
@@ -105,22 +102,13 @@ def _contents(mesh: Any) -> tuple[Floats, Ints, dict[str, Ints]]:
             used[nodes] = True
             _check_straight(points[:, :2], nodes)
             quads.append(nodes[:, :4])
-        elif kind.startswith("line"):
-            chosen = {name: sets[number] for name, sets in mesh.cell_sets.items() if sets[number] is not None}
-            if tags is not None:
-                edges = {name: tag for name, (tag, dimension) in groups if dimension == 1}
-                chosen |= {name: np.flatnonzero(tags[number] == tag) for name, tag in edges.items()}
-            for name in set(chosen) & set(EDGES):
-                lines.setdefault(name, []).append(nodes[np.asarray(chosen[name], dtype=np.int64), :2])
         else:
-            _require(kind != "vertex", f'must hold quadrilaterals only, it has cells of type "{kind}"')
+            rule = f'must hold quadrilaterals only, it has cells of type "{kind}"'
+            _require(kind != "vertex" and not kind.startswith("line"), rule)
     _require(not quads, "must hold quadrilaterals, it has none")
     _require(~used, "node # must belong to a quadrilateral")
     corners, local = np.unique(np.concatenate(quads), return_inverse=True)
-    number_of = np.full(len(points), -1)
-    number_of[corners] = np.arange(corners.size)
-    edges = {name: number_of[np.concatenate(parts)] for name, parts in lines.items()}
-    return points[corners, :2].astype(float), local.reshape(-1, 4), edges
+    return points[corners, :2].astype(float), local.reshape(-1, 4)
 
 
 def _check_straight(points: Floats, cells: Ints) -> None:
@@ -146,38 +134,22 @@ def _check_elements(points: Floats, quads: Ints) -> None:
     _require(parts > 1, f"falls into {parts} parts without a common node")
 
 
-def _edges(basis: Any, lines: dict[str, Ints]) -> dict[str, Ints]:
-    """Nodes on the lines of the named edges, an end ordered upwards, a face from start to end; no other line is on the boundary."""
-    edges, mesh = dict[str, Ints](), basis.mesh
-    facets = {frozenset(nodes): facet for facet, nodes in enumerate(mesh.facets.T.tolist())}
-    boundary = set(mesh.boundary_facets().tolist())
-    left = boundary.copy()
-    for name in EDGES:
-        known = sorted(lines) or "none"
-        _require(not len(lines.get(name, ())), f'must name the lines of the edge "{name}", it names {known}')
-        chosen = [facets.get(frozenset(line), -1) for line in lines[name].tolist()]
-        _require(not set(chosen) <= boundary, f'the edge "{name}" must lie on the boundary')
-        left -= set(chosen)
-        dofs = np.unique(basis.get_dofs(np.array(chosen)).flatten())
-        edges[name] = dofs[np.argsort(basis.doflocs[int(name in ("start", "end")), dofs])].astype(np.int64)
-    for facet in left:
-        (xa, ya), (xb, yb) = mesh.p[:, mesh.facets[:, facet]].T
-        raise MeshError(f"the boundary from ({xa:g}, {ya:g}) to ({xb:g}, {yb:g}) must belong to an edge")
+def _edges(strip: Strip, basis: Any) -> dict[str, Ints]:
+    """Nodes on the edges, an end ordered upwards, a face from start to end; each line of the boundary must lie on one."""
+    mesh, L, half = basis.mesh, strip.length, strip.height / 2
+    facets = mesh.boundary_facets()
+    x, y = lines = mesh.p[:, mesh.facets[:, facets]]
+    distances = np.abs([x, x - L, y + half, y - half])
+    slack = np.array([_ROUND_OFF * L] * 2 + [2 * _FACE_TOLERANCE * half] * 2)
+    on = np.all(distances <= slack[:, None, None], axis=1)
+    for (xa, ya), (xb, yb) in lines.T[~on.any(axis=0)]:
+        rule = f"must lie at x = 0 or {L:g}, or at y = {-half:g} or {half:g} (half the height)"
+        raise MeshError(f"the boundary from ({xa:g}, {ya:g}) to ({xb:g}, {yb:g}) {rule}")
+    edges = dict[str, Ints]()
+    for name, along, here in zip(EDGES, (1, 1, 0, 0), on, strict=True):
+        dofs = np.unique(basis.get_dofs(facets[here]).flatten())
+        edges[name] = dofs[np.argsort(basis.doflocs[along, dofs])].astype(np.int64)
     return edges
-
-
-def _check_position(strip: Strip, nodes: Floats, edges: dict[str, Ints]) -> None:
-    """Require that the edges, which are the whole boundary, are the ends and the faces of the strip."""
-    L, h = strip.length, strip.height
-    for name, place in (("start", 0.0), ("end", L)):
-        off = np.abs(nodes[edges[name], 0] - place).max() > _ROUND_OFF * L
-        _require(off, f'the edge "{name}" must lie at x = {place:g}')
-    low, high = (nodes[edges[name], 1] for name in ("right", "left"))
-    _require(low.mean() > high.mean(), 'the edge "right" must lie below the edge "left"')
-    for name, y, expected in (("right", low, -h / 2), ("left", high, h / 2)):
-        furthest = y[np.argmax(np.abs(y - expected))]
-        rule = f'the edge "{name}" must lie at y = {expected:g} (half the height), it reaches {furthest:g}'
-        _require(abs(furthest - expected) > _FACE_TOLERANCE * h, rule)
 
 
 def _sections(strip: Strip, basis: Any, edges: dict[str, Ints], stations: Floats) -> csr_matrix:
