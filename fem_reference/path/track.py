@@ -16,7 +16,7 @@ from fem_reference.system.state import State
 from fem_reference.system.system import Correction, Tangent, linearise, pin_motion
 
 Item = TypeVar("Item")
-TRACK_LENGTH = 3
+TRACK_LENGTH = 2
 """Largest number of accepted states in a prediction."""
 LARGEST_DEPARTURE = 1 / 3
 """Largest accepted distance of a step from the tangents at its ends, relative to the step's length."""

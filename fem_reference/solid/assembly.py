@@ -92,11 +92,17 @@ def internal_force(mesh: Discretisation, P: Array) -> Array:
     return np.asarray(mesh.gather @ forces.reshape(2, -1).T)
 
 
-def element_entries(mesh: Discretisation, moduli: Callable[[Array], Array], u: Array) -> Array:
+def element_entries(
+    mesh: Discretisation, moduli: Callable[[Array], Array], u: Array, before: Array | None = None
+) -> Array:
     """Entries of all element stiffnesses, the integral of ``dN/dX . A . dN/dX``, in one array.
 
     ``moduli`` returns the symmetric ``A = dP/dF`` for ``F`` ``(2, 2, e, q)``. The three parts are the blocks of the first and of the
     second component for the shape functions a <= b, ``(e, k (k + 1) / 2)``, and that of both components for all, ``(e, k k)``.
+
+    With the displacements ``before`` the last correction the stress is what a linear law adds to the one before by the linear
+    part of the strain: the second part ``H^T H / 2`` is of the order of the correction squared, and times a large axial stiffness
+    it spoils the tangent of a slender solid (Magisano, Leonetti, Garcea, Comput. Methods Appl. Mech. Eng. 313 (2017), 986-1005).
     """
     elements, shapes = mesh.cells.shape
     half = shapes * (shapes + 1) // 2
@@ -106,7 +112,14 @@ def element_entries(mesh: Discretisation, moduli: Callable[[Array], Array], u: A
     start = 0
     for part in mesh.batches:
         stop = start + len(part.cells)
-        A = moduli(deformation_gradient(part, u))
+        F = deformation_gradient(part, u)
+        A = moduli(F)
+        if before is not None:
+            H = F - deformation_gradient(part, before)
+            linear = moduli(np.eye(2)[:, :, None])[..., 0]
+            stress = np.tensordot(linear, np.einsum("kieq,kjeq->ijeq", H, H)) / 2
+            for n in range(2):
+                A[n, :, n, :] -= stress
         for i in range(2):
             np.matmul(_pulled_back(part, A[i, :, i], _UPPER), mesh.products[0], out=same[i, start:stop])
         np.matmul(_pulled_back(part, A[0, :, 1], _ALL), mesh.products[1], out=mixed[start:stop])

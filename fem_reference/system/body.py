@@ -45,9 +45,9 @@ class Body:
         """Tangent stiffness over the unknowns."""
         return full(self.stiffness.band(element_entries(self.mesh, self.law.tangent, u)))
 
-    def factorised(self, u: Floats) -> Factor | None:
-        """Factorised tangent stiffness with the anchor; None if it is singular or not finite."""
-        entries = element_entries(self.mesh, self.law.tangent, u)
+    def factorised(self, u: Floats, before: Floats | None = None) -> Factor | None:
+        """Factorised tangent stiffness with the anchor, see `element_entries`; None if it is singular or not finite."""
+        entries = element_entries(self.mesh, self.law.tangent, u, before)
         if not np.all(np.isfinite(entries)):
             return None
 

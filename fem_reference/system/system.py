@@ -215,10 +215,12 @@ def pin_motion(touch: Touch, before: float, after: float) -> Floats:
     return p
 
 
-def linearise(state: State) -> Tangent | None:
-    """Linearise equilibrium at a state; None if the stiffness of a body is singular or not finite."""
+def linearise(state: State, before: Floats | None = None) -> Tangent | None:
+    """Linearise equilibrium at a state, after a correction of ``before``; None if a body's stiffness is singular or not finite."""
     model = state.model
-    factors = [body.factorised(state.u[body.part]) for body in model.bodies]
+    old = [None if before is None else before[body.part] for body in model.bodies]
+    pairs = zip(model.bodies, old, strict=True)
+    factors = [body.factorised(state.u[body.part], last) for body, last in pairs]
     regular = tuple(factor for factor in factors if factor is not None)
     if len(regular) < len(factors):
         return None
