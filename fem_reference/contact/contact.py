@@ -144,12 +144,10 @@ class Touch:
 
     @cached_property
     def slopes(self) -> Floats:
-        """Columns ``U`` ``(2 n, 3)``: ``dg/du``, ``W^T t``, ``W'^T n``; with friction a fourth one, ``W'^T t``."""
+        """Columns ``U`` ``(2 n, 4)``: ``dg/du``, ``W^T t``, ``W'^T n``, ``W'^T t``; the last one is used by friction."""
         pair, t, n = self.pair, self.at.tangent, self.at.normal
         basis = pair.curve.basis(self.at.zeta)[[0, 0, 1, 1]]
         directions = np.stack([-pair.contact.sign * n, t, n, t])
-        if self.begin is None:
-            basis, directions = basis[:3], directions[:3]
         U = pair.carrier.columns(basis, directions)
         if isinstance(pair.node, Carrier):
             U[:, :2] -= pair.node.columns(np.ones((2, 1)), directions[:2])
@@ -158,7 +156,7 @@ class Touch:
     @property
     def curvature(self) -> Floats:
         """Matrix H of the gap's second derivative ``U H U^T``, over the columns [1/m]."""
-        at, H = self.at, np.zeros((4 if self.begin else 3,) * 2)
+        at, H = self.at, np.zeros((4, 4))
         H[1, 1], H[2, 2] = at.bend, at.distance
         H[1, 2] = H[2, 1] = -at.stretch
         return -self.pair.contact.sign * H / (at.stretch**2 - at.distance * at.bend)

@@ -1,4 +1,4 @@
-"""Factorisation of a body's tangent stiffness, and the number of its negative eigenvalues.
+"""Factorisation of the bodies' tangent stiffness, and the number of its negative eigenvalues.
 
 The stiffness is a symmetric band matrix. If all its eigenvalues are positive, it is factorised by Cholesky's method.
 Otherwise SuperLU factorises it with its pivots on the diagonal, ``K = L D L^T``: the number of negative pivots is the number of
@@ -18,7 +18,7 @@ from scipy.sparse.linalg import SuperLU, splu
 from fem_reference.statement.arrays import Floats
 
 _GROWTH = 1e3
-"""Largest ratio of the row sums of ``|L| |U|`` and ``|K|`` at which the factors without row exchanges are used."""
+"""Largest ratio of a row's sums of ``|L| |U|`` and ``|K|`` at which the factors without row exchanges are used."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -31,11 +31,13 @@ class Factor:
     negatives: Callable[[], int]  # the number of negative eigenvalues
 
 
-def factorise(band: Callable[[], Floats]) -> Factor | None:
-    """Factorise a symmetric matrix; None if it is singular. ``band`` makes its lower band storage ``(width + 1, m)`` anew."""
-    lower, failed = dpbtrf(band(), lower=1, overwrite_ab=1)
+def factorise(band: Floats) -> Factor | None:
+    """Factorise a symmetric matrix in lower band storage ``(width + 1, m)``; None if it is singular or not finite."""
+    if not np.all(np.isfinite(band)):
+        return None
+    lower, failed = dpbtrf(band, lower=1)
     if failed:
-        return _indefinite(band())
+        return _indefinite(band)
 
     def triangular(right: Floats, trans: str) -> Floats:
         return np.asarray(dtbtrs(lower, right, uplo="L", trans=trans)[0]).reshape(right.shape)
@@ -55,7 +57,7 @@ def _indefinite(band: Floats) -> Factor | None:
     accurate = symmetric is not None and bool((symmetric.perm_r == symmetric.perm_c).all())
     if symmetric is not None and accurate:
         rows = np.abs(symmetric.L) @ (np.abs(symmetric.U) @ np.ones(band.shape[1]))
-        accurate = bool(rows.max() <= _GROWTH * np.abs(matrix).sum(axis=1).max())
+        accurate = bool(np.all(rows <= _GROWTH * np.asarray(np.abs(matrix).sum(axis=1)).ravel()))
     lu = symmetric if accurate else _superlu(matrix)
     if lu is None:
         return None

@@ -14,7 +14,7 @@ from fem_reference.solid.assembly import (
     internal_force,
     pattern,
 )
-from fem_reference.solid.factor import Factor, factorise, full
+from fem_reference.solid.factor import full
 from fem_reference.solid.mesh import Discretisation, structured_mesh
 from fem_reference.statement.arrays import Floats
 from fem_reference.statement.material import Law, elastic_law
@@ -45,17 +45,10 @@ class Body:
         """Tangent stiffness over the unknowns."""
         return full(self.stiffness.band(element_entries(self.mesh, self.law.tangent, u)))
 
-    def factorised(self, u: Floats, before: Floats | None = None) -> Factor | None:
-        """Factorised tangent stiffness with the anchor, see `element_entries`; None if it is singular or not finite."""
-        entries = element_entries(self.mesh, self.law.tangent, u, before)
-        if not np.all(np.isfinite(entries)):
-            return None
-
-        def band() -> Floats:
-            K = self.stiffness.band(entries)
-            return K if self.anchor is None else K + self.anchor
-
-        return factorise(band)
+    def band(self, u: Floats, before: Floats | None = None) -> Floats:
+        """Lower band of the tangent stiffness with the anchor, see `element_entries`."""
+        K = self.stiffness.band(element_entries(self.mesh, self.law.tangent, u, before))
+        return K if self.anchor is None else K + self.anchor
 
     def strain_energy(self, u: Floats) -> float:
         """Strain energy [J]."""

@@ -13,22 +13,20 @@ the bodies is factorised, which is symmetric; the equations in the columns are s
 section, whose stiffness in A cancels it.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import compress
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 
 from fem_reference.contact.contact import Touch
 from fem_reference.contact.end_section import COLUMNS, ROTATION
 from fem_reference.contact.friction import slip_gradient, stiffness
-from fem_reference.solid.factor import Factor
+from fem_reference.solid.factor import Factor, factorise
 from fem_reference.statement.arrays import Floats
 from fem_reference.statement.loads import increment
 from fem_reference.statement.problem import Pin
-from fem_reference.system.body import Body
 from fem_reference.system.state import State
 
 
@@ -43,57 +41,46 @@ class Correction:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Border:
-    """Curvatures and constraints over the columns U: 3 or 4 of each closed contact, then 4 of each end section."""
+    """Curvatures and constraints over the columns U: 4 of each closed contact, then 4 of each end section."""
 
     A: Floats  # curvatures ``(k, k)``: the Hessian without constraints is ``K - U A U^T``
     N: Floats  # directions ``(k, c)`` of the constraints' forces ``U N``: gaps, friction, then ties
     M: Floats  # gradients ``(k, c)`` of the constraints ``U M``. They differ from N for friction only
     C: Floats  # flexibilities ``(c, c)`` [m/N]; of a contact that slips 1, and ``-sigma mu`` at its normal force
     rates: Floats  # the same for changes along the path, on which augmented Lagrangian steps remove a contact's flexibility
-    contacts: tuple[slice, ...]  # columns of each closed contact
 
 
 def build_border(state: State) -> Border:
     """Curvatures and constraints of the closed contacts, ties, dead moments and anchors of a state."""
     model, closed, rubbing = state.model, state.closed, state.rubbing
-    moments = state.actions[:, ROTATION]
+    sections = zip(model.sections, state.poses, state.actions[:, ROTATION], strict=True)
     blocks = [
-        *(stiffness(touch) for touch in closed),
+        *map(stiffness, closed),
         *(
             moment * pose.curvature + section.anchor_stiffness * np.eye(COLUMNS)
-            for section, pose, moment in zip(model.sections, state.poses, moments, strict=True)
+            for section, pose, moment in sections
         ),
     ]
-    places = [
-        slice(end - len(block), end)
-        for block, end in zip(blocks, np.cumsum([*map(len, blocks)]), strict=True)
-    ]
-    k = places[-1].stop if places else 0
-    A, N = np.zeros((k, k)), np.zeros((k, len(state.forces)))
-    for place, block in zip(places, blocks, strict=True):
-        A[place, place] = block
-    ties = len(closed) + len(rubbing)
-    for number, place in enumerate(places[: len(closed)]):
-        N[place.start, number] = 1.0
-    for number, tie in enumerate(model.ties, ties):
+    k, first = COLUMNS * len(blocks), len(closed)
+    N, gaps = np.zeros((len(blocks), COLUMNS, len(state.forces))), np.arange(first)
+    N[gaps, 0, gaps] = 1.0
+    for number, tie in enumerate(model.ties, first + len(rubbing)):
         for section, sign in ((tie.section, 1.0), (tie.other, -1.0)):
             if section is not None:
-                gradient = state.poses[section].gradient[:, tie.component]
-                N[places[len(closed) + section], number] += sign * gradient
+                N[first + section, :, number] += sign * state.poses[section].gradient[:, tie.component]
     M, soft = N.copy(), [1 / touch.pair.penalty for touch in closed]
     C = np.diag([*soft, *[0.0] * len(rubbing), *(tie.flexibility for tie in model.ties)])
-    for number, touch in enumerate(rubbing, len(closed)):
+    for number, touch in enumerate(rubbing, first):
         contact = closed.index(touch)
-        N[places[contact].start + 1, number] = 1.0
+        N[contact, 1, number] = 1.0
         if touch.direction:
             C[number, number], C[number, contact] = 1.0, -touch.direction * touch.pair.contact.friction
         else:
-            M[places[contact], number] = slip_gradient(touch)
+            M[contact, :, number] = slip_gradient(touch)
     rates = C.copy()
-    for number, touch in enumerate(closed):
-        if touch.augmented:
-            rates[number, number] = 0.0
-    return Border(A=A, N=N, M=M, C=C, rates=rates, contacts=tuple(places[: len(closed)]))
+    rates[[number for number, touch in enumerate(closed) if touch.augmented]] = 0.0
+    A = block_diag(*blocks).reshape(k, k)
+    return Border(A=A, N=N.reshape(k, len(C)), M=M.reshape(k, len(C)), C=C, rates=rates)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -101,20 +88,14 @@ class Tangent:
     """Factorised stiffness of the bodies at a state, with the columns of closed contacts and end sections."""
 
     state: State  # the state of linearisation
-    factors: tuple[Factor, ...]  # factorised stiffness of every body
+    factor: Factor  # factorised stiffness of the bodies
     V: Floats  # first half ``(m, k)`` of ``K^-1 U`` for the columns over the unknowns, see `Factor`
     border: Border  # curvatures and constraints over the columns
 
     @cached_property
     def W(self) -> Floats:
         """Flexibility ``U^T K^-1 U`` ``(k, k)`` of the columns."""
-        return self._product(self.V)
-
-    def _product(self, half: Floats) -> Floats:
-        """Product ``U^T K^-1 b`` from the first half of the solution."""
-        parts = zip(self.factors, self.state.model.bodies, strict=True)
-        products = (factor.product(self.V[body.unknowns], half[body.unknowns]) for factor, body in parts)
-        return np.asarray(sum(products))
+        return self.factor.product(self.V, self.V)
 
     def correction(self) -> Correction | None:
         """Newton correction for the residuals of the state; None if the constraint equations are singular."""
@@ -148,22 +129,21 @@ class Tangent:
         ``(I - A W) z - N dlam = A (p - U^T K^-1 R)`` and ``M^T W z + C dlam = -r - M^T (p - U^T K^-1 R)``.
         """
         A, N, M, W = self.border.A, self.border.N, self.border.M, self.W
-        k, bodies = len(A), self.state.model.bodies
-        rests = [factor.rest for factor in self.factors]
-        half = _by_body(bodies, [factor.half for factor in self.factors], R) if R.any() else R
+        k, factor = len(A), self.factor
+        half = factor.half(R) if R.any() else R
         if not k:
-            return _by_body(bodies, rests, -half), np.zeros(0)
+            return factor.rest(-half), np.zeros(0)
         matrix = np.empty((k + len(C), k + len(C)))
         matrix[:k, :k], matrix[:k, k:] = np.eye(k) - A @ W, -N
         matrix[k:, :k], matrix[k:, k:] = M.T @ W, C
-        known = p - self._product(half)
+        known = p - factor.product(self.V, half)
         right = np.concatenate([A @ known, -r - M.T @ known])
         scale = 1 / np.maximum(np.abs(matrix).max(axis=1), np.finfo(float).tiny)
         try:
             z = np.linalg.solve(scale[:, None] * matrix, scale * right)
         except np.linalg.LinAlgError:
             return None
-        return _by_body(bodies, rests, self.V @ z[:k] - half), z[k:]
+        return factor.rest(self.V @ z[:k] - half), z[k:]
 
     def _correction(self, R: Floats, p: Floats, r: Floats, C: Floats) -> Correction | None:
         found = self._respond(R, p, r, C)
@@ -191,8 +171,7 @@ class Tangent:
         """
         A, N = self.border.A.copy(), self.border.N
         kept = np.append(chosen, np.ones(N.shape[1] - chosen.size, dtype=bool))
-        for place in compress(self.border.contacts, ~chosen):
-            A[place] = 0.0
+        A[np.flatnonzero(np.repeat(~chosen, COLUMNS))] = 0.0
         N, C = N[:, kept], self.border.rates[np.ix_(kept, kept)]
         (k, c), one = N.shape, np.eye(len(A))
         S = np.block([[-A, one, -N], [one, -self.W, np.zeros((k, c))], [-N.T, np.zeros((c, k)), -C]])
@@ -203,12 +182,12 @@ class Tangent:
         )
         scale = np.concatenate([units, 1 / units, forces])
         negatives = int((np.linalg.eigvalsh(scale[:, None] * (S + S.T) / 2 * scale) < 0).sum())
-        return negatives + sum(factor.negatives() for factor in self.factors) - int(k + c)
+        return negatives + self.factor.negatives() - int(k + c)
 
 
 def pin_motion(touch: Touch, before: float, after: float) -> Floats:
-    """Change p ``(3,)`` or ``(4,)`` of ``U^T u`` per load parameter by the motion of the pin alone."""
-    pair, at, p = touch.pair, touch.at, np.zeros(touch.slopes.shape[1])
+    """Change p ``(4,)`` of ``U^T u`` per load parameter by the motion of the pin alone."""
+    pair, at, p = touch.pair, touch.at, np.zeros(COLUMNS)
     if isinstance(pair.node, Pin):
         velocity = (pair.node.position(after) - pair.node.position(before)) / (after - before)
         p[:2] = pair.contact.sign * at.normal @ velocity, -at.tangent @ velocity
@@ -216,24 +195,18 @@ def pin_motion(touch: Touch, before: float, after: float) -> Floats:
 
 
 def linearise(state: State, before: Floats | None = None) -> Tangent | None:
-    """Linearise equilibrium at a state, after a correction of ``before``; None if a body's stiffness is singular or not finite."""
+    """Linearise equilibrium at a state, after a correction of ``before``; None if the stiffness is singular or not finite."""
     model = state.model
-    old = [None if before is None else before[body.part] for body in model.bodies]
-    pairs = zip(model.bodies, old, strict=True)
-    factors = [body.factorised(state.u[body.part], last) for body, last in pairs]
-    regular = tuple(factor for factor in factors if factor is not None)
-    if len(regular) < len(factors):
+    K = np.zeros((model.unknowns, 1 + max(body.stiffness.width for body in model.bodies))).T
+    for body in model.bodies:
+        band = body.band(state.u[body.part], None if before is None else before[body.part])
+        K[: len(band), body.unknowns] = band
+    factor = factorise(K)
+    if factor is None:
         return None
-    columns = np.hstack([*(touch.slopes for touch in state.closed), model.columns])
-    U = np.asarray(model.restriction @ columns)
-    V = _by_body(model.bodies, [factor.half for factor in regular], U) if U.size else U
+    U = np.asarray(model.restriction @ np.hstack([*(touch.slopes for touch in state.closed), model.columns]))
+    V = factor.half(U) if U.size else U
     border = build_border(state)
     if not all(np.all(np.isfinite(part)) for part in (V, border.A, border.N)):
         return None
-    return Tangent(state=state, factors=regular, V=V, border=border)
-
-
-def _by_body(bodies: tuple[Body, ...], solutions: list[Callable[[Floats], Floats]], right: Floats) -> Floats:
-    """Apply one of the ``solutions`` to the unknowns of every body."""
-    parts = zip(solutions, bodies, strict=True)
-    return np.concatenate([solution(right[body.unknowns]) for solution, body in parts])
+    return Tangent(state=state, factor=factor, V=V, border=border)
