@@ -1,9 +1,9 @@
 """Factorisation of the bodies' tangent stiffness, and the number of its negative eigenvalues.
 
 The stiffness is a symmetric band matrix. If all its eigenvalues are positive, it is factorised by Cholesky's method.
-Otherwise SuperLU factorises it with its pivots on the diagonal, ``K = L D L^T``: the number of negative pivots is the number of
-negative eigenvalues (Sylvester's law of inertia). If these factors grow, they are inaccurate: then rows are exchanged, and the
-eigenvalues themselves are counted.
+Otherwise rows are exchanged. To count negative eigenvalues SuperLU factorises the matrix with its pivots on the diagonal,
+``K = L D L^T``: the number of negative pivots is that of negative eigenvalues (Sylvester's law of inertia). If these factors
+grow, they are inaccurate: then the eigenvalues themselves are counted.
 """
 
 from collections.abc import Callable
@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import eigvals_banded
-from scipy.linalg.lapack import dpbtrf, dtbtrs
+from scipy.linalg.lapack import dgbtrf, dgbtrs, dpbtrf, dtbtrs
 from scipy.sparse import csc_matrix, diags
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.sparse.linalg import splu
 
 from fem_reference.statement.arrays import Floats
 
@@ -52,39 +52,42 @@ def factorise(band: Floats) -> Factor | None:
 
 def _indefinite(band: Floats) -> Factor | None:
     """Factorise a symmetric matrix that is not positive definite; None if it is singular."""
-    matrix = full(band)
-    symmetric = _superlu(matrix, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    accurate = symmetric is not None and bool((symmetric.perm_r == symmetric.perm_c).all())
-    if symmetric is not None and accurate:
-        rows = np.abs(symmetric.L) @ (np.abs(symmetric.U) @ np.ones(band.shape[1]))
-        accurate = bool(np.all(rows <= _GROWTH * np.asarray(np.abs(matrix).sum(axis=1)).ravel()))
-    lu = symmetric if accurate else _superlu(matrix)
-    if lu is None:
+    (rows, m), w = band.shape, len(band) - 1
+    both = np.zeros((m, 3 * w + 1)).T
+    both[2 * w :] = band
+    for k in range(1, rows):
+        both[2 * w - k, k:] = band[k, : m - k]
+    lu, pivots, failed = dgbtrf(both, w, w, overwrite_ab=1)
+    if failed:
         return None
 
-    def negatives() -> int:
-        if accurate:
-            return int((lu.U.diagonal() < 0).sum())
-        bound = 2 * band.shape[0] * float(np.abs(band).max())
-        return int(eigvals_banded(band, lower=True, select="v", select_range=(-bound, 0.0)).size)
+    def solution(right: Floats) -> Floats:
+        return np.asarray(dgbtrs(lu, w, w, right, pivots)[0]).reshape(right.shape)
 
     return Factor(
         half=lambda right: right,
-        rest=lambda half: np.asarray(lu.solve(np.ascontiguousarray(half))),
-        product=lambda a, b: np.asarray(a.T @ lu.solve(np.ascontiguousarray(b))),
-        negatives=negatives,
+        rest=solution,
+        product=lambda a, b: np.asarray(a.T @ solution(b)),
+        negatives=lambda: _negatives(band),
     )
+
+
+def _negatives(band: Floats) -> int:
+    """Number of negative eigenvalues."""
+    matrix = full(band)
+    try:
+        lu = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    except RuntimeError:  # SuperLU's word for an exactly singular matrix
+        lu = None
+    if lu is not None and (lu.perm_r == lu.perm_c).all():
+        rows = np.abs(lu.L) @ (np.abs(lu.U) @ np.ones(len(lu.perm_r)))
+        if np.all(rows <= _GROWTH * np.asarray(np.abs(matrix).sum(axis=1)).ravel()):
+            return int((lu.U.diagonal() < 0).sum())
+    bound = 2 * band.shape[0] * float(np.abs(band).max())
+    return int(eigvals_banded(band, lower=True, select="v", select_range=(-bound, 0.0)).size)
 
 
 def full(band: Floats) -> csc_matrix:
     """Symmetric matrix ``(m, m)`` from its lower band storage."""
     below = diags([row[: band.shape[1] - k] for k, row in enumerate(band)], range(0, -len(band), -1))
     return csc_matrix(below + below.T - diags(band[0]))
-
-
-def _superlu(matrix: csc_matrix, **options: object) -> SuperLU | None:
-    """Factors in the order of the band; None if the matrix is singular."""
-    try:
-        return splu(matrix, permc_spec="NATURAL", **options)
-    except RuntimeError:  # SuperLU's word for an exactly singular matrix
-        return None
