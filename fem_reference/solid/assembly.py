@@ -5,7 +5,6 @@ moduli stiffnesses by products with matrices of the square's shape functions, af
 inverse Jacobian.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +12,7 @@ from scipy.sparse import csr_matrix, tril
 
 from fem_reference.solid.mesh import Discretisation, Points
 from fem_reference.statement.arrays import Array, Floats, Ints
+from fem_reference.statement.material import Law
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -92,12 +92,10 @@ def internal_force(mesh: Discretisation, P: Array) -> Array:
     return np.asarray(mesh.gather @ forces.reshape(2, -1).T)
 
 
-def element_entries(
-    mesh: Discretisation, moduli: Callable[[Array], Array], u: Array, before: Array | None = None
-) -> Array:
+def element_entries(mesh: Discretisation, law: Law, u: Array, before: Array | None = None) -> Array:
     """Entries of all element stiffnesses, the integral of ``dN/dX . A . dN/dX``, in one array.
 
-    ``moduli`` returns the symmetric ``A = dP/dF`` for ``F`` ``(2, 2, e, q)``. The three parts are the blocks of the first and of the
+    The three parts are the blocks of the first and of the
     second component for the shape functions a <= b, ``(e, k (k + 1) / 2)``, and that of both components for all, ``(e, k k)``.
 
     With the displacements ``before`` the last correction the stress is what a linear law adds to the one before by the linear
@@ -113,11 +111,10 @@ def element_entries(
     for part in mesh.batches:
         stop = start + len(part.cells)
         F = deformation_gradient(part, u)
-        A = moduli(F)
+        A = law.tangent(F)
         if before is not None:
             H = F - deformation_gradient(part, before)
-            linear = moduli(np.eye(2)[:, :, None])[..., 0]
-            stress = np.tensordot(linear, np.einsum("kieq,kjeq->ijeq", H, H)) / 2
+            stress = np.tensordot(law.elastic, (H[:, :, None] * H[:, None]).sum(axis=0)) / 2
             for n in range(2):
                 A[n, :, n, :] -= stress
         for i in range(2):

@@ -43,11 +43,11 @@ class Body:
 
     def tangent(self, u: Floats) -> csc_matrix:
         """Tangent stiffness over the unknowns."""
-        return full(self.stiffness.band(element_entries(self.mesh, self.law.tangent, u)))
+        return full(self.stiffness.band(element_entries(self.mesh, self.law, u)))
 
     def band(self, u: Floats, before: Floats | None = None) -> Floats:
         """Lower band of the tangent stiffness with the anchor, see `element_entries`."""
-        K = self.stiffness.band(element_entries(self.mesh, self.law.tangent, u, before))
+        K = self.stiffness.band(element_entries(self.mesh, self.law, u, before))
         return K if self.anchor is None else K + self.anchor
 
     def strain_energy(self, u: Floats) -> float:
@@ -95,9 +95,8 @@ def force_round_off(strip: Strip, mesh: Discretisation, law: Law) -> float:
     """
     sides = np.ptp(mesh.places[mesh.cells[:, :4]], axis=1)
     aspect = float((sides.max(axis=1) / sides.min(axis=1)).max())
-    modulus = float(law.tangent(np.eye(2)[:, :, None])[0, 0, 0, 0, 0])
     width = max(strip.width, strip.end_width or 0.0)
-    return 4 * float(np.finfo(float).eps) * modulus * width * strip.length * aspect
+    return 4 * float(np.finfo(float).eps * law.elastic[0, 0, 0, 0]) * width * strip.length * aspect
 
 
 def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:

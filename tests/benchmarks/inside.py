@@ -107,7 +107,7 @@ def assembly(bench):
         basis = forms.vector_basis(body.mesh.nodes, body.mesh.cells)
 
         def band(u, body=body):
-            return body.stiffness.band(element_entries(body.mesh, body.law.tangent, u))
+            return body.stiffness.band(element_entries(body.mesh, body.law, u))
 
         K = band(0 * u)
 
