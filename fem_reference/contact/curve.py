@@ -9,8 +9,6 @@ of the axis rotate the normal by up to ``F / (G A_e)``, depending on the positio
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.optimize import brentq
 from scipy.sparse import csr_matrix, identity
 
 from fem_reference.solid.mesh import Discretisation
@@ -86,6 +84,8 @@ class ContactCurve:
 
 def cardinal_slopes(stations: Floats) -> csr_matrix:
     """Slopes ``(m, m)`` at the stations of the not-a-knot splines that are one at one station and zero at the others."""
+    from scipy.interpolate import CubicSpline  # its import takes longer than that of the package
+
     m, entries = stations.size, list[tuple[Ints, Ints, Floats]]()
     for first in range(0, m, _WINDOW):
         low, last = max(0, first - _REACH), min(m, first + _WINDOW)
@@ -186,6 +186,8 @@ def closest(curve: ContactCurve, Y: Floats, D: Floats) -> tuple[float, bool]:
         # Near and beyond the centre of curvature: a bracketed root, otherwise a Gauss-Newton step.
         if curvature <= 0.1 * squared:
             if slope(around[0]) < 0 < slope(around[1]):
+                from scipy.optimize import brentq  # rare, and its import takes as long as that of the package
+
                 return float(brentq(slope, *around, xtol=1e-15 * size)), True
             curvature = squared
         step = float(-(r @ r1) / curvature)

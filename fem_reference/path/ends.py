@@ -4,10 +4,10 @@ The end of an axis is a point, that of a thick strip the line between its corner
 """
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
+from numpy.polynomial.polynomial import polyval
 
 from fem_reference.contact.contact import Pair
-from fem_reference.path.track import Accepted, located
+from fem_reference.path.track import Accepted, cubic, located
 from fem_reference.statement.arrays import Floats
 from fem_reference.system.state import State
 
@@ -72,14 +72,14 @@ def _overlap(pair: Pair, number: int, last: Accepted, candidate: Accepted) -> fl
     end, final = before.u + span * first, first
     if before.contact_set == after.contact_set:
         end, final = after.u, candidate.rate(before.t, after.t).u
-    path = CubicHermiteSpline([before.t, after.t], [before.u, end], [first, final])
+    path = cubic((before.u, end), (span * first, span * final))
     way = pair.position(end, after.t) - pair.position(before.u, before.t)
     moved = np.hypot(*way) + span * np.abs(first).max()
     size = pair.radius or pair.curve.stations[-1] / _PARTS
     count = int(np.clip(np.ceil(_PARTS * moved / size), 2, _SAMPLES))
     ahead = True
     for t in np.linspace(before.t, after.t, count + 1).tolist():
-        u = path(t)
+        u = polyval((t - before.t) / span, path)
         node = pair.position(u, t)
         was_ahead, ahead = ahead, 0 < room(pair, u, node, inside=True) < np.inf
         # the projection is dear, and decides only beside an end

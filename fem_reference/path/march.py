@@ -23,8 +23,6 @@ from fem_reference.path.ends import end_contact
 from fem_reference.path.events import SLIP_OFF, ContactEvent, changes, clearance, contact_event, first_event
 from fem_reference.path.track import (
     LARGEST_DEPARTURE,
-    ORDER,
-    TRACK_LENGTH,
     Accepted,
     accept,
     departure,
@@ -86,7 +84,7 @@ class _March:
         assert start is not None, "singular undeformed stiffness: a strip moves without strain"
         self.model, self.settings = model, model.settings
         self.track: tuple[Accepted, ...] = (start,)
-        self.trial, self.order, self.failures = _FIRST_STEP, ORDER, 0
+        self.trial, self.failures = _FIRST_STEP, 0
 
     @property
     def last(self) -> Accepted:
@@ -98,7 +96,7 @@ class _March:
         resolved = model.round_off <= _RESOLVED * largest and self.last.index <= 0
         for target in map(float, load_parameters):
             self.step = Step(load_parameter=self.last.t, state=self.last.state, index=self.last.index)
-            self.order, self.failures = ORDER, 0
+            self.failures = 0
             status = self.advance(target) if resolved else self.end(Status.ILL_CONDITIONED)
             step, last = self.step, self.last
             step.status, step.state, step.index = status or Status.CONVERGED, last.state, last.index
@@ -115,7 +113,7 @@ class _March:
             if step.cutbacks + step.substeps >= self.settings.max_attempts:
                 return Status.STEP_LIMIT
             goal = self.goal(target)
-            attempt = equilibrium(predict(self.track, goal, self.order))
+            attempt = equilibrium(predict(self.track[-1:] if self.failures else self.track, goal))
             step.iterations += attempt.iterations
             step.cause, step.pair = attempt.status, attempt.pair
             candidate = accept(attempt.state, self.last) if attempt.status is Status.CONVERGED else None
@@ -144,7 +142,7 @@ class _March:
             step.critical.append(at)
             step.load_parameter = at.load_parameter
         elif at is not None:
-            self.track, step.load_parameter = (*self.track, at), at.t
+            self.track, step.load_parameter = (at,), at.t
         return status
 
     def judge(self, candidate: Accepted, h: float) -> Status | None:
@@ -170,7 +168,6 @@ class _March:
         if event is None:
             longer = h * max(0.5, min(2.0, 0.8 * allowed / max(distance, 1e-9)))
             self.trial = longer if h >= self.trial * (1 - 1e-6) else max(longer, self.trial)
-            self.order = ORDER
         self.accept(candidate, restart=event is not None)
         return None
 
@@ -194,7 +191,7 @@ class _March:
     def accept(self, state: Accepted, *, restart: bool = False) -> None:
         """Append an accepted state to the track, or start a new track with it."""
         self.step.events += changes(self.last.state, state.state)
-        self.track = (state,) if restart else (*self.track, state)[-TRACK_LENGTH:]
+        self.track = (state,) if restart else (self.last, state)
         self.step.substeps += 1
         self.step.load_parameter = state.t
         self.failures = 0
@@ -202,13 +199,13 @@ class _March:
     def shorten(
         self, h: float, cause: Status | None = None, pair: int | None = None, reduction: float = 0.5
     ) -> Status | None:
-        """Reject an attempt over a step ``h``: shorten the step and lower the order of the extrapolation. Returns None."""
+        """Reject an attempt over a step ``h``: shorten the step, and extrapolate along the tangent. Returns None."""
         step = self.step
         step.cutbacks += 1
         if cause is not None:
             step.cause, step.pair = cause, pair
         self.failures += 1
-        self.trial, self.order = reduction * h, max(self.order - 2, 1)
+        self.trial = reduction * h
         return None
 
     def line_contact(self, end: float) -> Status | None:
@@ -270,7 +267,7 @@ class _March:
         self.accept(released, restart=True)
         off = contact_event(SLIP_OFF, last.state.touches[lost], lost, goal, 0)
         step.events[before:] = [off, *(event for event in step.events[before:] if event.pair != lost)]
-        self.trial, self.order = _FIRST_STEP, ORDER
+        self.trial = _FIRST_STEP
         return None
 
 

@@ -6,7 +6,7 @@ from math import inf, isfinite
 from typing import TypeVar
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline, KroghInterpolator
+from numpy.polynomial.polynomial import polyder, polyval
 
 from fem_reference.contact.friction import force_before_slip, settled, slip_gradient
 from fem_reference.statement.arrays import Floats
@@ -16,12 +16,8 @@ from fem_reference.system.state import State
 from fem_reference.system.system import Correction, Tangent, linearise, pin_motion
 
 Item = TypeVar("Item")
-TRACK_LENGTH = 2
-"""Largest number of accepted states in a prediction."""
 LARGEST_DEPARTURE = 1 / 3
 """Largest accepted distance of a step from the tangents at its ends, relative to the step's length."""
-ORDER = 3
-"""Degree of the polynomial in the load parameter that extrapolates accepted states and their rates."""
 _INTERVAL = 1e-6
 """Interval of the load parameter over which the motion of a pin is a velocity."""
 _MAX_STEPS = 80
@@ -98,15 +94,15 @@ def _dissipated(last: Accepted, found: Accepted, pair: int) -> float:
     slips = before.closed and before.direction == after.direction
     first = span * last.slip_rates(pair, forward=True) if slips else np.array([np.nan])
     first = first if np.all(np.isfinite(first)) else 2 * change - final  # polynomials of degree 2
-    path = CubicHermiteSpline([0.0, 1.0], [0 * change, change], [first, final])
+    path = cubic((0 * change, change), (first, final))
     x, w = np.polynomial.legendre.leggauss(3)
-    points = (1 + x) / 2
-    return float(w / 2 @ ((begin + path(points)[:, 1]) * path(points, 1)[:, 0]))
+    (_, force), (rate, _) = (polyval((1 + x) / 2, part) for part in (path, polyder(path)))
+    return float(w / 2 @ ((begin + force) * rate))
 
 
 def state_at(last: Accepted, t: float, *, keep_set: bool = False) -> Accepted | None:
     """Equilibrium at ``t`` from the linear extrapolation of a state; None if it does not converge. ``keep_set`` keeps its contact set."""
-    attempt = equilibrium(predict((last,), t, 1), keep_set=keep_set)
+    attempt = equilibrium(predict((last,), t), keep_set=keep_set)
     if attempt.status is not Status.CONVERGED:
         return None
     return accept(attempt.state, last if keep_set else None)
@@ -135,18 +131,29 @@ def _size(u: Floats) -> float:
     return float(np.sqrt(np.mean(u**2)))
 
 
-def predict(states: tuple[Accepted, ...], t: float, degree: int) -> State:
-    """Extrapolate the last states that have the contact set of the last one to ``t`` by Hermite's polynomial."""
-    last = states[-1].state
-    same = [item for item in states[-TRACK_LENGTH:] if item.state.contact_set == last.contact_set]
-    nodes, conditions = list[float](), list[Floats]()
-    for item, after in zip(same[::-1], [t, *(item.t for item in same[:0:-1])], strict=True):
-        rate = item.rate(item.t, after)
-        nodes += [item.t, item.t]
-        conditions += [np.append(item.state.u, item.state.forces), np.append(rate.u, rate.forces)]
-    found = KroghInterpolator(nodes[: degree + 1], conditions[: degree + 1])(t)
-    state = last.moved(found[: last.u.size].reshape(-1, 2), t, found[last.u.size :])
+def predict(states: tuple[Accepted, ...], t: float) -> State:
+    """Extrapolate the last two states to ``t`` by a cubic polynomial; along the tangent if one is given or their contact sets differ."""
+    first, last = states[-2:][0], states[-1]
+    state, size, h = last.state, last.state.u.size, last.t - first.t
+    rate = last.rate(last.t, t)
+    found = _unknowns(state) + (t - last.t) * _unknowns(rate)
+    if h and first.state.contact_set == state.contact_set:
+        slopes = h * _unknowns(first.rate(first.t, last.t)), h * _unknowns(rate)
+        path = cubic((_unknowns(first.state), _unknowns(state)), slopes)
+        found = np.asarray(polyval((t - first.t) / h, path))
+    state = state.moved(found[:size].reshape(-1, 2), t, found[size:])
     return state.touching(tuple(map(augmented, state.touches)))
+
+
+def _unknowns(of: State | Correction) -> Floats:
+    """Displacements and forces in one array."""
+    return np.append(of.u, of.forces)
+
+
+def cubic(values: tuple[Floats, Floats], slopes: tuple[Floats, Floats]) -> Floats:
+    """Coefficients ``(4, ...)`` of the cubic polynomial with these values and slopes at 0 and 1."""
+    (p, q), (v, w) = values, slopes
+    return np.array([p, v, 3 * (q - p) - 2 * v - w, v + w - 2 * (q - p)])
 
 
 def root(

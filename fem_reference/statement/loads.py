@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import lagrange
 
 from fem_reference.statement.arrays import Floats
 from fem_reference.statement.checks import Point, require, require_finite
@@ -133,7 +132,7 @@ def _pieces(strip: Strip, stations: Floats) -> list[slice]:
 def _shapes(stations: Floats, points: Floats) -> Floats:
     """Lagrange's polynomials ``(k, p)`` of the stations ``(k,)`` at the points ``(p,)``."""
     s, h = (stations - stations[0]) / np.ptp(stations), (points - stations[0]) / np.ptp(stations)
-    return np.array([lagrange(s, unit)(h) for unit in np.eye(s.size)])
+    return np.linalg.solve(np.vander(s).T, np.vander(h, s.size).T)
 
 
 def stage_of(t: float, stages: int) -> int:
