@@ -29,10 +29,14 @@ _VANISHED = 1e-9
 class Accepted:
     """An accepted state with its tangent and index."""
 
-    state: State  # the state
     tangent: Tangent  # linearisation at the state
     index: int  # number of negative eigenvalues of the energy's Hessian; -1 if undefined, see `Tangent.index`
     rates: dict[tuple[float, float], Correction] = field(default_factory=dict)  # results of `rate`
+
+    @property
+    def state(self) -> State:
+        """The state."""
+        return self.tangent.state
 
     @property
     def t(self) -> float:
@@ -64,15 +68,14 @@ def accept(state: State, last: Accepted | None = None) -> Accepted | None:
     if tangent is None:
         return None
     index = tangent.index(state.model.settings.tolerance * state.force_scale)
-    found = Accepted(state=state, tangent=tangent, index=index)
+    found = Accepted(tangent=tangent, index=index)
     if last is None or not (state.rubbing or last.state.rubbing):
         return found
     touches = [
         replace(touch, dissipated=touch.dissipated + _dissipated(last, found, pair))
         for pair, touch in enumerate(state.touches)
     ]
-    state = state.touching(touches)
-    return replace(found, state=state, tangent=replace(tangent, state=state))
+    return replace(found, tangent=replace(tangent, state=state.touching(touches)))
 
 
 def _dissipated(last: Accepted, found: Accepted, pair: int) -> float:

@@ -1,5 +1,6 @@
 """Post-processing of a solution: axis lines, stresses, energies, section forces, material forces, and strains of the faces."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,36 +52,29 @@ def nodal_stress(result: Result, k: int) -> Floats:
     ``sigma = P F^T / det F`` is the force per current length in the plane and per reference thickness. It is evaluated at
     the nodes of every element and averaged over the elements with a common node.
     """
-    found = []
-    for body in result.model.bodies:
-        _, sigma = _cauchy_stress(body, result.states[k].u[body.part])
-        found.append(_averaged(body, np.stack([sigma[0, 0], sigma[1, 1], sigma[0, 1]], axis=-1)))
-    return np.concatenate(found)
+    return _at_nodes(result, k, lambda _, __, sigma: sigma[[0, 1, 0], [0, 1, 1]])
 
 
 def fibre_stress(result: Result, k: int) -> Floats:
     """Cauchy stress ``t . sigma t`` ``(n,)`` at the nodes, with the unit vector t along the deformed fibre along the axis [Pa]."""
+
+    def along(body: Body, F: Floats, sigma: Floats) -> Floats:
+        T, _ = body.strip.directions(body.mesh.places[body.mesh.cells, 0])
+        t = np.einsum("ijek,jek->iek", F, T)
+        return np.asarray(np.einsum("iek,ijek,jek->ek", t, sigma, t) / (t**2).sum(axis=0))[None]
+
+    return _at_nodes(result, k, along)[:, 0]
+
+
+def _at_nodes(result: Result, k: int, values: Callable[[Body, Floats, Floats], Floats]) -> Floats:
+    """Means ``(n, c)`` over the elements with a common node of ``values`` ``(c, e, k)`` of gradients and Cauchy stresses."""
     found = []
     for body in result.model.bodies:
-        F, sigma = _cauchy_stress(body, result.states[k].u[body.part])
-        T, _ = body.strip.directions(body.mesh.places[body.mesh.cells, 0])
-        along = np.einsum("ijek,jek->iek", F, T)
-        stress = np.einsum("iek,ijek,jek->ek", along, sigma, along) / (along**2).sum(axis=0)
-        found.append(_averaged(body, stress[..., None])[:, 0])
+        F = deformation_gradient(body.mesh, result.states[k].u[body.part], body.mesh.at_nodes)
+        area, cells = F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0], body.mesh.cells.ravel()
+        own = values(body, F, np.einsum("ikeq,jkeq->ijeq", body.law.stress(F), F) / area)
+        found.append(body.mesh.gather @ own.reshape(len(own), -1).T / np.bincount(cells)[:, None])
     return np.concatenate(found)
-
-
-def _cauchy_stress(body: Body, u: Floats) -> tuple[Floats, Floats]:
-    """Deformation gradient and Cauchy stress at the nodes of every element."""
-    F = deformation_gradient(body.mesh, u, body.mesh.at_nodes)
-    sigma = np.einsum("ikeq,jkeq->ijeq", body.law.stress(F), F) / (F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0])
-    return F, sigma
-
-
-def _averaged(body: Body, values: Floats) -> Floats:
-    """Mean over the elements with a common node."""
-    cells = body.mesh.cells.ravel()
-    return np.asarray((body.mesh.gather @ values.reshape(cells.size, -1)) / np.bincount(cells)[:, None])
 
 
 def energy(result: Result, k: int) -> tuple[float, float]:

@@ -61,12 +61,7 @@ class PointLoad:
 
     def on_sections(self, strip: Strip, stations: Floats) -> Floats:
         """Forces ``(m, 2)`` on the mean displacements of the sections at ``stations`` ``(m,)``, in the global frame [N]."""
-        at = np.array([self.at * strip.length])
-        forces = np.zeros((stations.size, 2))
-        pieces = _pieces(strip, stations)
-        piece = next((part for part in pieces if at <= stations[part.stop - 1]), pieces[-1])
-        forces[piece] = np.outer(_shapes(stations[piece], at), self.force)
-        return forces
+        return np.outer(_shares(strip, stations, np.array([self.at * strip.length])), self.force)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,30 +104,30 @@ class LineLoad:
         """Forces ``(m, 2)`` on the mean displacements of the sections at ``stations`` ``(m,)``, in the global frame [N]."""
         x, w = np.polynomial.legendre.leggauss(4)
         low, high = (part * strip.length for part in self.part)
-        forces = np.zeros((stations.size, 2))
-        for piece in _pieces(strip, stations):
-            s = stations[piece]
-            a, b = max(low, s[0]), min(high, s[-1])
-            if a < b:
-                points = (a + b) / 2 + (b - a) / 2 * x
-                per_length = np.polynomial.polynomial.polyval(points / strip.length, np.array(self.force)).T
-                forces[piece] += _shapes(s, points) @ (per_length * (w * (b - a) / 2)[:, None])
-        return forces
+        ends = np.clip(stations[:: _order(strip)], low, high)
+        half = np.diff(ends)[:, None] / 2
+        points, weights = (ends[:-1, None] + half * (1 + x)).ravel(), (half * w).ravel()
+        per_length = np.polynomial.polynomial.polyval(points / strip.length, np.array(self.force))
+        return np.asarray(_shares(strip, stations, points) @ (per_length * weights).T)
 
 
 Load = PointLoad | LineLoad
 
 
-def _pieces(strip: Strip, stations: Floats) -> list[slice]:
-    """Ranges of stations between which the mean displacement of the sections is interpolated: the elements of a structured mesh."""
-    order = 1 if strip.element == "Q1" or strip.mesh_file is not None else 2
-    return [slice(k, k + order + 1) for k in range(0, stations.size - 1, order)]
+def _order(strip: Strip) -> int:
+    """Number of stations from one element of a structured mesh to the next; the mean displacement is a polynomial between."""
+    return 1 if strip.element == "Q1" or strip.mesh_file is not None else 2
 
 
-def _shapes(stations: Floats, points: Floats) -> Floats:
-    """Lagrange's polynomials ``(k, p)`` of the stations ``(k,)`` at the points ``(p,)``."""
-    s, h = (stations - stations[0]) / np.ptp(stations), (points - stations[0]) / np.ptp(stations)
-    return np.linalg.solve(np.vander(s).T, np.vander(h, s.size).T)
+def _shares(strip: Strip, stations: Floats, points: Floats) -> Floats:
+    """Shares ``(m, p)`` of the sections in the mean displacement at the ``points`` ``(p,)``, by Lagrange's polynomials."""
+    order, shares = _order(strip), np.zeros((stations.size, points.size))
+    elements = np.clip(np.searchsorted(stations[::order], points) - 1, 0, (stations.size - 1) // order - 1)
+    for element in np.unique(elements):
+        part, here = slice(order * element, order * (element + 1) + 1), elements == element
+        s, x = ((at - stations[part.start]) / np.ptp(stations[part]) for at in (stations[part], points[here]))
+        shares[part, here] = np.linalg.solve(np.vander(s).T, np.vander(x, s.size).T)
+    return shares
 
 
 def stage_of(t: float, stages: int) -> int:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csc_matrix, csr_matrix
+from scipy.sparse import csr_matrix
 
 from fem_reference.contact.end_section import anchor
 from fem_reference.solid.assembly import (
@@ -14,7 +14,6 @@ from fem_reference.solid.assembly import (
     internal_force,
     pattern,
 )
-from fem_reference.solid.factor import full
 from fem_reference.solid.mesh import Discretisation, structured_mesh
 from fem_reference.statement.arrays import Floats
 from fem_reference.statement.material import Law, elastic_law
@@ -40,10 +39,6 @@ class Body:
     def internal_force(self, u: Floats) -> Floats:
         """Internal nodal forces ``(n, 2)`` [N] from nodal displacements ``u`` ``(n, 2)``."""
         return internal_force(self.mesh, self.law.stress(deformation_gradient(self.mesh, u)))
-
-    def tangent(self, u: Floats) -> csc_matrix:
-        """Tangent stiffness over the unknowns."""
-        return full(self.stiffness.band(element_entries(self.mesh, self.law, u)))
 
     def band(self, u: Floats, before: Floats | None = None) -> Floats:
         """Lower band of the tangent stiffness with the anchor, see `element_entries`."""
