@@ -95,33 +95,24 @@ def internal_force(mesh: Discretisation, P: Array) -> Array:
 def element_entries(mesh: Discretisation, law: Law, u: Array, before: Array | None = None) -> Array:
     """Entries of all element stiffnesses, the integral of ``dN/dX . A . dN/dX``, in one array.
 
-    The three parts are the blocks of the first and of the
-    second component for the shape functions a <= b, ``(e, k (k + 1) / 2)``, and that of both components for all, ``(e, k k)``.
+    The three parts are the blocks of the first and of the second component for the shape functions a <= b,
+    ``(e, k (k + 1) / 2)``, and that of both components for all, ``(e, k k)``.
 
-    With the displacements ``before`` the last correction the stress is what a linear law adds to the one before by the linear
-    part of the strain: the second part ``H^T H / 2`` is of the order of the correction squared, and times a large axial stiffness
-    it spoils the tangent of a slender solid (Magisano, Leonetti, Garcea, Comput. Methods Appl. Mech. Eng. 313 (2017), 986-1005).
+    If the displacements ``before`` the last correction are given, the stress is without the part of a linear law's that is
+    due to ``H^T H / 2``, with the change H of F. This part is of the order of the correction squared, vanishes in equilibrium,
+    and spoils the tangent of a slender solid, whose axial stiffness is large. (Magisano, Leonetti, Garcea, Comput. Methods Appl.
+    Mech. Eng. 313 (2017), 986-1005, section 3, who carry stresses at the Gauss points as unknowns.)
     """
-    elements, shapes = mesh.cells.shape
-    half = shapes * (shapes + 1) // 2
-    entries = np.empty(elements * shapes * (2 * shapes + 1), dtype=u.dtype)
-    same = entries[: 2 * elements * half].reshape(2, elements, half)
-    mixed = entries[2 * elements * half :].reshape(elements, -1)
-    start = 0
-    for part in mesh.batches:
-        stop = start + len(part.cells)
-        F = deformation_gradient(part, u)
-        A = law.tangent(F)
-        if before is not None:
-            H = F - deformation_gradient(part, before)
-            stress = np.tensordot(law.elastic, (H[:, :, None] * H[:, None]).sum(axis=0)) / 2
-            for n in range(2):
-                A[n, :, n, :] -= stress
-        for i in range(2):
-            np.matmul(_pulled_back(part, A[i, :, i], _UPPER), mesh.products[0], out=same[i, start:stop])
-        np.matmul(_pulled_back(part, A[0, :, 1], _ALL), mesh.products[1], out=mixed[start:stop])
-        start = stop
-    return entries
+    F = deformation_gradient(mesh, u)
+    A = law.tangent(F)
+    if before is not None:
+        H = F - deformation_gradient(mesh, before)
+        stress = np.tensordot(law.elastic, (H[:, :, None] * H[:, None]).sum(axis=0)) / 2
+        for n in range(2):
+            A[n, :, n, :] -= stress
+    upper, every = mesh.products
+    parts = [_pulled_back(mesh, A[i, :, i], _UPPER) @ upper for i in range(2)]
+    return np.concatenate([part.ravel() for part in (*parts, _pulled_back(mesh, A[0, :, 1], _ALL) @ every)])
 
 
 _UPPER, _ALL = ((0, 0), (0, 1), (1, 1)), ((0, 0), (0, 1), (1, 0), (1, 1))

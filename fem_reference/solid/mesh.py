@@ -1,6 +1,6 @@
 """Meshes of quadrilaterals."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -20,8 +20,6 @@ element locks. Three points across the strip avoid zero-energy modes.
 EDGES = ("start", "end", "right", "left")
 """Names of the two ends and of the faces to the right and left of the direction from start to end."""
 
-_BATCH = 1024
-"""Number of elements in a batch."""
 SECTION_LAYERS = 8
 """Layers of Gauss points over the height by which a section of a user's mesh is integrated."""
 
@@ -77,17 +75,6 @@ class Discretisation:
         crossed = every[0, 1] + every[1, 0]
         upper = np.stack([every[0, 0], crossed, every[1, 1]])[..., a, b]
         return upper.reshape(-1, a.size), every.reshape(4 * G.shape[1], -1)
-
-    @cached_property
-    def batches(self) -> tuple["Discretisation", ...]:
-        """The elements in batches whose arrays fit into the processor's cache."""
-        count = -(-len(self.cells) // _BATCH)
-        parts = [slice(k * _BATCH, (k + 1) * _BATCH) for k in range(count)]
-        gauss = [replace(self.gauss, inverse=self.gauss.inverse[:, :, part]) for part in parts]
-        return tuple(
-            replace(self, cells=self.cells[part], gauss=points, weights=self.weights[part])
-            for part, points in zip(parts, gauss, strict=True)
-        )
 
 
 def structured_mesh(strip: Strip) -> Discretisation:
