@@ -92,24 +92,13 @@ def internal_force(mesh: Discretisation, P: Array) -> Array:
     return np.asarray(mesh.gather @ forces.reshape(2, -1).T)
 
 
-def element_entries(mesh: Discretisation, law: Law, u: Array, before: Array | None = None) -> Array:
+def element_entries(mesh: Discretisation, law: Law, u: Array) -> Array:
     """Entries of all element stiffnesses, the integral of ``dN/dX . A . dN/dX``, in one array.
 
     The three parts are the blocks of the first and of the second component for the shape functions a <= b,
     ``(e, k (k + 1) / 2)``, and that of both components for all, ``(e, k k)``.
-
-    If the displacements ``before`` the last correction are given, the stress is without the part of a linear law's that is
-    due to ``H^T H / 2``, with the change H of F. This part is of the order of the correction squared, vanishes in equilibrium,
-    and spoils the tangent of a slender solid, whose axial stiffness is large. (Magisano, Leonetti, Garcea, Comput. Methods Appl.
-    Mech. Eng. 313 (2017), 986-1005, section 3, who carry stresses at the Gauss points as unknowns.)
     """
-    F = deformation_gradient(mesh, u)
-    A = law.tangent(F)
-    if before is not None:
-        H = F - deformation_gradient(mesh, before)
-        stress = np.tensordot(law.elastic, (H[:, :, None] * H[:, None]).sum(axis=0)) / 2
-        for n in range(2):
-            A[n, :, n, :] -= stress
+    A = law.tangent(deformation_gradient(mesh, u))
     upper, every = mesh.products
     parts = [_pulled_back(mesh, A[i, :, i], _UPPER) @ upper for i in range(2)]
     return np.concatenate([part.ravel() for part in (*parts, _pulled_back(mesh, A[0, :, 1], _ALL) @ every)])

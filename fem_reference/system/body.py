@@ -40,9 +40,9 @@ class Body:
         """Internal nodal forces ``(n, 2)`` [N] from nodal displacements ``u`` ``(n, 2)``."""
         return internal_force(self.mesh, self.law.stress(deformation_gradient(self.mesh, u)))
 
-    def band(self, u: Floats, before: Floats | None = None) -> Floats:
-        """Lower band of the tangent stiffness with the anchor, see `element_entries`."""
-        K = self.stiffness.band(element_entries(self.mesh, self.law, u, before))
+    def band(self, u: Floats) -> Floats:
+        """Lower band of the tangent stiffness with the anchor."""
+        K = self.stiffness.band(element_entries(self.mesh, self.law, u))
         return K if self.anchor is None else K + self.anchor
 
     def strain_energy(self, u: Floats) -> float:

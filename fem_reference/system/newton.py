@@ -12,6 +12,8 @@ from fem_reference.statement.status import Status
 from fem_reference.system.state import State, imbalance
 from fem_reference.system.system import Correction, Tangent, linearise
 
+_LARGEST_GROWTH, _SMALLEST_DAMPING = 5.0, 1 / 64
+"""Ratio of two corrections beyond which the first one is halved, and least part of a correction that is taken."""
 _MAX_CONTACT_CHANGES, _MAX_AUGMENTATIONS = 6, 12
 """Largest numbers of changes of the set of closed contacts, and of augmented Lagrangian steps, in one attempt."""
 _MAX_PENETRATION = 1e-3
@@ -54,8 +56,13 @@ class Control:
 
 
 def iterate(state: State, control: Control | None = None) -> Attempt:
-    """Iterate with a fixed set of closed contacts; never raises."""
-    most, before = state.model.settings.max_iterations, None
+    """Iterate with a fixed set of closed contacts; never raises.
+
+    If a correction is larger than the previous one by `_LARGEST_GROWTH`, the previous step is repeated with half
+    its length (natural monotonicity test, Deuflhard, Newton Methods for Nonlinear Problems, 2004, section 3.3).
+    """
+    most = state.model.settings.max_iterations
+    base, last, size, damping = state, Correction(u=0 * state.u, forces=0 * state.forces), np.inf, 1.0
     for iteration in range(most + 1):
         attempt = converged(state)
         done = control is None or abs(control.missing(state)) <= displacement_tolerance(state)
@@ -63,16 +70,26 @@ def iterate(state: State, control: Control | None = None) -> Attempt:
             attempt = replace(attempt, status=Status.ITERATION_LIMIT)
         if attempt.status is not Status.ITERATION_LIMIT or iteration == most:
             break
-        tangent = linearise(state, before)
+        tangent = linearise(state)
         correction = None if tangent is None else tangent.correction()
         if control is not None and tangent is not None and correction is not None:
             correction = control.completed(tangent, correction)
         if correction is None:
             attempt = replace(attempt, status=Status.SINGULAR)
             break
-        before = state.u
-        state = state.moved(before + correction.u, state.t + correction.t, state.forces + correction.forces)
+        following = float(np.abs(correction.u).max())
+        if following > _LARGEST_GROWTH * size and damping > _SMALLEST_DAMPING:
+            damping /= 2
+        else:
+            base, last, size, damping = state, correction, following, 1.0
+        state = corrected(base, last, damping)
     return replace(attempt, iterations=iteration)
+
+
+def corrected(state: State, correction: Correction, damping: float = 1.0) -> State:
+    """Return the state after ``damping`` times a correction."""
+    u, forces = state.u + damping * correction.u, state.forces + damping * correction.forces
+    return state.moved(u, state.t + damping * correction.t, forces)
 
 
 def displacement_tolerance(state: State) -> float:

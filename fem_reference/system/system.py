@@ -194,12 +194,12 @@ def pin_motion(touch: Touch, before: float, after: float) -> Floats:
     return p
 
 
-def linearise(state: State, before: Floats | None = None) -> Tangent | None:
-    """Linearise equilibrium at a state, after a correction of ``before``; None if the stiffness is singular or not finite."""
+def linearise(state: State) -> Tangent | None:
+    """Linearise equilibrium at a state; None if the stiffness is singular or not finite."""
     model = state.model
     K = np.zeros((model.unknowns, 1 + max(body.stiffness.width for body in model.bodies))).T
     for body in model.bodies:
-        band = body.band(state.u[body.part], None if before is None else before[body.part])
+        band = body.band(state.u[body.part])
         K[: len(band), body.unknowns] = band
     factor = factorise(K)
     if factor is None:
