@@ -54,7 +54,7 @@ numpydoc_show_class_members = False
 add_module_names = False
 toc_object_entries = False
 # in the aliases `Errors`, `Columns` and `Values`; the standard library and NumPy are not linked
-nitpick_ignore_regex = [("py:class", r"collections\.abc\.Mapping|numpy\.(ndarray|dtype|float64)")]
+nitpick_ignore_regex = [("py:class", r"collections\.abc\.(Mapping|Callable)|numpy\.(ndarray|dtype|float64)")]
 
 
 def _list_keys(
