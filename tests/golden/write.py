@@ -98,7 +98,7 @@ def _answer(answer: dict[str, Any]) -> Iterator[str]:
     yield from sorted(_histories(answer))
     for event in answer["events"] or ():
         if event["kind"] != "pass-through":
-            yield f"event {event['kind']} {event.get('pair') or ''}: {event['load_parameter']:.10g}"
+            yield f"event {event['kind']} {event.get('pair') or ''}: {round(event['load_parameter'], 9):.10g}"
 
 
 def _histories(value: Any, *path: str) -> Iterator[str]:
@@ -180,7 +180,9 @@ def differences(now: str, before: str, bound: float, solid: float = 0.0) -> list
 
 
 def _same(line: str, other: str, bound: float) -> bool:
-    if NUMBER.sub("#", line) != NUMBER.sub("#", other):
+    if (
+        NUMBER.sub("#", line).split() != NUMBER.sub("#", other).split()
+    ):  # a shorter number moves what is beside it
         return False
     found, kept = NUMBER.findall(line), NUMBER.findall(other)
     size = max((abs(float(text)) for text in kept), default=0.0)

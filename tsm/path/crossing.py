@@ -25,7 +25,7 @@ from tsm.statement.status import Status, StopError
 _CROSSED = 1e-14
 """Tolerance of a crossing: its gap over the longest beam, and the width of the bracket of its load parameter."""
 _UNSURE = 0.3
-"""Distance off the beam at a crossing, over that at the end of the step, up to which the step is taken anew to the crossing."""
+"""Distance past the beam's end at a crossing, over that at the end of the step, up to which the step is taken anew to the crossing."""
 _SAMPLES, _NARROWED = 33, 5
 """States of a step at which a clearance is measured, and how often as many are measured about the least of them."""
 
@@ -55,8 +55,19 @@ def _passage(model: Model, pair: PairModel, before: State, after: State) -> floa
         return t0 if first.gap >= -small and over(model, first) else None
     ends = (t0, first.gap), (t1, last.gap)
     t = find_root(lambda t: (seen(t).gap, t), *ends, small=_CROSSED * model.length, apart=_CROSSED)
+    if t is None or over(model, seen(t)):
+        return t
     # where points move on curves, the node may have been over the beam: a shorter step will tell
-    return t if t is not None and seen(t).overshoot <= _UNSURE * last.overshoot else None
+    there = _past(model, pair, extrapolate(model, [before, after], t))
+    return t if there <= _UNSURE * _past(model, pair, after) else None
+
+
+def _past(model: Model, pair: PairModel, state: State) -> float:
+    """Distance of a node past the nearer end of its beam, along the tangent there."""
+    group = model.group_of(pair.target)
+    ends = ((*group.end(pair, state, last=last), 2.0 * last - 1.0) for last in (False, True))
+    (px, py), (tx, ty), way = min(ends, key=lambda end: math.hypot(*end[0]))
+    return -way * float(px * tx + py * ty) / math.hypot(tx, ty)
 
 
 def through_end(model: Model, before: State, after: State) -> tuple[float, int] | None:
