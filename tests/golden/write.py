@@ -180,9 +180,8 @@ def differences(now: str, before: str, bound: float, solid: float = 0.0) -> list
 
 
 def _same(line: str, other: str, bound: float) -> bool:
-    if (
-        NUMBER.sub("#", line).split() != NUMBER.sub("#", other).split()
-    ):  # a shorter number moves what is beside it
+    # a shorter number moves what is beside it
+    if NUMBER.sub("#", line).split() != NUMBER.sub("#", other).split():
         return False
     found, kept = NUMBER.findall(line), NUMBER.findall(other)
     size = max((abs(float(text)) for text in kept), default=0.0)
