@@ -144,6 +144,15 @@ def test_strip_that_was_left_by_its_pin_comes_to_rest_on_the_next():
     np.testing.assert_allclose(inner.force[after], alone.contacts[f"inner->{STRIP}"].force[after], rtol=1e-7)
 
 
+@pytest.mark.parametrize(("end", "x", "way"), [("start", -0.3, 0.2), ("end", 1.3, -0.2)])
+def test_the_end_that_a_round_pin_meets_is_named(end, x, way):
+    """Of a strip between springs, both of whose ends are free."""
+    springs = (fr.Spring(strip=STRIP, end=one, stiffness=(EI, EI, EI)) for one in ("start", "end"))
+    problem = pressed(held(*springs, mesh=(10, 1)), ((x, 0.0), (x + way, 0.0)), 0.2)
+    result = fr.solve(problem, loads(1), throw=False)
+    assert result.message.endswith(f"pin meets the {end} of {STRIP} at load parameter 0.5")
+
+
 def test_line_contact_begins_where_the_beams_curvature_reaches_the_drums():
     """``M / EI = 1 / (R + h / 2)`` under a moment, since there is no force beyond the contact; a strip of height .005 on a drum."""
     begins = EI / 64 / 0.5025

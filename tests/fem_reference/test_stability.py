@@ -76,6 +76,13 @@ def test_pin_that_is_led_behind_the_clamp_meets_the_elasticas_limit_point():
     assert "limit on this branch" in result.message
 
 
+def test_a_column_that_a_pin_holds_by_round_off_alone_ends_at_a_limit_point():
+    """From its buckling load on its index depends on the contact, and is unknown: no step is refused for it."""
+    result = fr.solve(pressed(column(1.5), ((0.8, 0.0), (0.8, 1e-9))), loads(1), throw=False)
+    assert result.status is fr.Status.LIMIT_POINT
+    assert 1.5 * result.reached == pytest.approx(1.0, abs=0.05)
+
+
 def test_pin_that_presses_a_buckled_column_straight_loses_it_at_a_limit_point():
     """At 1.1 times the buckling load the pin's force has fallen to zero: the free column is unstable there, index 1."""
     scene = pressed(column(1.5, 1e-3), ((0.7, 0.8), (0.7, -0.3)), side="left")

@@ -139,6 +139,31 @@ def problem(name: str) -> Iterator[str]:
         yield f"{run['model']}, {run['setting']}, {run['tolerance']:g}: {_flat(run['values'])}"
 
 
+def extremes() -> Iterator[str]:
+    """Yield the places on every axis of the extremes, and what scenes state otherwise than half a circle of a cantilever."""
+    from comparisons.scene import Scene, to_tables
+    from comparisons.suites.extremes.axes import cantilever, half_circle, matrix
+
+    def stated(scene: Scene) -> dict[str, str]:
+        tables = {name: rows if isinstance(rows, list) else [rows] for name, rows in to_tables(scene).items()}
+        keys = (
+            (name, key, value) for name, rows in tables.items() for row in rows for key, value in row.items()
+        )
+        return {
+            f"{name} {key}": str(value)[:90] for name, key, value in keys if (name, key) != ("scene", "name")
+        }
+
+    places = dict.fromkeys((cell.axis, cell.column) for cell in matrix())
+    for axis in dict.fromkeys(axis for axis, _ in places):
+        yield f"{axis}: " + "; ".join(column for own, column in places if own == axis)
+    first = stated(half_circle(cantilever()))
+    own = {(cell.axis, cell.column): stated(cell.case.scene) for cell in matrix(quick=True)}
+    yield "; ".join(f"{name} {value}" for name, value in first.items())
+    for (axis, column), keys in own.items():
+        others = (f"{name} {keys.get(name)}" for name in first | keys if keys.get(name) != first.get(name))
+        yield f"{axis}, {column}: " + "; ".join(others)
+
+
 def machine() -> str:
     """Return what rounds: the versions of the libraries, the processor's extensions and, behind a semicolon, the processor itself."""
     config = np.show_config(mode="dicts")
@@ -160,6 +185,7 @@ def pages() -> dict[str, Any]:
             for scene in PAGES
         },
         **{f"manual-{name}": lambda name=name: "\n".join(problem(name)) + "\n" for name in PROBLEMS},
+        "extremes": lambda: "\n".join(extremes()) + "\n",
     }
 
 

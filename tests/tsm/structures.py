@@ -49,6 +49,19 @@ def cantilever(
     )
 
 
+def turned(structure, angle=0.7):
+    """A structure of beams and pins turned about the origin."""
+    c, s = np.cos(angle), np.sin(angle)
+
+    def at(*points):
+        return tuple((float(c * x - s * y), float(s * x + c * y)) for x, y in points)
+
+    ends = (at(beam.start, beam.end) for beam in structure.beams)
+    beams = (replace(beam, start=a, end=b) for beam, (a, b) in zip(structure.beams, ends, strict=True))
+    pins = (replace(pin, path=at(*pin.path)) for pin in structure.pins)
+    return replace(structure, beams=tuple(beams), pins=tuple(pins))
+
+
 def essentials(result):
     """Events but those of the mesh."""
     return [(e.kind, e.pair) for e in result.events if e.kind is not tsm.EventKind.PASS_THROUGH]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import tsm
-from tests.tsm.structures import SECTION, TENTHS, cantilever, essentials, raised, steps
+from tests.tsm.structures import SECTION, TENTHS, cantilever, essentials, raised, steps, turned
 
 TOUCH, RELEASE, OFF = tsm.EventKind.TOUCH, tsm.EventKind.RELEASE, tsm.EventKind.SLIP_OFF
 SLENDER = tsm.Section(EA=3e6, GA=1e6, EI=1.0)
@@ -52,7 +52,11 @@ CASES = [
 def test_events_are_located_however_long_the_step(element, name):
     """A step ends where the path turns: what lies between its ends may be a slip-off, or the whole of a contact."""
     path, events, more = SCENES[name]
-    structure = cantilever(path, element=element, elements=1 if element == "exact" else 20, **more)
+    # the round-off of a direction is a force, which elements of the paper do not bear at a node
+    structure = turned(
+        cantilever(path, element=element, elements=1 if element == "exact" else 20, **more),
+        0.0 if element == "timoshenko" else 0.7,
+    )
     one, many = (tsm.solve(structure, t, throw=False) for t in ([1.0], steps(20)))
     for result in (one, many):
         assert name in ENDED or result.status is tsm.Status.COMPLETED
@@ -69,7 +73,7 @@ def test_events_are_located_however_long_the_step(element, name):
         t = np.where(abs(t - at) < 1e-6, np.nan, t)
     known = ~np.isnan(t)
     assert ((contact.force > 1e-9) == closed)[known].all()
-    assert np.abs(many.tips["b"][known & ~closed] - [1.0, 0.0]).max(initial=0.0) <= 1e-9
+    assert np.abs(many.tips["b"][known & ~closed] - structure.beams[0].end).max(initial=0.0) <= 1e-9
     if name not in ENDED:
         assert one.contacts["p0->b"].force[-1] == pytest.approx(contact.force[-1], abs=1e-8)
     if "touch" in name:

@@ -28,11 +28,21 @@ def registered(monkeypatch):
         monkeypatch.setitem(tsm.ELEMENTS, name, kind)
 
 
-def pressed(element, *, section=SLACK):
+def pressed(element, *, pins=None, section=SLACK):
     """A cantilever pushed up by a pin, or by two on the same element where its matrix knows both."""
-    pins = 2 if tsm.ELEMENTS[element].contact_unknowns else 1
+    pins = pins or (2 if tsm.ELEMENTS[element].contact_unknowns else 1)
     paths = [((x, -0.02), (x - 0.02, depth - 0.02)) for x, depth in ((0.55, 0.035), (0.95, 0.08))][:pins]
     return cantilever(*paths, section=section, element=element, elements=2, offset=0.02)
+
+
+@pytest.mark.parametrize("element", CORRECT)
+def test_the_work_of_a_pin_is_stored(element):
+    """By Gauss's rule over its way. The contacts of the paper store a part of it, as springs, and lose some where beams shear."""
+    structure, (t, weights) = pressed(element, pins=1), np.polynomial.legendre.leggauss(8)
+    result = tsm.solve(structure, [*((1 + t) / 2), 1.0])
+    push = -result.supports["b.start"].force[:-1] @ np.subtract(*structure.pins[0].path[::-1])
+    lost = 2e-3 if element == "timoshenko" else 1e-5
+    assert weights / 2 @ push == pytest.approx(result.strain_energy[-1], rel=lost)
 
 
 def last_force(structure, t=(1.0,)):

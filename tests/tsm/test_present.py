@@ -15,7 +15,19 @@ def result():
 
 
 def test_a_result_prints_its_status_and_has_columns_of_every_quantity(result):
-    assert repr(result).startswith("COMPLETED: all load parameters were reached\n33 unknowns, ")
+    first, counts, *lines = repr(result).splitlines()
+    contact, moment, (x, y) = (
+        result.contacts["p0->b"],
+        result.supports["b.start"].moment[-1],
+        result.tips["b"][-1],
+    )
+    assert (first, counts[:13]) == ("COMPLETED: all load parameters were reached", "33 unknowns, ")
+    assert lines[:4] == [
+        "at load parameter 1, the last of 10:",
+        f"  p0->b: force {contact.force[-1]:.9g} at arc position {contact.arc_position[-1]:.9g}",
+        f"  b.start: support moment {moment:.9g}",
+        f"  b: end at ({x:.9g}, {y:.9g})",
+    ]
     arrays, table = result.arrays(), result.table()
     assert {len(array) for array in arrays.values()} == {len(column) for column in table.values()} == {10}
     assert arrays["p0->b.force"] is result.contacts["p0->b"].force

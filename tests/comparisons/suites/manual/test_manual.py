@@ -160,6 +160,9 @@ def test_errors_are_relative_and_the_worst_is_named_on_every_way_out(tmp_path, m
         assert f'<a id="{target}"></a>' in page
     for picture in re.findall(r"\]\((\S+\.svg)\)", page):
         assert ET.parse(folder / picture).getroot().tag.endswith("svg")  # noqa: S314 our own file
+    # lines that agree are all seen
+    widths = re.findall(r"stroke-width: ([\d.]+)", (folder / "roll-up.svg").read_text())
+    assert {"1.5", "3.5", "5.5"} <= set(widths)
     monkeypatch.setitem(MEASURES, "told", telling((2.0,)))
     with pytest.raises(ValueError, match="argument 2 is shorter"):
         judged(read_problem(made_up(tmp_path, 1)))
