@@ -9,7 +9,6 @@ import fem_reference as fr
 from tests.fem_reference.strips import (
     CLAMP,
     EI,
-    GA,
     NU,
     PAIR,
     STRIP,
@@ -19,8 +18,6 @@ from tests.fem_reference.strips import (
     held,
     load,
     loads,
-    make_strip,
-    pressed,
     support,
 )
 
@@ -42,21 +39,6 @@ def test_the_axis_has_a_point_at_a_moment_between_two_sections():
     assert line[at] == pytest.approx([0.58, 1e-6 * (0.58 + 0.58**2 / 2)], abs=1e-10)
 
 
-def test_a_face_contact_is_on_the_face_of_the_taper():
-    """A sharp pin touches the inclined face at the start; below it, it is refused."""
-
-    def problem(y):
-        return pressed(
-            held(end_height=0.01, **KEPT), ((0.6, y), (0.6, y - 1e-6)), side="left", surface="face"
-        )
-
-    face = (H - 0.6 * 0.01) / 2
-    with pytest.raises(ValueError, match="must not start beyond the left face"):
-        problem(face - 1e-6)
-    x, y = fr.solve(problem(face), loads(1)).contacts[PAIR].vector[-1]
-    assert x / y == pytest.approx(-np.tan(-0.005), rel=2e-3)  # normal to the face, which falls by .005
-
-
 def test_a_rotational_spring_turns_with_its_moment():
     """By any angle: a strip on a hinge with a spring, turned by a moment of 4 rad times its stiffness."""
     k = 1e-3 * EI
@@ -66,24 +48,6 @@ def test_a_rotational_spring_turns_with_its_moment():
     assert result.springs[CLAMP].moment[-1] == pytest.approx(-4 * k, rel=1e-8)
     angle = np.arctan2(*result.tips[STRIP][-1][::-1]) % (2 * np.pi)
     assert angle == pytest.approx(4.0 + 0.002, abs=1e-7)  # half of the strip's own turn of .004
-
-
-def test_a_joint_of_two_strips_bears_its_springs_moment():
-    a, stiffness, part = 0.5, 5.0, {"mesh": (25, 2)}
-    halves = (
-        make_strip(name="a", end=(a, 0.0), **part),
-        make_strip(name="b", start=(a, 0.0), clamped=("end",), **part),
-    )
-    joint = fr.Joint(ends=("a.end", "b.start"), hinged=("b.start",), stiffness=(EI * stiffness,))
-    pushed = fr.PointLoad(strip="a", force=(0.0, -SMALL))
-    result = fr.solve(fr.SolidProblem(strips=halves, joints=(joint,), loads=(pushed,)), loads(1))
-    # each half: force SMALL/2 and moment m = c 2 turn against its turn at the joint
-    c = 2 * stiffness * a
-    m = SMALL * a / 4 * c / (1 + c)
-    expected = SMALL / 2 * a**3 / 3 / EI - m * a**2 / 2 / EI + SMALL / 2 * a / GA
-    assert result.tips["a"][-1, 1] == pytest.approx(-expected, rel=2e-4)
-    assert result.supports["a.start"].moment[-1] == pytest.approx(SMALL / 2 * a - m, rel=1e-7)
-    np.testing.assert_allclose(result.tips["a"][-1], fr.axis_line(result, "b", -1)[0], atol=1e-12)
 
 
 def arc(turn, **changes):

@@ -1,5 +1,7 @@
 """Scenes over everything that the format can state: completed answers are certified, the same by every element and number of load parameters."""
 
+import subprocess
+import sys
 import tomllib
 from collections import Counter
 from collections.abc import Iterator
@@ -17,7 +19,7 @@ from tests.fuzz.special import DRAW
 from tests.fuzz.world_judge import BEAMS, Judged, Row, findings, judged, wrong
 
 
-@pytest.mark.slow_at("world", "friction", "more")
+@pytest.mark.slow_at("world", "friction", "more", "held")
 @pytest.mark.parametrize(
     ("kind", "seeds", "least"),
     [
@@ -25,8 +27,9 @@ from tests.fuzz.world_judge import BEAMS, Judged, Row, findings, judged, wrong
         ("friction", range(10), 0.5),
         ("special", range(102, 105), 0.6),
         ("world", range(4, 10), 0.5),
+        ("held", range(20), 0.3),
     ],
-    ids=["world", "friction", "special", "more"],
+    ids=["world", "friction", "special", "more", "held"],
 )
 def test_answers_to_drawn_scenes_are_right(kind: str, seeds: range, least: float) -> None:
     """No completed answer is wrong, and not too many solutions stop; `python -m tests.fuzz world 0 5000` draws thousands, with many numbers of load parameters."""
@@ -54,11 +57,17 @@ def test_drawn_scenes_are_certified(kind: str, first: int) -> None:
     assert not faults, f"{len(faults)} of {len(found)} scenes\n" + "\n\n".join(faults)
 
 
+QUICK = [("held", "9"), ("held", "17"), ("held", "75")]
 MENDED = tomllib.loads(Path(__file__).with_name("mended.toml").read_text(encoding="utf-8"))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("kind", "seed"), [(kind, seed) for kind in DRAW for seed in MENDED.get(kind, ())])
+@pytest.mark.parametrize(
+    ("kind", "seed"),
+    [
+        pytest.param(kind, seed, marks=[pytest.mark.slow] * ((kind, seed) not in QUICK))
+        for kind in DRAW for seed in MENDED.get(kind, ())
+    ],
+)  # fmt: skip
 def test_drawn_scenes_that_once_failed(kind: str, seed: str) -> None:
     found = judged(DRAW[kind](int(seed)), BEAMS, (3,) if kind == "special" else (1, 12))
     assert not found.findings, found.report()
@@ -168,3 +177,9 @@ def test_an_answer_that_the_referee_alone_refuses_is_not_wrong(row: Row) -> None
     ):
         found = Judged(scene=scene, rows=rows, findings=tuple(findings(scene, rows)))
         assert [item.kind for item in wrong(found)] == faults
+
+
+@pytest.mark.slow
+def test_the_command_judges_on_all_cores() -> None:
+    arguments = [sys.executable, "-m", "tests.fuzz", "held", "0", "2"]
+    assert "0 wrong: " in subprocess.run(arguments, capture_output=True, text=True, check=True).stdout

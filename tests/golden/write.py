@@ -45,7 +45,6 @@ SOURCES = {
 SLOW = {"clamped-column", "double-beam", "hysteresis-stages", "ks-friction", "tapered-spring"}
 COMPARED = ("ks-cantilever", "ks-friction", "tip-load")
 PAGES = ("hysteresis-stages", "sleeve")
-PROBLEMS = ("dead-load", "elastica-identity", "roll-up")
 QUANTITIES = ("arc_position", "force", "index", "moment", "strain_energy", "tips", "work")
 NOISE = 1e-9
 """What is round-off, in the units of these scenes."""
@@ -129,16 +128,6 @@ def compared(scene: str) -> Iterator[str]:
             yield f"{row['label']}, {row['status']}, {row['unknowns']}, stable {row['stable']}: {', '.join(numbers)}"
 
 
-def problem(name: str) -> Iterator[str]:
-    """Yield what the manual says of a problem."""
-    with TemporaryDirectory() as folder:
-        yield from said("run", "manual", name, "--quiet", "--out", folder, folder=folder)
-        (case,) = json.loads((Path(folder) / "manual.json").read_text())["cases"]
-    yield f"{case['title']}: {_flat([item['exact'] for item in case['quantities']])}"
-    for run in case["runs"]:
-        yield f"{run['model']}, {run['setting']}, {run['tolerance']:g}: {_flat(run['values'])}"
-
-
 def extremes() -> Iterator[str]:
     """Yield the places on every axis of the extremes, and what scenes state otherwise than half a circle of a cantilever."""
     from comparisons.scene import Scene, to_tables
@@ -184,7 +173,6 @@ def pages() -> dict[str, Any]:
             f"page-{scene}": lambda scene=scene: "\n".join(said("solve", scene, "--quiet")) + "\n"
             for scene in PAGES
         },
-        **{f"manual-{name}": lambda name=name: "\n".join(problem(name)) + "\n" for name in PROBLEMS},
         "extremes": lambda: "\n".join(extremes()) + "\n",
     }
 

@@ -3,16 +3,25 @@
 import math
 
 import pytest
+from scipy.optimize import brentq
 
 import tsm
 from comparisons.models import solve
 from comparisons.models.model import Options
 from comparisons.referee import certify
-from comparisons.scene import BeamSpec, LoadSpec, Scene, SupportSpec
+from comparisons.scene import BeamSpec, HingeSpec, LoadSpec, Scene, SpringSpec, SupportSpec
 from tests.laws.scenes import answer, scene
 
 EA, GA = 4e3, 5e2
-ENDS = {"free": ((), ()), "pinned": (("x", "y"), ("y",)), "clamped": ((), ("y", "rotation"))}
+ENDS = {
+    "free": ((), ()),
+    "pinned": (("x", "y"), ("y",)),
+    "clamped": ((), ("y", "rotation")),
+    "hinged": ((), ()),
+    "sprung": (("x", "y"), ()),
+}
+SPRING = 2.0
+"""Stiffness of the hinge, and of the spring, at the foot of a column that is free else."""
 WITHIN = {"exact": 1e-8, "mixed": 5e-4}
 MESHED = 2e-2
 """Largest error of a critical load; the order is two without the bow."""
@@ -27,13 +36,31 @@ def column(ends: str, load: float, number: int) -> Scene:
         clamped=() if first else ("start",), elements=20,
     )  # fmt: skip
     supports = tuple(SupportSpec(beam="b", end=end, fixed=held) for end, held in fixed)
-    push = LoadSpec(beam="b", end="end", force=(-load, 0.0))
-    return Scene(name="column", load_parameters=number, beams=(beam,), supports=supports, loads=(push,))
+    push, foot = LoadSpec(beam="b", end="end", force=(-load, 0.0)), {"beam": "b", "end": "start"}
+    hinges = (HingeSpec(**foot, stiffness=SPRING),) if ends == "hinged" else ()
+    springs = (SpringSpec(**foot, rotation=SPRING),) if ends == "sprung" else ()
+    return Scene(
+        name="column",
+        load_parameters=number,
+        beams=(beam,),
+        supports=supports,
+        loads=(push,),
+        hinges=hinges,
+        springs=springs,
+    )
 
 
 def critical(ends: str, mode: int, GA: float = GA) -> float:
-    """Load of a mode: ``P (1 + P (1/GA - 1/EA)) = k^2``."""
-    k = math.pi * {"free": mode - 0.5, "pinned": float(mode), "clamped": 2.0 * mode}[ends]
+    """Load of a mode: ``P (1 + P (1/GA - 1/EA)) = k^2``; on a spring ``k tan k`` is its stiffness."""
+    if ends in ("hinged", "sprung"):
+        k = brentq(
+            lambda k: k * math.sin(k) - SPRING * math.cos(k),
+            (mode - 1.0) * math.pi,
+            (mode - 0.5) * math.pi,
+            xtol=1e-15,
+        )
+    else:
+        k = math.pi * {"free": mode - 0.5, "pinned": float(mode), "clamped": 2.0 * mode}[ends]
     a = 1.0 / GA - 1.0 / EA
     return (math.sqrt(1.0 + 4.0 * a * k**2) - 1.0) / (2.0 * a)
 

@@ -1,53 +1,14 @@
-"""The elastica and the Reissner rod under a pin: integration from the clamp, limits, energy, events, input."""
+"""The elastica and the Reissner rod under a pin: limits, events, input; `tests/oracles/test_referee.py` has their equilibria."""
 
 import numpy as np
 import pytest
 
 from comparisons.exact import Outcome, elastica_under_pin, rod_under_pin
 from tests.oracles.shooting import KS as SECTION
-from tests.oracles.shooting import RIGID, ks_pins, shot
+from tests.oracles.shooting import ks_pins
 
-HEIGHT = 0.02
 KS = {**SECTION, "length": 1.0}
-KS_END = (0.0, 2.0 / np.pi)
-OFFSETS = pytest.mark.parametrize("offset", [0.0, HEIGHT / 2.0])
 OPEN, CONTACT, SLIPPED, LOST = Outcome.OPEN, Outcome.CONTACT, Outcome.SLIPPED, Outcome.LOST
-
-
-def arrives(force, moment, loaded, shape, section, atol):
-    """State and tangent at the contact, integrated from the clamp through the points of a shape and the straight tail behind."""
-    start = [0.0, 0.0, 0.0, -moment]
-    end, tangent = shot(force, start, loaded, **section)
-    tail = np.array([np.cos(end[2]), np.sin(end[2])])
-    for arc, point in shape:
-        place = shot(force, start, min(arc, loaded), **section)[0][:2] + max(arc - loaded, 0.0) * tail
-        np.testing.assert_allclose(point, place, rtol=0, atol=atol)
-    return end, tangent + tail
-
-
-@pytest.mark.parametrize("pin", [KS_END, (0.5, 1.0 / np.pi), (1.0, 2.0), (1.0, 0.1), (-0.05, 0.5)])
-def test_integration_from_the_clamp_arrives_at_the_elasticas_contact(pin):
-    path = elastica_under_pin([pin], EI=2.0, length=3.0)
-    axis, (force,), (arc,) = path.shape(0, 7), path.force, path.arc_position
-    shape = [*zip(np.linspace(0.0, 3.0, 7), axis[:, :2], strict=True), (3.0, path.tip[0])]
-    end, tangent = arrives(force, path.clamp_moment[0], arc, shape, {**RIGID, "EI": 2.0}, 1e-11)
-    np.testing.assert_allclose(end[:4], [*pin, axis[-1, 2], 0.0], atol=4e-12)
-    assert tangent @ force == pytest.approx(0.0, abs=1e-11)
-
-
-@OFFSETS
-def test_integration_from_the_clamp_arrives_at_the_rods_contact(offset):
-    pins = ks_pins(np.linspace(0.0, 1.0, 8), offset)
-    path = rod_under_pin(pins, offset=offset, **KS)
-    for k in range(1, len(pins)):
-        rows = path.shape(k, 9)
-        shape = [*zip(np.linspace(0.0, 1.0, 9), rows[:, :2], strict=True), (1.0, path.tip[k])]
-        arc, f = path.arc_position[k], path.force[k] / path.magnitude[k]
-        end, tangent = arrives(path.force[k], path.clamp_moment[k], arc, shape, SECTION, 1e-11)
-        assert f @ tangent == pytest.approx(0.0, abs=2e-12)
-        assert end[3] == pytest.approx(0.0, abs=3e-12 * abs(path.clamp_moment[k]))
-        assert rows[-1, 2] == pytest.approx(end[2], abs=1e-11)
-        np.testing.assert_allclose(end[:2] - offset * f, pins[k], rtol=0, atol=2e-12)
 
 
 def test_the_branch_of_the_straight_beam_ends_at_the_fold():

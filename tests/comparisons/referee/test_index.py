@@ -7,10 +7,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 
 from comparisons.referee import AnswerState, Equilibrium, SearchStatus, Verdict, certify, equilibrium
-from comparisons.scene import BeamSpec, ContactSpec, HingeSpec, LoadSpec, PinSpec, Scene
+from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene
 from tests.comparisons.referee.forged import bent, stated
 from tests.laws.test_index import EA, GA, critical  # whose columns have one beam
 from tests.oracles.elastica import loaded
@@ -50,22 +49,11 @@ def heavy(load: float) -> Equilibrium:
     return straight(Scene(name="heavy", load_parameters=1, beams=(beam,), gravity=(-1.0, 0.0)))
 
 
-def hinged(load: float) -> Equilibrium:
-    """The same on a hinge with a spring, under an end load."""
-    push, hinge = (
-        LoadSpec(beam="b", end="end", force=(-load, 0.0)),
-        HingeSpec(beam="b", end="start", stiffness=2.0),
-    )
-    return straight(Scene(name="hinged", load_parameters=1, beams=(STIFF,), loads=(push,), hinges=(hinge,)))
-
-
 LOADS: dict[str, tuple[Callable[[float], Equilibrium], float, int, float]] = {
     # solved and counted as nearly empty equations
     "120 beams": (chain, critical("free", 3), 3, 1e-8),
     # Greenhill: nine quarters of the square of the first zero of J_-1/3
     "weight": (heavy, 7.837347438943, 1, 1e-6),
-    # x tan x = k L/EI
-    "spring hinge": (hinged, brentq(lambda x: x * math.tan(x) - 2.0, 0.5, 1.5, xtol=1e-14) ** 2, 1, 1e-6),
 }  # fmt: skip
 """Equilibrium at a load, the critical load, the index beyond it, and how near it is told."""
 
