@@ -138,7 +138,9 @@ def outputs(names: Sequence[str], *kinds: str) -> list[tuple[str, Path]]:
     for name, path in zip(names, map(Path, names), strict=True):
         kind = ".json" if path == STANDARD else "" if path.is_dir() else path.suffix
         if kind in VTK and "" in kinds:
-            raise OutputError(f"{name}: VTK files go into a folder that is there: mkdir {path.stem}, then --out {path.stem}")
+            raise OutputError(
+                f"{name}: VTK files go into a folder that is there: mkdir {path.stem}, then --out {path.stem}"
+            )
         if kind not in kinds or not name:
             raise OutputError(f"{name or '--out'}: {rule}")
         found.append((kind, result_file(path) if kind and path != STANDARD else path))
