@@ -30,6 +30,7 @@ def errors(
     scale: Scales | None = None,
     end: float | None = None,
     quantities: Iterable[str] = KEPT,
+    whole: bool = True,
 ) -> Errors:
     """Return the errors of a response by scope and quantity; nan for a response that does not reach the reference's end.
 
@@ -45,9 +46,11 @@ def errors(
         The load parameter of the scope ``end``, the reference's last if not given.
     quantities : iterable of str
         Keys of `comparisons.answer.quantities.QUANTITIES`.
+    whole : bool
+        If false, a response that does not reach the end has the errors of the path as far as both came.
     """
     names, last = tuple(quantities), reference.load_parameter[-1:]
-    if not len(last) or last[0] not in response.load_parameter:
+    if not np.isin(last if whole else reference.load_parameter, response.load_parameter).any():
         return {scope: dict.fromkeys(names, np.nan) for scope in SCOPES}
     shared, found = error_histories(response, reference, scene, scale=scale, quantities=names)
     chosen = {"end": shared == (last[0] if end is None else end), "path": slice(None)}
