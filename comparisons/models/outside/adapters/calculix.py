@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import simpson
 
 from comparisons.models.outside import child
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from fem_reference import Strip
 
 Array = NDArray[Any]
-Point = tuple[float, float]
 Tables = dict[tuple[str, str], list[list[list[float]]]]
 """Printed rows of three components, one table for each increment, by ``displacements`` or ``forces`` and the node set."""
 
@@ -95,8 +94,7 @@ def states(scene: Table, histories: Histories) -> Iterator[float]:
     if scene["loads"]:
         deck = slab.tip_load(float((frame @ scene["loads"][0]["force"])[1]), steps)
     else:
-        _, (start, end) = way(beam, scene["pins"][0])
-        deck = slab.pin(tuple(start), tuple(end - start), steps, penalty)
+        deck = slab.pin(way(beam, scene["pins"][0])[1], steps, penalty)
     try:
         found = slab.answer(deck, seconds=1e5)
     except ProgramError as error:
@@ -138,10 +136,10 @@ def tip_load(strip: "Strip", force: float) -> Answer:
     return answer
 
 
-def pressed(strip: "Strip", start: Point, motion: Point, steps: int, penalty: float) -> Answer:
+def pressed(strip: "Strip", path: ArrayLike, steps: int, penalty: float) -> Answer:
     """Return the answer to a sharp pin on the right face, see `Slab.pin`, before it slips through the face or an increment fails."""
     slab = Slab(strip)
-    found = slab.answer(slab.pin(start, motion, steps, penalty))
+    found = slab.answer(slab.pin(path, steps, penalty))
     through = np.flatnonzero(np.hypot(*found.force.T) < slab.unit)
     if not through.size:
         return found
@@ -181,13 +179,13 @@ class Slab:
         forces = [f"{n},2,{load:.12e}" for n, load in zip(end[end > 0], loads[end > 0], strict=True)]
         return self._deck([], steps, ["*CLOAD", *forces])
 
-    def pin(self, start: Point, motion: Point, steps: int, penalty: float) -> str:
-        """Deck of a sharp pin that moves along the right face in equal steps, from `start` by `motion` [m].
+    def pin(self, path: ArrayLike, steps: int, penalty: float) -> str:
+        """Deck of a sharp pin that moves along the right face in equal steps, between two points in the strip's frame, `path` (2, 2).
 
         The pin is a needle across the half slab. Its two nodes are the slaves of a contact with the face. `penalty` [N/m] is the contact
         stiffness. CalculiX multiplies the stated slope of the pressure by half the area of a face for each of the two nodes.
         """
-        (nx, ny), (x, y), top = self.strip.mesh, start, int(self.numbers.max())
+        (nx, ny), (x, y), top = self.strip.mesh, np.asarray(path)[0], int(self.numbers.max())
         slope = penalty / self.unit / (self.thickness * self.strip.length / nx)
         places = (f"{x:.12e},{y:.12e},{part * self.thickness:.12e}" for part in (0.25, 0.75))
         contact = [
@@ -196,7 +194,8 @@ class Slab:
             "*SURFACE INTERACTION, NAME=HARD", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", f"{slope:.12e}",
             "*CONTACT PAIR, INTERACTION=HARD, TYPE=NODE TO SURFACE", "NEEDLE,FACE",
         ]  # fmt: skip
-        moved = (f"PIN,{axis},{axis},{way:.12e}" for axis, way in enumerate((*motion, 0.0), start=1))
+        motion = (*np.diff(path, axis=0)[0], 0.0)
+        moved = (f"PIN,{axis},{axis},{way:.12e}" for axis, way in enumerate(motion, start=1))
         return self._deck(contact, steps, ["*BOUNDARY", *moved])
 
     def answer(self, deck: str, seconds: float = 300.0) -> Answer:
