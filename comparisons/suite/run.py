@@ -11,8 +11,6 @@ from comparisons.suite.case import Case
 from comparisons.suite.measure import Row, measure, unmeasured
 from comparisons.suite.workers import Workers, WorkersError
 
-COMPLETED = "COMPLETED"
-"""The status of a completed and checked solution."""
 WORKER_LOST = "WORKER_LOST"
 """The status of a case whose worker died, and died again when the case was tried alone."""
 ERROR = "ERROR"
