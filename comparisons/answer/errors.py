@@ -11,10 +11,11 @@ position of a pair that is open in both, every arc position of a scene without c
 
 from collections.abc import Iterable, Mapping
 from operator import itemgetter
+from typing import Any
 
 import numpy as np
 
-from comparisons.answer import Array, Response
+from comparisons.answer import Response
 from comparisons.answer.quantities import KEPT, QUANTITIES, SCOPES, Columns, Pair, Scales, scales
 from comparisons.scene import Scene
 
@@ -30,6 +31,7 @@ def errors(
     scale: Scales | None = None,
     end: float | None = None,
     quantities: Iterable[str] = KEPT,
+    whole: bool = True,
 ) -> Errors:
     """Return the errors of a response by scope and quantity; nan for a response that does not reach the reference's end.
 
@@ -45,15 +47,16 @@ def errors(
         The load parameter of the scope ``end``, the reference's last if not given.
     quantities : iterable of str
         Keys of `comparisons.answer.quantities.QUANTITIES`.
+    whole : bool
+        If false, a response that does not reach the end has the errors of the path as far as both came.
     """
     names, last = tuple(quantities), reference.load_parameter[-1:]
-    if not len(last) or last[0] not in response.load_parameter:
+    shared = np.intersect1d(response.load_parameter, reference.load_parameter)
+    if not np.isin(last if whole else shared, shared).any():
         return {scope: dict.fromkeys(names, np.nan) for scope in SCOPES}
-    shared, found = error_histories(response, reference, scene, scale=scale, quantities=names)
+    columns = {name: error_columns(response, reference, scene, name, scale) for name in names}
     chosen = {"end": shared == (last[0] if end is None else end), "path": slice(None)}
-    return {
-        scope: {name: largest(values[at]) for name, values in found.items()} for scope, at in chosen.items()
-    }
+    return {scope: {name: largest(columns[name], at) for name in names} for scope, at in chosen.items()}
 
 
 def difference(response: Response, reference: Response, scene: Scene, quantity: str) -> float:
@@ -63,9 +66,8 @@ def difference(response: Response, reference: Response, scene: Scene, quantity: 
     responses share no load parameter. It is nan if neither response has the quantity: a scene without contact has no arc position.
     """
     steps = np.flatnonzero(np.isin(reference.load_parameter, response.load_parameter))
-    scale = scales(reference, steps)
-    _, found = error_histories(response, reference, scene, scale=scale, quantities=[quantity])
-    return largest(found[quantity]) if len(steps) else np.inf
+    columns = error_columns(response, reference, scene, quantity, scales(reference, steps))
+    return largest(columns) if len(steps) else np.inf
 
 
 def worst_place(response: Response, reference: Response, scene: Scene, quantity: str) -> str:
@@ -80,21 +82,6 @@ def worst_place(response: Response, reference: Response, scene: Scene, quantity:
     return f"{name} at load parameter {t:.6g}" if name else ""
 
 
-def error_histories(
-    response: Response,
-    reference: Response,
-    scene: Scene,
-    *,
-    scale: Scales | None = None,
-    quantities: Iterable[str] = KEPT,
-) -> tuple[Array, dict[str, Array]]:
-    """Return the n load parameters that both responses have, and the errors there, shape (n,) by quantity."""
-    shared = np.intersect1d(response.load_parameter, reference.load_parameter)
-    none = np.full(len(shared), np.nan)
-    columns = {name: error_columns(response, reference, scene, name, scale) for name in quantities}
-    return shared, {name: np.fmax.reduce([none, *found.values()]) for name, found in columns.items()}
-
-
 def error_columns(
     response: Response, reference: Response, scene: Scene, quantity: str, scale: Scales | None = None
 ) -> Columns:
@@ -104,6 +91,6 @@ def error_columns(
     return QUANTITIES[quantity].columns(pair)
 
 
-def largest(values: Array) -> float:
-    """Return the largest of the values that are numbers; nan if none is."""
-    return float(np.fmax.reduce(values, initial=np.nan))
+def largest(columns: Columns, at: Any = slice(None)) -> float:
+    """Return the largest of the errors that are numbers, at some of the load parameters; nan if none is."""
+    return float(np.fmax.reduce([np.nan, *(error for values in columns.values() for error in values[at])]))

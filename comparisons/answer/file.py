@@ -85,7 +85,7 @@ def read_response(path: str, scene: str | None = None) -> tuple[Response, Scene]
 
     Raises InputError, in one line: file, key, value and rule.
     """
-    text = read_text(path, "no such file", InputError)
+    text = read_text(path)
     try:
         response = restated(parsed(text))
     except FieldError as error:

@@ -57,10 +57,9 @@ def clamped(scene: Scene) -> dict[str, SupportSpec]:
     touched = {contact.beam for contact in scene.contacts} - acting
     for beam in (beam for beam in scene.beams if beam.name in touched):
         supports = scene.supports_of(beam.name)
-        if len(supports) == 1 and len(supports[0].held) == 3:
-            others = {end for other in scene.beams if other is not beam for end in (other.start, other.end)}
-            if others.isdisjoint((beam.start, beam.end)):
-                found[beam.name] = supports[0]
+        alone = not (scene.joined(beam, "start") or scene.joined(beam, "end"))
+        if alone and len(supports) == 1 and len(supports[0].held) == 3:
+            found[beam.name] = supports[0]
     return found
 
 

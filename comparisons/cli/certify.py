@@ -36,7 +36,8 @@ def run(given: Namespace) -> int:
     for _, path in files:
         write(path, json_text({"scene": scene.name, "model": response.model, **found.as_dict()}))
     if (".json", STANDARD) not in files:
-        print(f"{scene.name}, model {response.named}, {status}")
+        body = ", a two-dimensional body" if response.outside and response.continuum else ""
+        print(f"{scene.name}, model {response.named}{body}, {status}")
         for line in (found.line(), *map(_row, found.judged), *found.path):
             print(f"  {line}")
         print(f"  not judged: {', '.join(_unjudged(response))}")

@@ -141,6 +141,13 @@ def _version() -> int:
     return DONE if all(state or absent for _, state, absent in rows) else WRONG
 
 
+class _Formatter(argparse.HelpFormatter):
+    """A help whose lists keep their lines."""
+
+    def _fill_text(self, text: str, width: int, indent: str) -> str:
+        return text if "\n  " in text else super()._fill_text(text, width, indent)
+
+
 class _Parser(argparse.ArgumentParser):
     """A parser whose errors show arguments that a terminal would obey as escapes."""
 
@@ -160,5 +167,7 @@ def command_parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for name in STATED["command"]:
         add_command(commands, name)
-    commands.choices["run"].description = "; ".join(f"{name}: {what}" for name, what in SUITES.items())
+    suites = (f"  {name:10s}  {what}" for name, what in SUITES.items())
+    commands.choices["run"].formatter_class = _Formatter
+    commands.choices["run"].description = "\n".join(["What there is to run:", *suites])
     return parser

@@ -14,7 +14,6 @@ from comparisons.models import MODELS
 from comparisons.models.model import BRANCHES, ModelError, Options
 from comparisons.scene import rules
 from comparisons.scene.rules import Rule, RuleError
-from comparisons.suites.names import SUITES
 
 if TYPE_CHECKING:
     from comparisons.suite.workers import Workers
@@ -99,7 +98,7 @@ def add_command(commands: Any, name: str) -> None:
             reading["type"] = TYPES.get(argument) or partial(obeying, getattr(rules, rule))
         action = parser.add_argument(argument.partition("=")[0], **reading)
         models = ", ".join(model.name for model in MODELS.values() if action.dest in model.options)
-        vars(action).update(models=models, names=LISTED.get(argument), suites=", ".join(SUITES))
+        vars(action).update(models=models, names=LISTED.get(argument))
     parser.set_defaults(command=name)
 
 
@@ -124,6 +123,8 @@ def workers(given: argparse.Namespace, number: int | None = None) -> "Workers":
 
 STANDARD = Path("-")
 """Standard output, as a file to write JSON to."""
+VTK = (".pvd", ".vtm", ".vtu", ".vtk")
+"""The ends of VTK files, which are several and take a folder."""
 
 
 def outputs(names: Sequence[str], *kinds: str) -> list[tuple[str, Path]]:
@@ -136,6 +137,10 @@ def outputs(names: Sequence[str], *kinds: str) -> list[tuple[str, Path]]:
     found = []
     for name, path in zip(names, map(Path, names), strict=True):
         kind = ".json" if path == STANDARD else "" if path.is_dir() else path.suffix
+        if kind in VTK and "" in kinds:
+            raise OutputError(
+                f"{name}: VTK files go into a folder that is there: mkdir {path.stem}, then --out {path.stem}"
+            )
         if kind not in kinds or not name:
             raise OutputError(f"{name or '--out'}: {rule}")
         found.append((kind, result_file(path) if kind and path != STANDARD else path))

@@ -57,25 +57,13 @@ class Outcome(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Event:
-    """Change of the state of contact.
+    """Change of the state of contact."""
 
-    Attributes
-    ----------
-    load_parameter : float
-        Fraction of the path's length at which the state changes.
-    before, after : Outcome
-        States on both sides.
-    arc_position : float
-        Distance of the contact from the clamp along the undeformed axis.
-    magnitude : float
-        Contact force at the event.
-    """
-
-    load_parameter: float
-    before: Outcome
-    after: Outcome
-    arc_position: float
-    magnitude: float
+    load_parameter: float  #: Fraction of the path's length at which the state changes.
+    before: Outcome  #: State before it.
+    after: Outcome  #: State after it.
+    arc_position: float  #: Distance of the contact from the clamp along the undeformed axis.
+    magnitude: float  #: Contact force at the event.
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,50 +72,24 @@ class RodPath:
 
     Without contact the rod is straight, `arc_position` is nan and the forces are zero. Where the path has ended (`Outcome.ends`) all
     arrays are nan.
-
-    Attributes
-    ----------
-    load_parameter : ndarray, shape (s,)
-        Fraction of the length of the pin's path.
-    outcome : tuple of Outcome
-        State of contact at every position. At an event it is the state after the event.
-    force : ndarray, shape (s, 2)
-        Force of the pin on the rod.
-    tangential, normal : ndarray, shape (s,)
-        Component of the force along the mean tangent towards the tip, and its component away from the pin.
-    arc_position : ndarray, shape (s,)
-        Distance of the contact from the clamp along the undeformed axis.
-    clamp_moment : ndarray, shape (s,)
-        Moment of the clamp on the rod, anticlockwise positive; the force of the clamp is that of the pin, reversed.
-    tip : ndarray, shape (s, 2)
-        Position of the free tip.
-    work, dissipated : ndarray, shape (s,)
-        Work of the pin since the start, and energy lost in slip, the integral of `mu F_n |v|`; zero without friction.
-    iterations : ndarray of int, shape (s,)
-        Newton iterations since the previous position, including rejected steps.
-    events : tuple of Event
-        Changes of state in the order of the load parameter.
-    unknowns : ndarray, shape (s, 4)
-        Unknowns of `rod`, `comparisons.exact.contact.Cantilever`.
-    length : float
-        Undeformed length.
     """
 
-    load_parameter: Array
-    outcome: tuple[Outcome, ...]
-    force: Array
-    tangential: Array
-    normal: Array
-    arc_position: Array
+    load_parameter: Array  #: Fraction of the length of the pin's path (s,).
+    outcome: tuple[Outcome, ...]  #: State of contact at every position; at an event, the state after it.
+    force: Array  #: Force of the pin on the rod (s, 2).
+    tangential: Array  #: Component of the force along the mean tangent towards the tip (s,).
+    normal: Array  #: Component of the force away from the pin (s,).
+    arc_position: Array  #: Distance of the contact from the clamp along the undeformed axis (s,).
+    #: Moment of the clamp on the rod, anticlockwise positive (s,); the force of the clamp is that of the pin, reversed.
     clamp_moment: Array
-    tip: Array
-    work: Array
-    dissipated: Array
-    iterations: NDArray[np.int64]
-    events: tuple[Event, ...]
-    unknowns: Array
-    rod: Cantilever
-    length: float
+    tip: Array  #: Position of the free tip (s, 2).
+    work: Array  #: Work of the pin since the start (s,).
+    dissipated: Array  #: Energy lost in slip, the integral of `mu F_n |v|` (s,); zero without friction.
+    iterations: NDArray[np.int64]  #: Newton iterations since the previous position, with rejected steps (s,).
+    events: tuple[Event, ...]  #: Changes of state in the order of the load parameter.
+    unknowns: Array  #: Unknowns of `rod` (s, 4).
+    rod: Cantilever  #: `comparisons.exact.contact.Cantilever`.
+    length: float  #: Undeformed length.
 
     @property
     def magnitude(self) -> Array:

@@ -56,12 +56,11 @@ Count = Callable[[int, int], None]
 """Receives how many parts of a work are done, and how many there are."""
 
 
-def unwatched(_: Reached) -> None:
+def unwatched(*_: object) -> None:
     """Ignore the progress."""
 
 
-def uncounted(_done: int, _parts: int) -> None:
-    """Ignore the progress."""
+uncounted = unwatched
 
 
 def bar(part: float) -> str:

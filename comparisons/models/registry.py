@@ -77,9 +77,9 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
 
 
 def _kind(response: Response, model: Model | None) -> dict[str, Any]:
-    """Return of what kind an answer is by its model, whatever it says of itself; another model's answer is that of a program."""
-    continuum = model is not None and model.continuum
-    round_off = response.round_off if continuum else 0.0
+    """Return of what kind an answer is by its model, whatever it says of itself; without a model it is a program's, which says its kind."""
+    continuum = response.continuum if model is None else model.continuum
+    round_off = response.round_off if continuum and model is not None else 0.0
     return {"continuum": continuum, "outside": response.model not in MODELS, "round_off": round_off}
 
 

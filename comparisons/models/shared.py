@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -21,11 +20,7 @@ Force = tuple[float, float]
 
 def joints(scene: Scene) -> list[list[str]]:
     """Return the ends of beams that meet, as ``column.end``, one list for each joint."""
-    meeting: dict[Force, list[str]] = defaultdict(list)
-    for beam in scene.beams:
-        for end in ("start", "end"):
-            meeting[scene.place(f"{beam.name}.{end}")].append(f"{beam.name}.{end}")
-    return [ends for ends in meeting.values() if len(ends) > 1]
+    return [[f"{beam.name}.{end}" for beam, end in ends] for ends in scene.meeting.values() if len(ends) > 1]
 
 
 def occupied(scene: Scene) -> set[str]:

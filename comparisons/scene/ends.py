@@ -50,10 +50,9 @@ def free_ends(scene: Statement, spec: ContactSpec) -> Iterator[BeamEnd]:
     beam, radius = scene.beam(spec.beam), scene.radius(spec)
     if spec.surface == "axis" and not radius:
         return
-    others = {place for item in scene.beams if item is not beam for place in (item.start, item.end)}
     for name, part, way in (("start", 0.0, 1.0), ("end", 1.0, -1.0)):
         offset, place = scene.offset(spec, part), beam.place(part)
-        if getattr(beam, name) not in others:
+        if not scene.joined(beam, name):
             x, y = beam.tangent(part)
             yield BeamEnd(name, place, (way * x, way * y), offset - radius, radius)
 

@@ -1,7 +1,7 @@
 """Joints of beams. Beams that share an end form one structure. A structure needs supports, with one at most at each joint."""
 
 import math
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from itertools import islice
@@ -61,22 +61,13 @@ def _held(scene: Statement) -> Mistakes:
 
 def _structures(scene: Statement) -> Iterator[list[BeamSpec]]:
     """Yield the beams, grouped by what is joined together."""
-    meeting, free = _meeting(scene.beams), {beam.name: beam for beam in scene.beams}
+    free = {beam.name: beam for beam in scene.beams}
     while free:
         group = [free.pop(next(iter(free)))]
         for member in group:  # grows on the way
             for place in (member.start, member.end):
-                group += (free.pop(other.name) for other in meeting.pop(place, ()) if other.name in free)
+                group += (free.pop(other.name) for other, _ in scene.meeting[place] if other.name in free)
         yield group
-
-
-def _meeting(beams: Sequence[BeamSpec]) -> dict[Point, list[BeamSpec]]:
-    """Return the beams at every end."""
-    meeting: dict[Point, list[BeamSpec]] = defaultdict(list)
-    for beam in beams:
-        meeting[beam.start].append(beam)
-        meeting[beam.end].append(beam)
-    return meeting
 
 
 def _nearly_meeting(scene: Statement) -> Mistakes:
@@ -126,7 +117,6 @@ def _one_support(scene: Statement) -> Mistakes:
 
 def _useless_hinges(scene: Statement) -> Mistakes:
     """Yield the hinges at ends that nothing turns, and one hinge of every joint that all its beams leave free to turn."""
-    meeting = _meeting(scene.beams)
     turned = {scene.place(item.node) for item in scene.holding if "rotation" in item.held}
     stiff = {scene.place(hinge.node) for hinge in scene.hinges if hinge.stiffness}
     hinged = Counter(scene.place(node) for node in {hinge.node for hinge in scene.hinges})
@@ -134,9 +124,9 @@ def _useless_hinges(scene: Statement) -> Mistakes:
         place, rule = scene.place(hinge.node), ""
         if place in turned:
             continue
-        if len(meeting[place]) == 1:
+        if len(scene.meeting[place]) == 1:
             rule = "must be joined to another beam, or its rotation held by a support or a spring"
-        elif hinged.pop(place, 0) == len(meeting[place]) and place not in stiff:
+        elif hinged.pop(place, 0) == len(scene.meeting[place]) and place not in stiff:
             rule = "must leave one beam of the joint without a hinge: the joint turns freely"
         if rule:
             yield FieldError(f"hinge[{i}].end", hinge.node, rule)
@@ -148,7 +138,8 @@ def _moves(scene: Statement, structure: list[BeamSpec], free: Sequence[str]) -> 
     The ends `free` do not turn with their joints.
     """
     size, names = max(beam.length for beam in structure), {beam.name for beam in structure}
-    joints = {place: 3 * k for k, place in enumerate(_meeting(structure))}
+    places = dict.fromkeys(place for beam in structure for place in (beam.start, beam.end))
+    joints = {place: 3 * k for k, place in enumerate(places)}
     rows: list[dict[int, float]] = []
     for turn, beam in enumerate(structure, 3 * len(joints)):
         start, end = joints[beam.start], joints[beam.end]

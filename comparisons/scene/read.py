@@ -13,9 +13,9 @@ from comparisons.scene.tables import (
     SceneError,
     check_keys,
     check_table,
-    in_order,
     read_tables,
     read_text,
+    refuse,
     stated,
 )
 
@@ -57,7 +57,7 @@ def load_scene(scene: str) -> Scene:
     name = None if os.path.lexists(scene) else meant(scene, names)
     near = f" (did you mean {name}?)" if name else ""
     absent = f"no such file or built-in scene{near}; crossval scenes lists them"
-    return read_scene(read_text(scene, absent, SceneError), scene)
+    return read_scene(read_text(scene, absent), scene)
 
 
 def read_scene(text: str, source: str) -> Scene:
@@ -68,7 +68,7 @@ def read_scene(text: str, source: str) -> Scene:
     SceneError
         All mistakes in the order of the text, each in one line: file, key, value and rule.
     """
-    tables, known = read_tables(text, source, SceneError), ("scene", *LISTS)
+    tables, known = read_tables(text, source), ("scene", *LISTS)
     head = tables.get("scene")
     if not isinstance(head, dict):
         head = dict.fromkeys(HEAD, UNREADABLE)
@@ -81,8 +81,7 @@ def read_scene(text: str, source: str) -> Scene:
         scene = Scene(**given)
     except RecordError as error:
         mistakes += (item.within("scene.") if item.key in HEAD else item for item in error.mistakes)
-    if mistakes:
-        raise SceneError(source, RecordError(in_order(mistakes, tables)))
+    refuse(source, mistakes, tables)
     return scene
 
 

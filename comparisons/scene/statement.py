@@ -109,6 +109,19 @@ class Statement(Record):
         return 0.0 if "." in contact.node else self.pin(contact.node).radius or 0.0
 
     @cached_property
+    def meeting(self) -> dict[Point, list[tuple[BeamSpec, str]]]:
+        """The ends of beams, each its beam and "start" or "end", by their undeformed places; those at one place are joined."""
+        meeting = defaultdict[Point, list[tuple[BeamSpec, str]]](list)
+        for beam in self.beams:
+            meeting[beam.start].append((beam, "start"))
+            meeting[beam.end].append((beam, "end"))
+        return dict(meeting)
+
+    def joined(self, beam: BeamSpec, end: str) -> bool:
+        """Whether another beam shares an end of a beam."""
+        return len(self.meeting[getattr(beam, end)]) > 1
+
+    @cached_property
     def all_supports(self) -> tuple[SupportSpec, ...]:
         """The clamped ends of the beams, then `supports`."""
         ends = ((beam.name, end) for beam in self.beams for end in beam.clamped)

@@ -38,31 +38,31 @@ class InputError(ValueError):
         super().__init__("\n".join(" ".join(line.split()) for line in lines))
 
 
-class SceneError(InputError):
-    """A scene that cannot be read."""
+SceneError = InputError
+"""Raised for a scene that cannot be read."""
 
 
-def read_text(path: str, absent: str, kind: type[InputError]) -> str:
-    """Return the text of the regular file `path`, of 16 MB at most; an error of `kind` says `absent` where there is none."""
+def read_text(path: str, absent: str = "no such file") -> str:
+    """Return the text of the regular file `path`, of 16 MB at most; the error says `absent` where there is none."""
     try:
         return read_regular(path, LARGEST_FILE).decode("utf-8")
     except FileNotFoundError:
-        raise kind(path, absent) from None
+        raise InputError(path, absent) from None
     except UnicodeDecodeError as error:
-        raise kind(path, f"must be UTF-8 text, byte {error.start} is not") from None
+        raise InputError(path, f"must be UTF-8 text, byte {error.start} is not") from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise kind(path, f"cannot be read: {reason}") from None
+        raise InputError(path, f"cannot be read: {reason}") from None
 
 
-def read_tables(text: str, source: str, kind: type[InputError]) -> dict[str, Any]:
-    """Return the tables of the TOML `text`; `source` names it in errors of the given kind."""
+def read_tables(text: str, source: str) -> dict[str, Any]:
+    """Return the tables of the TOML `text`; `source` names it in errors."""
     if _DEEP.search(text):
-        raise kind(source, f"must be valid TOML: a key has more than {DEEPEST} parts")
+        raise InputError(source, f"must be valid TOML: a key has more than {DEEPEST} parts")
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:
-        raise kind(source, f"must be valid TOML: {error}") from None
+        raise InputError(source, f"must be valid TOML: {error}") from None
 
 
 def misnamed(table: Mapping[str, Any], known: Collection[str]) -> dict[str, str | None]:
@@ -135,11 +135,14 @@ def table_values(
     return values, mistakes
 
 
-def in_order(mistakes: Iterable[FieldError], tables: dict[str, Any]) -> list[FieldError]:
-    """Return mistakes in the order in which their keys stand in a file of `tables`, one for a value.
+def refuse(source: str, mistakes: Collection[FieldError], tables: dict[str, Any]) -> None:
+    """Raise the mistakes, if any, in the order in which their keys stand in a file of `tables`, one for a value."""
+    if mistakes:
+        raise InputError(source, RecordError(_in_order(mistakes, tables)))
 
-    A key that is missing stands at the end of its table. Tables of one kind that stand apart stand together.
-    """
+
+def _in_order(mistakes: Iterable[FieldError], tables: dict[str, Any]) -> list[FieldError]:
+    """Sort mistakes; a missing key stands at the end of its table, and tables of one kind that stand apart stand together."""
     ranks = {key: rank for rank, key in enumerate(_keys(tables))}
 
     def rank(mistake: FieldError) -> int:

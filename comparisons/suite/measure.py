@@ -21,9 +21,8 @@ import numpy as np
 
 from comparisons.answer import Response
 from comparisons.answer.axis import storable
-from comparisons.answer.errors import Errors, error_histories, largest
+from comparisons.answer.errors import Errors, errors
 from comparisons.answer.file import as_dict, restated
-from comparisons.answer.quantities import SCOPES
 from comparisons.models import certified, find, solve
 from comparisons.models.model import ModelError
 from comparisons.output import plain
@@ -107,13 +106,10 @@ class Row:
 
     def against(self, reference: Response, quantities: Sequence[str]) -> "Row":
         """Return the row with its errors as far as both answers came; of ``end`` at the reference's last state."""
-        response = self.response
-        if not np.isin(response.load_parameter, reference.load_parameter).any():
-            return replace(self, errors={scope: dict.fromkeys(quantities, nan) for scope in SCOPES})
-        shared, found = error_histories(response, reference, self.case.scene, quantities=quantities)
-        ends = {"end": shared == reference.load_parameter[-1], "path": slice(None)}
-        errors = {scope: {name: largest(found[name][at]) for name in found} for scope, at in ends.items()}
-        return replace(self, errors=errors)
+        scene = self.case.scene
+        return replace(
+            self, errors=errors(self.response, reference, scene, quantities=quantities, whole=False)
+        )
 
     def error(self, scope: str, quantity: str, *, own: bool = False) -> float:
         """Return an error against the reference, or against the model's limit; nan where it is not known."""

@@ -12,7 +12,7 @@ from typing import Any
 from comparisons.models.model import REDRAW, bar
 from comparisons.suite.case import Case
 from comparisons.suite.measure import Row
-from comparisons.suite.run import COMPLETED, Results, run
+from comparisons.suite.run import Results, run
 from comparisons.suite.workers import Workers
 
 MILESTONES = 10
@@ -36,7 +36,7 @@ def running(folder: Path, workers: Workers, *, quiet: bool = False, **how: Any) 
         now = seconds if terminal else MILESTONES * done // total
         if quiet or now == last or (terminal and done < total and now - last < REDRAW):
             return
-        failed, last = sum(row.response.status != COMPLETED for row in rows), now
+        failed, last = sum(not row.response.completed for row in rows), now
         text = f"{done} of {total} cases done, {failed} failed"
         if first < done < total:
             minutes, left = divmod(ceil(seconds / (done - first) * (total - done)), 60)

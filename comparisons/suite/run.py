@@ -1,19 +1,16 @@
 """Run the cases of a sweep on an executor. One JSON file a case, named by its key, holds its result."""
 
-import os
 from collections.abc import Callable, Collection, Iterable
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
 from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from comparisons.files import OutputError, interrupts_held, writable_folder
+from comparisons.files import OutputError, interrupts_held, staging, writable_folder
 from comparisons.suite.case import Case
 from comparisons.suite.measure import Row, measure, unmeasured
 from comparisons.suite.workers import Workers, WorkersError
 
-COMPLETED = "COMPLETED"
-"""The status of a completed and checked solution."""
 WORKER_LOST = "WORKER_LOST"
 """The status of a case whose worker died, and died again when the case was tried alone."""
 ERROR = "ERROR"
@@ -82,14 +79,9 @@ def run(
 
 def _write(file: Path, row: Row) -> None:
     """Write a result under a temporary name, which is then renamed."""
-    temporary = file.with_name(f".{file.stem}.{os.getpid()}")
-    try:
-        temporary.write_text(row.to_json(), encoding="utf-8")
-        temporary.replace(file)
-    except OSError as error:
-        raise OutputError(f"{file}: cannot be written: {error.strerror or error}") from None
-    finally:
-        temporary.unlink(missing_ok=True)
+    with staging(file.parent, file) as aside:
+        (aside / file.name).write_text(row.to_json(), encoding="utf-8")
+        (aside / file.name).replace(file)
 
 
 def recorded(case: Case, file: Path) -> Row | None:

@@ -18,13 +18,12 @@ from comparisons.scene import Scene, built_in_scenes, load_scene, rules
 from comparisons.scene.read import LISTS
 from comparisons.scene.rules import FieldError, RecordError, Rule, RuleError
 from comparisons.scene.tables import (
-    InputError,
     check_keys,
     check_tables,
     head_values,
-    in_order,
     read_tables,
     read_text,
+    refuse,
     table_values,
 )
 from comparisons.suite import settings
@@ -50,10 +49,6 @@ RANGE: dict[str, Rule] = {
 """The keys of a range with the rules of their values."""
 
 
-class StudyError(InputError):
-    """A study that cannot be read."""
-
-
 @dataclass(frozen=True, kw_only=True)
 class Study:
     """A sweep: its cases, each once, in the order of the file, and the number of runs timed for each."""
@@ -66,12 +61,11 @@ class Study:
 def read_study(path: Path) -> Study:
     """Return the study that the TOML file `path` states.
 
-    The cases of a table ``[[run]]`` are all combinations of its values, the first key varying slowest. A `StudyError` or `SceneError`
+    The cases of a table ``[[run]]`` are all combinations of its values, the first key varying slowest. An `InputError`
     has all mistakes in the order of the file, each in one line: file, key, value and rule.
     """
     source = str(path)
-    text = read_text(source, "no such file", StudyError)
-    tables = read_tables(text, source, StudyError)
+    tables = read_tables(read_text(source), source)
     head, mistakes = head_values(tables, "study", HEAD_RULES, required=("name", "scene"))
     mistakes += check_keys(tables, ("study", "run"), required=("study", "run"))
     wrong, cases = list(check_tables(tables, "run")), list[Case]()
@@ -79,8 +73,7 @@ def read_study(path: Path) -> Study:
     if "scene" in head and not wrong:
         name = head["scene"] if head["scene"] in built_in_scenes() else str(path.parent / head["scene"])
         cases = _cases(load_scene(name), tables.get("run", []), path.parent, mistakes)
-    if mistakes:
-        raise StudyError(source, RecordError(in_order(mistakes, tables)))
+    refuse(source, mistakes, tables)
     return Study(name=head["name"], repeats=head.get("repeats", 3), cases=tuple(dict.fromkeys(cases)))
 
 

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -40,17 +41,12 @@ Watching = Callable[[str], AbstractContextManager[Watch]]
 Staging = Callable[[str], AbstractContextManager[Count]]
 
 
-@dataclass(frozen=True)
-class Run:
+class Run(NamedTuple):
     """One model with its options, whatever the scene."""
 
     label: str
     model: str
     options: Options
-
-    def case(self, scene: Scene) -> Case:
-        """Return the run of a scene."""
-        return Case(scene=scene, model=self.model, options=self.options)
 
 
 def run_of(model: Model, options: Options) -> Run:
@@ -164,7 +160,7 @@ def compare(
             report(f"{head}: {end}")
         except ModelError as error:
             report(f"{head}: left out, {error}")
-            left_out[run.case(scene).family] = str(error).removeprefix(f"{run.model}: ")
+            left_out[find(run.model).family(scene, run.options)] = str(error).removeprefix(f"{run.model}: ")
     rows = [_row(scene, run, response, answers[ROD]) for run, response in answers.items()]
     with staging("measuring the error budget") as count:
         budget, lack = None, "it takes the solid"
@@ -184,8 +180,9 @@ def compare(
 
 def _row(scene: Scene, run: Run, response: Response, reference: Response) -> Row:
     """Return the row of a run with its errors and their cause."""
-    case, judged = run.case(scene), verdict(response)
-    row = Row(case=case, response=response, verdict=judged, name=run.label, cause=_cause(case, reference))
+    case = Case(scene=scene, model=run.model, options=run.options)
+    judged, cause = verdict(response), _cause(case, reference)
+    row = Row(case=case, response=response, verdict=judged, name=run.label, cause=cause)
     return row if response is reference else row.against(reference, names(mesh=False))
 
 

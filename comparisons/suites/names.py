@@ -3,26 +3,25 @@
 FIGURES = {
     "fig7a": "the cantilever lifted by a pin from six starting positions",
     "fig7b": "the critical area of every element formulation",
-    "fig8": "the cantilever of Konyukhov and Schweizerhof by TSM and by solid elements",
+    "fig8": "the cantilever of Konyukhov and Schweizerhof by TSM and by solids",
     "fig9": "two cantilevers in contact under one pin",
 }
 """What the figures of [P] show."""
 QUESTIONS = {
-    "locking": "which element locks, in thin strips and with nearly incompressible materials",
+    "locking": "which element locks, thin or nearly incompressible",
     "thin-beams": "whether the solid with the rod's law becomes the rod as h^2",
     "scatter": "how much the answers differ between meshes",
     "penalty": "from which penalty to which the answers hold",
-    "peers": "whether CalculiX, a program of others, gives the same answers; needs its program ccx",
+    "peers": "whether CalculiX gives the same answers; needs its program ccx",
 }
 """What is asked of the solid."""
 SUITES = {
     "paper": "all figures of the paper, and its claims",
     **FIGURES,
-    "manual": "the verification manual, problems with exact answers, put to every model that can state them",
-    "cards": "the problems of the manual as JSON files, with scene, values and source",
-    "extremes": "where the models hold and where they stop, over units, slenderness, shear, meshes, contact positions, load steps, "
-    "penalty, Poisson's ratio, depth and time",
-    "trade": "what accuracy costs on SCENE, error against seconds, iterations and unknowns of many settings",
+    "manual": "the verification manual: problems with exact answers, every model",
+    "cards": "the manual's problems as JSON files, with scene, values, source",
+    "extremes": "where models hold and stop: units, slenderness, meshes, time, ...",
+    "trade": "what accuracy costs on SCENE: error over time, for many settings",
     **QUESTIONS,
 }
 """All suites, in the order of the help."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from comparisons.answer import Array
 from comparisons.models import ROD, solve
-from comparisons.models.outside.adapters.calculix import Answer, pressed, tip_load
+from comparisons.models.outside.adapters.calculix import pressed, tip_load
 from comparisons.models.solid import to_solid
 from comparisons.output import Report, Row
 from comparisons.scene import Scene, load_scene
@@ -75,12 +75,6 @@ def contact_forces(problem: "SolidProblem", steps: int, count: int) -> Array:
     return result.contacts[contact.name].force
 
 
-def press(problem: "SolidProblem", steps: int, penalty: float) -> Answer:
-    """CalculiX's answer to the pin of a problem of one strip along the x axis from the origin."""
-    (x, y), end = problem.pins[0].path
-    return pressed(problem.strips[0], (x, y), (end[0] - x, end[1] - y), steps, penalty)
-
-
 def _tip_row(strip: "Strip", load: float) -> Row:
     """Displacement of the free end under a transverse dead load that is spread over it, in ten steps."""
     from fem_reference import PointLoad, SolidProblem
@@ -97,7 +91,7 @@ def _tip_row(strip: "Strip", load: float) -> Row:
 
 def _pin_rows(problem: "SolidProblem", steps: int, penalty: float) -> Iterator[Row]:
     """Yield a row per load parameter shown, with the contact force as the clamp bears it."""
-    answer = press(problem, steps, penalty)
+    answer = pressed(problem.strips[0], problem.pins[0].path, steps, penalty)
     calculix = np.hypot(*answer.force.T)
     solid = contact_forces(problem, steps, max(calculix.size, round(steps * SHOWN[-1])))
     differences = calculix / solid[: calculix.size] - 1.0

@@ -20,8 +20,8 @@ from docs.extensions.messages import FILE, SCENES, messages
 
 SOURCES = [path.read_text(encoding="utf-8") for path in sorted(Path(reader.__file__).parent.glob("*.py"))]
 LISTED = messages()
-ERRORS = {"RuleError", "FieldError", "InputError", "SceneError", "kind"}
-"""Names by which the reader calls its errors; `kind` is the class of error that a caller hands down."""
+ERRORS = {"RuleError", "FieldError", "InputError", "SceneError"}
+"""Names by which the reader calls its errors."""
 HANDED = {"read_text", "refused"}
 """Functions that are given a sentence as their second argument."""
 PASSED = {"rule", "absent", "reason", "sentence", "str(error)", "self.rule"}

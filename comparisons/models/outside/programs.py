@@ -22,8 +22,8 @@ from comparisons.extras import install
 from comparisons.models.model import Model, ModelError, Options, Style
 from comparisons.models.outside.child import ProgramError, ProgramStatus, found, run
 from comparisons.scene import rules
-from comparisons.scene.rules import RecordError, Rule, ValueRule
-from comparisons.scene.tables import InputError, check_keys, head_values, in_order, read_tables, read_text
+from comparisons.scene.rules import Rule, ValueRule
+from comparisons.scene.tables import InputError, check_keys, head_values, read_tables, read_text, refuse
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -262,12 +262,10 @@ def read_program(path: Path) -> Program:
     ``docs/how-to/program.md`` has the keys. An `InputError` has all mistakes in the order of the file.
     """
     source = str(path)
-    text = read_text(source, "no such file", InputError)
-    tables = read_tables(text, source, InputError)
+    tables = read_tables(read_text(source), source)
     given, mistakes = head_values(tables, "program", RULES, required=("name", "command"))
     mistakes += check_keys(tables, ("program",), required=("program",))
-    if mistakes:
-        raise InputError(source, RecordError(in_order(mistakes, tables)))
+    refuse(source, mistakes, tables)
     return Program(Command(folder=path.resolve().parent, **given))
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import combinations
 from time import perf_counter
 from typing import Any
 
@@ -166,17 +165,16 @@ def _checked(scene: Scene, quantity: str, model: str, element: str | None) -> Mo
 
 def without_idle(scene: Scene) -> tuple[Scene, tuple[str, ...]]:
     """Return the scene without beams that no load, weight, moving support or pin can reach, and a sentence for each."""
-    pins = {pin.name for pin in scene.pins}
+    pins, every = {pin.name for pin in scene.pins}, [beam.name for beam in scene.beams]
     loaded = {contact.beam for contact in scene.contacts if contact.node in pins}
     loaded |= {history.load.beam for history in scene.load_histories}
     loaded |= {beam.name for beam in scene.beams if beam.density is not None}
     loaded |= {motion.support.beam for motion in scene.prescribed_motions.values() if motion.moves}
     meeting = [{one.node.split(".")[0], one.beam} for one in scene.contacts if one.node not in pins]
-    ends = {beam.name: {beam.start, beam.end} for beam in scene.beams}
-    meeting += [{one, other} for one, other in combinations(ends, 2) if ends[one] & ends[other]]
+    meeting += [{beam.name for beam, _ in ends} for ends in scene.meeting.values()]
     while more := {name for beams in meeting if beams & loaded for name in beams} - loaded:
         loaded |= more
-    said = tuple(f'beam "{name}" lies on no load path: left out' for name in ends if name not in loaded)
+    said = tuple(f'beam "{name}" lies on no load path: left out' for name in every if name not in loaded)
     kept: dict[str, Any] = {
         kind: tuple(one for one in getattr(scene, kind) if one.beam in loaded)
         for kind in ("supports", "springs", "hinges", "contacts")

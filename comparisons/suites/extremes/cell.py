@@ -13,8 +13,8 @@ from comparisons.models.theory import FLOOR, Bending, bending, chord_term, eleme
 from comparisons.models.verify import CHECK_FAILED
 from comparisons.output import Row as TableRow
 from comparisons.scene import BeamSpec
-from comparisons.suite import Case, Row
-from comparisons.suite.run import COMPLETED, UNSETTLED
+from comparisons.suite import Case
+from comparisons.suite.run import UNSETTLED, Results
 from comparisons.suites.finding import Finding
 from tsm.elements import ClosedForm
 
@@ -25,8 +25,6 @@ NEXT_TERM = 1.05
 """Error of a roll-up over its first neglected term, with all further terms."""
 LARGEST = 0.2
 """Largest allowed error for any model; an answer with a larger error should have stopped."""
-Results = Mapping[Case, Row]
-"""Rows by case."""
 Check = Callable[[Case, Response, Results], Finding | None]
 """What must hold of a case's response; None where there is nothing to hold it against."""
 
@@ -177,7 +175,7 @@ def judged(cell: Cell, results: Results) -> Judgement:
     checks = cell.checks if len(own.load_parameter) else ()
     found = [one for check in checks if (one := check(cell.case, own, results)) is not None]
     decisive, holds = max(found, key=lambda one: one.share, default=None), all(one.holds for one in found)
-    verdict = "right" if own.status == COMPLETED else "stopped"
+    verdict = "right" if own.completed else "stopped"
     if own.status == CHECK_FAILED:
         verdict = "withdrawn"
     elif own.status in UNSETTLED or not holds:

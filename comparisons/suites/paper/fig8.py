@@ -33,7 +33,7 @@ def ks_shapes(*, quick: bool, report: Report) -> Study:
         report(title := f"{name}: {reading['words']}")
         scene = load_scene(name)
         scene = replace(scene, load_parameters=10) if quick else scene
-        solid = replace(SOLID, options=Options(mesh=(24, 2))) if quick else SOLID
+        solid = SOLID._replace(options=Options(mesh=(24, 2))) if quick else SOLID
         # of a solid with the printed G, Poisson's ratio -1, nothing can be learnt
         stated = scene.beams[0].poissons_ratio is not None and find(SOLID.model).refusal(scene) is None
         asked = (*((solid,) if stated else ()), *PAPER, MIXED, ROD)

@@ -11,11 +11,11 @@ from comparisons.answer.errors import Errors, errors
 from comparisons.answer.quantities import forces, moments, scales, size
 from comparisons.models import ROD
 from comparisons.scene import Scene
-from comparisons.suite import Case, Row
+from comparisons.suite import Case
+from comparisons.suite.run import Results
 from comparisons.suites.trade.settings import beams, limit_cases
 from tsm.elements import EXACT
 
-Measured = Mapping[Case, Row]
 ROUND_OFF = 2.0**-52
 """Least uncertainty of a reference, also where two answers are equal."""
 
@@ -55,7 +55,7 @@ def reference_cases(scene: Scene) -> list[Case]:
     return [Case(scene=scene, model=ROD.name), beams(scene, EXACT, 1, tolerance=1e-12)]
 
 
-def best_reference(scene: Scene, measured: Measured) -> Reference:
+def best_reference(scene: Scene, measured: Results) -> Reference:
     """Return the answer of the exact rods, as uncertain as its difference from exact TSM elements."""
     # the rods and not the elastica: every model of the sweep stretches and shears
     rod, exact = (measured[case].response for case in reference_cases(scene))
@@ -72,7 +72,7 @@ def best_reference(scene: Scene, measured: Measured) -> Reference:
     return Reference(response=rod, scene=scene, uncertainty=least, sentence=f"{what}; {confirmed}")
 
 
-def solid_limit(scene: Scene, measured: Measured, *, quick: bool = False) -> Reference | None:
+def solid_limit(scene: Scene, measured: Results, *, quick: bool = False) -> Reference | None:
     """Return what the solid converges to, as uncertain as its last meshes differ; None if one stopped."""
     cases = limit_cases(scene, quick=quick)
     series = [measured[case].response for case in cases]

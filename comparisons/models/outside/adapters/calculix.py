@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import simpson
 
 from comparisons.models.outside import child
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from fem_reference import Strip
 
 Array = NDArray[Any]
-Point = tuple[float, float]
 Tables = dict[tuple[str, str], list[list[list[float]]]]
 """Printed rows of three components, one table for each increment, by ``displacements`` or ``forces`` and the node set."""
 
@@ -49,9 +48,8 @@ _BRICK = "000 200 220 020 002 202 222 022 100 210 120 010 102 212 122 012 001 20
 """Places of a brick's twenty nodes in CalculiX's order: x, y and z in halves of the brick."""
 _FACE = np.array([[-1.0, 4.0, -1.0], [4.0, 0.0, 4.0], [-1.0, 4.0, -1.0]]) / 12
 """Consistent nodal forces of a unit force that is spread evenly over a face with eight nodes."""
-_PRINT = (
-    "*NODE PRINT, NSET=TIP", "U", "*NODE PRINT, NSET=AXIS", "U", "*NODE PRINT, NSET=CLAMP", "U,RF", "*END STEP", "",
-)  # fmt: skip
+DECK = Path(__file__).with_name("calculix.inp.jinja")
+"""The input of CalculiX."""
 _HEADER = re.compile(r" (displacements|forces) \(.*\) for set (\S+) and time\s+(\S+)")
 _SHORT = re.compile(r"(?<=\d)(?=[+-]\d{3}$)")
 """Place of the E that Fortran leaves out before an exponent of three digits."""
@@ -95,8 +93,7 @@ def states(scene: Table, histories: Histories) -> Iterator[float]:
     if scene["loads"]:
         deck = slab.tip_load(float((frame @ scene["loads"][0]["force"])[1]), steps)
     else:
-        _, (start, end) = way(beam, scene["pins"][0])
-        deck = slab.pin(tuple(start), tuple(end - start), steps, penalty)
+        deck = slab.pin(way(beam, scene["pins"][0])[1], steps, penalty)
     try:
         found = slab.answer(deck, seconds=1e5)
     except ProgramError as error:
@@ -138,10 +135,10 @@ def tip_load(strip: "Strip", force: float) -> Answer:
     return answer
 
 
-def pressed(strip: "Strip", start: Point, motion: Point, steps: int, penalty: float) -> Answer:
+def pressed(strip: "Strip", path: ArrayLike, steps: int, penalty: float) -> Answer:
     """Return the answer to a sharp pin on the right face, see `Slab.pin`, before it slips through the face or an increment fails."""
     slab = Slab(strip)
-    found = slab.answer(slab.pin(start, motion, steps, penalty))
+    found = slab.answer(slab.pin(path, steps, penalty))
     through = np.flatnonzero(np.hypot(*found.force.T) < slab.unit)
     if not through.size:
         return found
@@ -178,26 +175,41 @@ class Slab:
         loads = np.zeros(end.shape)
         for row in range(ny):
             loads[2 * row : 2 * row + 3] += force / self.unit / ny * _FACE
-        forces = [f"{n},2,{load:.12e}" for n, load in zip(end[end > 0], loads[end > 0], strict=True)]
-        return self._deck([], steps, ["*CLOAD", *forces])
+        return self._deck(steps, loads=zip(end[end > 0], loads[end > 0], strict=True))
 
-    def pin(self, start: Point, motion: Point, steps: int, penalty: float) -> str:
-        """Deck of a sharp pin that moves along the right face in equal steps, from `start` by `motion` [m].
+    def pin(self, path: ArrayLike, steps: int, penalty: float) -> str:
+        """Deck of a sharp pin that moves along the right face in equal steps, between two points in the strip's frame, `path` (2, 2).
 
         The pin is a needle across the half slab. Its two nodes are the slaves of a contact with the face. `penalty` [N/m] is the contact
         stiffness. CalculiX multiplies the stated slope of the pressure by half the area of a face for each of the two nodes.
         """
-        (nx, ny), (x, y), top = self.strip.mesh, start, int(self.numbers.max())
-        slope = penalty / self.unit / (self.thickness * self.strip.length / nx)
-        places = (f"{x:.12e},{y:.12e},{part * self.thickness:.12e}" for part in (0.25, 0.75))
-        contact = [
-            "*NODE, NSET=PIN", *(f"{top + n},{place}" for n, place in enumerate(places, start=1)),
-            "*SURFACE, NAME=NEEDLE, TYPE=NODE", "PIN", "*SURFACE, NAME=FACE", *(f"{1 + column * ny},S3" for column in range(nx)),
-            "*SURFACE INTERACTION, NAME=HARD", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", f"{slope:.12e}",
-            "*CONTACT PAIR, INTERACTION=HARD, TYPE=NODE TO SURFACE", "NEEDLE,FACE",
-        ]  # fmt: skip
-        moved = (f"PIN,{axis},{axis},{way:.12e}" for axis, way in enumerate((*motion, 0.0), start=1))
-        return self._deck(contact, steps, ["*BOUNDARY", *moved])
+        (nx, ny), (start, end) = self.strip.mesh, np.asarray(path)
+        return self._deck(
+            steps,
+            needle=[(*start, part * self.thickness) for part in (0.25, 0.75)],
+            face=range(1, 1 + nx * ny, ny),
+            slope=penalty / self.unit / (self.thickness * self.strip.length / nx),
+            motion=(*(end - start), 0.0),
+        )
+
+    def _deck(self, steps: int, **action: Any) -> str:
+        """Deck of a load or of a pin; the clamp named ``rod`` holds transverse motion on the edge's middle line only."""
+        from jinja2 import Template
+
+        strip, n, (nx, ny) = self.strip, self.numbers, self.strip.mesh
+        x, y, z = np.array([[*map(int, place)] for place in _BRICK.split()]).T
+        held = n[0] if strip.clamp == "full" else n[0, ny]
+        sets = {"CLAMP": n[0], "HELD": held, "MIDDLE": n[:, :, 0], "TIP": n[-1, :, 0], "AXIS": n[:, ny, 0]}
+        deck = Template(DECK.read_text(encoding="ascii"), trim_blocks=True, keep_trailing_newline=True)
+        text: str = deck.render(
+            nodes=[*zip(n[n > 0], map(tuple, self.points[n > 0]), strict=True)],
+            bricks=[n[x + 2 * column, y + 2 * row, z].tolist() for column, row in np.ndindex(nx, ny)],
+            sets={name: numbers[numbers > 0] for name, numbers in sets.items()},
+            law=(strip.youngs_modulus * strip.width / self.thickness / self.unit, strip.poissons_ratio),
+            steps=steps,
+            **action,
+        )
+        return text
 
     def answer(self, deck: str, seconds: float = 300.0) -> Answer:
         """Return the answer to a deck, up to the last increment that was printed completely; raise `ProgramError` if there is none."""
@@ -217,29 +229,6 @@ class Slab:
         moment = (x * forces[..., 1] - y * forces[..., 0]).sum(axis=1)
         mean = simpson(tip, dx=0.5 / ny, axis=1)
         return Answer(np.array(times[:count]), mean, forces.sum(axis=1), moment, self.axis + bent, stopped)
-
-    def _deck(self, contact: list[str], steps: int, action: list[str]) -> str:
-        """Nodes, bricks, material, supports and a step; the clamp named ``rod`` holds transverse motion on the edge's middle line only."""
-        strip, n, (nx, ny) = self.strip, self.numbers, self.strip.mesh
-        modulus = strip.youngs_modulus * strip.width / self.thickness / self.unit
-        x, y, z = np.array([[*map(int, place)] for place in _BRICK.split()]).T
-        held = n[0] if strip.clamp == "full" else n[0, ny]
-        sets = {"CLAMP": n[0], "HELD": held, "MIDDLE": n[:, :, 0], "TIP": n[-1, :, 0], "AXIS": n[:, ny, 0]}
-        places = zip(n[n > 0], self.points[n > 0], strict=True)
-        lines = ["*NODE", *(f"{number},{a:.12e},{b:.12e},{c:.12e}" for number, (a, b, c) in places)]
-        lines.append("*ELEMENT, TYPE=C3D20R, ELSET=STRIP")
-        for number, (column, row) in enumerate(np.ndindex(nx, ny), start=1):
-            brick = n[x + 2 * column, y + 2 * row, z].astype(str)
-            lines += [f"{number},{','.join(brick[:10])},", ",".join(brick[10:])]
-        for name, numbers in sets.items():
-            lines += [f"*NSET, NSET={name}", *(f"{number}," for number in numbers[numbers > 0])]
-        material = f"{modulus:.12e},{strip.poissons_ratio:.12e}"
-        return "\n".join([
-            *lines, "*MATERIAL, NAME=ELASTIC", "*ELASTIC", material, "*SOLID SECTION, ELSET=STRIP, MATERIAL=ELASTIC",
-            "*BOUNDARY", "CLAMP,1,1", "HELD,2,2", "MIDDLE,3,3", *contact,
-            f"*STEP, NLGEOM, INC={2 * steps}", "*CONTROLS, PARAMETERS=FIELD", "1.E-6,1.E-8",
-            "*STATIC, DIRECT", f"{1 / steps:.12e},1.", *action, *_PRINT,
-        ])  # fmt: skip
 
 
 def run(deck: str, seconds: float = 300.0) -> tuple[list[float], Tables, str]:

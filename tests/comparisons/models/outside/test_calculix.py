@@ -9,13 +9,13 @@ import pytest
 
 import fem_reference
 from comparisons.cli import main
-from comparisons.models.outside.adapters.calculix import parse, run, tip_load
+from comparisons.models.outside.adapters.calculix import parse, pressed, run, tip_load
 from comparisons.models.outside.child import ProgramError
 from comparisons.models.solid import to_solid
 from comparisons.scene import load_scene
 
 # the study whose numbers the pages state, and the input file and the output of CalculiX, which is not everywhere
-from comparisons.suites.solid_accuracy import contact_forces, peers, press
+from comparisons.suites.solid_accuracy import contact_forces, peers
 
 needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed")
 PROBLEM = to_solid(load_scene("ks-face"))
@@ -73,7 +73,7 @@ def test_pin_on_the_face_up_to_a_tenth(stated):
     start, end = PROBLEM.pins[0].path
     way = tuple(a + 0.1 * (b - a) for a, b in zip(start, end, strict=True))
     problem = replace(PROBLEM, pins=(replace(PROBLEM.pins[0], path=(start, way)),))
-    coarse, fine = (np.hypot(*press(problem, steps, 20.0).force.T) for steps in (10, 20))
+    coarse, fine = (np.hypot(*pressed(STRIP, (start, way), steps, 20.0).force.T) for steps in (10, 20))
     assert (coarse.size, fine.size) == (10, 20)
     np.testing.assert_allclose(coarse, fine[1::2], rtol=1e-6)
     stated("calculix.two-steps", np.abs(coarse / fine[1::2] - 1.0).max(), bound=True)

@@ -237,14 +237,20 @@ def test_a_program_gets_the_stated_environment_alone(program, tmp_path, monkeypa
 
 
 def test_a_stored_answer_is_judged_as_what_the_file_of_its_program_says(program, in_folder, capsys):
-    """The answer itself is not asked: whoever claims to be a body would be allowed more."""
+    """Only the answer of a program that is not known here says itself that it is of a body, which is allowed more."""
     file, more = program(continuum=True), ["--scene", "ks.toml"]
     assert main(["solve", "ks.toml", "--model", file, "--certify", "none", "--out", "a.json"]) == 0
     stated = json.loads(Path("a.json").read_text())
-    Path("b.json").write_text(json.dumps(stated | {"model": "other", "continuum": True}))
-    capsys.readouterr()
-    for name, said in {"a.json": "liar, COMPLETED\n  CERTIFIED within 7 %", "b.json": "within 5 %"}.items():
-        assert main(["certify", name, *more]) == 0
+    body = ", a two-dimensional body, COMPLETED\n  CERTIFIED within 7 %"
+    for model, continuum, said in (
+        ("liar", False, f"liar{body}"),
+        ("other", True, f"other{body}"),
+        ("other", False, "other, COMPLETED\n  CERTIFIED within 5 %"),
+        ("tsm", True, "tsm, COMPLETED\n  CERTIFIED within 5 %"),
+    ):
+        Path("b.json").write_text(json.dumps(stated | {"model": model, "continuum": continuum}))
+        capsys.readouterr()
+        assert main(["certify", "b.json", *more]) == 0
         assert said in capsys.readouterr().out
     assert main(["certify", "ks.toml"]) == 0
     assert capsys.readouterr().out.startswith("ks-cantilever, model tsm exact 1, COMPLETED\n")

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from comparisons.answer.errors import error_histories, errors
+from comparisons.answer.errors import error_columns, errors
 from comparisons.models import MODELS, solve
 from comparisons.report.motion import motion_section, tracks  # of answers that no comparison has
 from comparisons.report.pages import Section, page, table
@@ -113,9 +113,9 @@ def test_a_run_that_stopped_is_shown_as_far_as_it_came():
     made = tracks(responses, "exact rod", KS)
     data = motion_section("t", KS, responses, made, focus="exact rod").data
     assert [len(run["lines"]) for run in data["runs"]] == [2, len(KS.times)]
-    _, whole = error_histories(beams, rod, KS)
-    assert np.array_equal(made[0].errors["TSM mixed"], whole["force"][:2])
-    assert errors(beams, rod, KS)["path"]["force"] == whole["force"].max()
+    (whole,) = error_columns(beams, rod, KS, "force").values()
+    assert np.array_equal(made[0].errors["TSM mixed"], whole[:2])
+    assert errors(beams, rod, KS)["path"]["force"] == whole.max()
     section = motion_section("t", KS, {"TSM mixed": none}, [], focus="TSM mixed")
     assert "No run reached" in section.html
     assert section.data is None
