@@ -38,17 +38,17 @@ class Carrier:
     """Vectors that are weighted means of the positions of a strip's nodes: points, or first moments of a section."""
 
     reference: Floats  # undeformed, relative to the model's origin, ``(m, 2)`` [m]
-    rows: csr_matrix  # derivatives ``(2 m, 2 n)`` by the displacements
-    transposed: csr_matrix  # transposed rows ``(2 n, 2 m)``
+    rows: csr_matrix  # weights ``(m, n)`` of the model's nodes
+    transposed: csr_matrix  # the same, ``(n, m)``
 
     def points(self, u: Floats) -> Floats:
         """Positions ``(m, 2)`` at the nodal displacements ``u`` ``(n, 2)``."""
-        return np.asarray(self.reference + (self.rows @ u.ravel()).reshape(-1, 2))
+        return np.asarray(self.reference + self.rows @ u)
 
     def columns(self, weights: Floats, directions: Floats) -> Floats:
         """Nodal forces ``(2 n, c)`` of the unit forces ``directions`` ``(c, 2)`` on the points with ``weights`` ``(c, m)``."""
-        forces = weights[:, :, None] * directions[:, None]
-        return np.asarray(self.transposed @ forces.reshape(len(forces), -1).T)
+        shares = self.transposed @ weights.T
+        return np.asarray((shares[:, None] * directions.T).reshape(-1, len(directions)))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -45,11 +45,10 @@ class ContactCurve:
     def basis(self, zeta: float) -> Floats:
         """Averaged cardinal splines and their derivatives at ``zeta``, ``(2, m)``."""
         k, factors = self.pieces(zeta)
-        first, both = int(k.min()), np.zeros((2, 2, self.stations.size))
-        hot = np.eye(int(np.ptp(k)) + 2)[[k - first, k - first + 1]]
-        part = slice(first, first + hot.shape[2])
-        both[..., part] = np.tensordot(factors[:2].reshape(2, 2, 2, -1), hot, ((2, 3), (0, 1))).swapaxes(0, 1)
-        return np.asarray(both[0] + (self.spread @ both[1].T).T)
+        both = np.zeros((self.stations.size, 2, 2))  # factors of points and of slopes, by derivative
+        np.add.at(both, k, factors[:2, ::2].T)
+        np.add.at(both, k + 1, factors[:2, 1::2].T)
+        return np.asarray(both[:, 0] + self.spread @ both[:, 1]).T
 
     def at(self, zeta: float, X: Floats, D: Floats) -> Floats:
         """Position and first two derivatives ``(3, 2)`` of the curve with points X and slopes D at the stations."""
@@ -146,8 +145,7 @@ def project(curve: ContactCurve, X: Floats, point: Floats) -> Projection:
     """Project a point on the curve whose points have the positions ``X`` ``(m, 2)``."""
     s, Y = curve.stations, X - point  # relative to the point, which loses no digits near it
     D = curve.slopes @ Y
-    zeta, stationary = closest(curve, Y, D)
-    r, r1, r2 = curve.at(zeta, Y, D)
+    zeta, stationary, (r, r1, r2) = closest(curve, Y, D)
     stretch = float(np.sqrt(r1 @ r1))
     tangent = r1 / stretch
     normal = np.array([-tangent[1], tangent[0]])
@@ -166,8 +164,8 @@ def project(curve: ContactCurve, X: Floats, point: Floats) -> Projection:
     )
 
 
-def closest(curve: ContactCurve, Y: Floats, D: Floats) -> tuple[float, bool]:
-    """Coordinate of the point closest to the origin by Newton's method from the closest station, and whether it is stationary."""
+def closest(curve: ContactCurve, Y: Floats, D: Floats) -> tuple[float, bool, Floats]:
+    """Coordinate of the point closest to the origin by Newton's method from the closest station, whether it is stationary, and `at` it."""
     s = curve.stations
     # the curve goes on by one spacing beyond its ends, so that a point beyond an end still has a projection
     low, high = 2 * s[0] - s[1], 2 * s[-1] - s[-2]
@@ -180,7 +178,7 @@ def closest(curve: ContactCurve, Y: Floats, D: Floats) -> tuple[float, bool]:
         return float(r @ r1)
 
     for _ in range(_PROJECTION_STEPS):
-        r, r1, r2 = curve.at(zeta, Y, D)
+        r, r1, r2 = at = curve.at(zeta, Y, D)
         squared = r1 @ r1
         curvature = squared + r @ r2
         # Near and beyond the centre of curvature: a bracketed root, otherwise a Gauss-Newton step.
@@ -188,12 +186,13 @@ def closest(curve: ContactCurve, Y: Floats, D: Floats) -> tuple[float, bool]:
             if slope(around[0]) < 0 < slope(around[1]):
                 from scipy.optimize import brentq  # rare, and its import takes as long as that of the package
 
-                return float(brentq(slope, *around, xtol=1e-15 * size)), True
+                zeta = float(brentq(slope, *around, xtol=1e-15 * size))
+                return zeta, True, curve.at(zeta, Y, D)
             curvature = squared
         step = float(-(r @ r1) / curvature)
-        last, zeta = zeta, min(max(zeta + step, low), high)
         if abs(step) <= 1e-14 * size:
-            return zeta, True
+            return zeta, True, at
+        last, zeta = zeta, min(max(zeta + step, low), high)
         if zeta == last:
             break
-    return zeta, False
+    return zeta, False, curve.at(zeta, Y, D)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_matrix, tril
 
-from fem_reference.solid.mesh import Discretisation, Points
+from fem_reference.solid.mesh import Discretisation, Points, blocks
 from fem_reference.statement.arrays import Array, Floats, Ints
 from fem_reference.statement.material import Law
 
@@ -45,8 +45,8 @@ def pattern(mesh: Discretisation, expansion: csr_matrix, added: csr_matrix | Non
     unknown, factor = np.full(expansion.shape[0], -1), np.zeros(expansion.shape[0])
     unknown[given.row], factor[given.row] = given.col, given.data
     dofs = (2 * mesh.cells[:, :, None] + np.arange(2)).reshape(len(mesh.cells), -1)
-    pairs = _entries(mesh.cells.shape[1])
-    rows, columns = (np.concatenate([dofs[:, pair[side]].ravel() for pair in pairs]) for side in (0, 1))
+    found = [(dofs[:, 2 * a + i], dofs[:, 2 * b + k]) for i, k, a, b in blocks(mesh.cells.shape[1])]
+    rows, columns = (np.concatenate([part.ravel() for part in side]) for side in zip(*found, strict=True))
     kept = np.flatnonzero((unknown[rows] >= 0) & (unknown[columns] >= 0))
     i, j, factors = unknown[rows[kept]], unknown[columns[kept]], factor[rows[kept]] * factor[columns[kept]]
     factors[(rows[kept] != columns[kept]) & (i == j)] *= 2  # the entry and the transposed one
@@ -58,64 +58,32 @@ def pattern(mesh: Discretisation, expansion: csr_matrix, added: csr_matrix | Non
     return Pattern(scatter=scatter, positions=positions, size=size, width=width)
 
 
-def _entries(shapes: int) -> list[tuple[Ints, Ints]]:
-    """Local degrees of freedom ``2 a + i`` of the rows and columns in the three parts of `element_entries`."""
-    a, b = np.triu_indices(shapes)
-    row, column = (index.ravel() for index in np.indices((shapes, shapes)))
-    return [(2 * a, 2 * b), (2 * a + 1, 2 * b + 1), (2 * row, 2 * column + 1)]
-
-
 def deformation_gradient(mesh: Discretisation, u: Array, points: Points | None = None) -> Array:
     """``F = I + du/dX`` ``(2, 2, e, q)`` at the quadrature or other ``points`` from displacements ``u`` ``(n, 2)``."""
     at = mesh.gauss if points is None else points
     elements, shapes = mesh.cells.shape
     nodal = u.T.take(mesh.cells, axis=1)
     nodal -= nodal[:, :, :1]  # leaves the gradient, and less round-off in it
-    H = (nodal.reshape(-1, shapes) @ at.slopes.reshape(-1, shapes).T).reshape(2, elements, 2, -1)
-    F = np.empty((2, 2, elements, H.shape[3]), dtype=u.dtype)
-    for i in range(2):
-        for j in range(2):
-            F[i, j] = at.transformed(H[i].swapaxes(0, 1), j)
-        F[i, i] += 1
+    H = (nodal.reshape(-1, shapes) @ at.slopes.reshape(-1, shapes).T).reshape(2, 1, elements, 2, -1)
+    F = np.asarray(H[..., 0, :] * at.inverse[0] + H[..., 1, :] * at.inverse[1])
+    F[0, 0] += 1
+    F[1, 1] += 1
     return F
 
 
 def internal_force(mesh: Discretisation, P: Array) -> Array:
     """Internal nodal forces ``(n, 2)``, the integral of ``P . dN/dX``, from stresses ``P`` ``(2, 2, e, q)``."""
-    elements, shapes = mesh.cells.shape
-    pulled = np.empty((2, elements, 2, P.shape[3]), dtype=P.dtype)
-    for i in range(2):
-        weighted = P[i] * mesh.weights
-        for k in range(2):
-            pulled[i, :, k] = mesh.gauss.pulled_back(weighted, k)
-    forces = pulled.reshape(2 * elements, -1) @ mesh.gauss.slopes.reshape(-1, shapes)
+    pulled = np.einsum("ijeq,Kjeq->ieKq", P * mesh.weights, mesh.gauss.inverse)
+    forces = np.tensordot(pulled, mesh.gauss.slopes, ((2, 3), (0, 1)))
     return np.asarray(mesh.gather @ forces.reshape(2, -1).T)
 
 
 def element_entries(mesh: Discretisation, law: Law, u: Array) -> Array:
-    """Entries of all element stiffnesses, the integral of ``dN/dX . A . dN/dX``, in one array.
-
-    The three parts are the blocks of the first and of the second component for the shape functions a <= b,
-    ``(e, k (k + 1) / 2)``, and that of both components for all, ``(e, k k)``.
-    """
-    A = law.tangent(deformation_gradient(mesh, u))
-    upper, every = mesh.products
-    parts = [_pulled_back(mesh, A[i, :, i], _UPPER) @ upper for i in range(2)]
-    return np.concatenate([part.ravel() for part in (*parts, _pulled_back(mesh, A[0, :, 1], _ALL) @ every)])
-
-
-_UPPER, _ALL = ((0, 0), (0, 1), (1, 1)), ((0, 0), (0, 1), (1, 0), (1, 1))
-
-
-def _pulled_back(mesh: Discretisation, block: Array, components: tuple[tuple[int, int], ...]) -> Array:
-    """Weighted ``components`` of a block ``A_jl`` ``(2, 2, e, q)`` on the reference square, ``(e, c q)``."""
-    at, (elements, q) = mesh.gauss, mesh.weights.shape
-    pulled = np.empty((elements, len(components), q), dtype=block.dtype)
-    for number, (first, second) in enumerate(components):
-        if at.aligned:
-            factor = mesh.weights * at.inverse[first, first] * at.inverse[second, second]
-            np.multiply(block[first, second], factor, out=pulled[:, number])
-        else:
-            sides = [at.pulled_back(block[:, side], first) for side in range(2)]
-            pulled[:, number] = mesh.weights * at.pulled_back(sides, second)
-    return pulled.reshape(elements, -1)
+    """Entries of all element stiffnesses, the integral of ``dN/dX . A . dN/dX``, in one array, block after block of `products`."""
+    A, parts = law.tangent(deformation_gradient(mesh, u)), []
+    inverse, weighted = mesh.gauss.inverse, mesh.weights * mesh.gauss.inverse
+    for i, k, products in mesh.products:
+        half = np.einsum("jleq,Kjeq->Kleq", A[i, :, k], weighted)
+        pulled = np.einsum("Kleq,Lleq->eKLq", half, inverse)
+        parts.append((pulled.reshape(len(mesh.cells), -1) @ products).ravel())
+    return np.concatenate(parts)

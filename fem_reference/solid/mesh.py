@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from fem_reference.statement.arrays import Array, Floats, Ints
+from fem_reference.statement.arrays import Floats, Ints
 from fem_reference.statement.strip import Strip
 
 GAUSS = {"Q1": (2, 2), "Q2": (2, 3), "Q2-full": (3, 3)}
@@ -30,19 +30,6 @@ class Points:
 
     slopes: Floats  # derivatives of the k shape functions along the two coordinates xi of the square, ``(2, q, k)``
     inverse: Floats  # inverse Jacobians ``d xi_K / d X_j`` ``(2, 2, e, q)`` [1/m]
-    aligned: bool  # whether all Jacobians are diagonal: the elements are rectangles along the axes
-
-    def transformed(self, field: Any, j: int) -> Array:
-        """Component ``sum_K d xi_K / d X_j f_K`` ``(e, q)`` of two fields f along the coordinates xi."""
-        if self.aligned:
-            return np.asarray(field[j] * self.inverse[j, j])
-        return np.asarray(field[0] * self.inverse[0, j] + field[1] * self.inverse[1, j])
-
-    def pulled_back(self, field: Any, k: int) -> Array:
-        """Component ``sum_j d xi_k / d X_j f_j`` ``(e, q)`` of two fields f along X."""
-        if self.aligned:
-            return np.asarray(self.inverse[k, k] * field[k])
-        return np.asarray(self.inverse[k, 0] * field[0] + self.inverse[k, 1] * field[1])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -67,14 +54,20 @@ class Discretisation:
     basis: Any  # scikit-fem's scalar basis over the places
 
     @cached_property
-    def products(self) -> tuple[Floats, Floats]:
-        """Products of two shape functions' derivatives in the square, of a <= b ``(3 q, ...)``, and of all ``(4 q, k k)``."""
+    def products(self) -> list[tuple[int, int, Floats]]:
+        """Blocks of an element's stiffness, see `blocks`, with products ``(4 q, ...)`` of two shape functions' derivatives in the square."""
         G = self.gauss.slopes
-        a, b = np.triu_indices(G.shape[2])
-        every = np.einsum("Kqa,Lqb->KLqab", G, G)
-        crossed = every[0, 1] + every[1, 0]
-        upper = np.stack([every[0, 0], crossed, every[1, 1]])[..., a, b]
-        return upper.reshape(-1, a.size), every.reshape(4 * G.shape[1], -1)
+        every = np.einsum("Kqa,Lqb->KLqab", G, G).reshape(-1, *2 * G.shape[2:])
+        return [(i, k, every[:, a, b]) for i, k, a, b in blocks(G.shape[2])]
+
+
+def blocks(shapes: int) -> list[tuple[int, int, Ints, Ints]]:
+    """Blocks of an element's symmetric stiffness: components i and k, and shape functions a and b of the entries.
+
+    The blocks of the first and of the second component have a <= b, that of both components has all.
+    """
+    upper, every = np.triu_indices(shapes), np.indices((shapes, shapes)).reshape(2, -1)
+    return [(0, 0, *upper), (1, 1, *upper), (0, 1, *every)]
 
 
 def structured_mesh(strip: Strip) -> Discretisation:
@@ -134,8 +127,7 @@ def _points(element: Any, X: Floats, positions: Floats) -> tuple[Points, Floats]
     slopes = _shape_slopes(element, X)
     inverse, volumes = _inverted(np.einsum("eaj,Kqa->jKeq", positions, slopes, order="C"))
     inverse = np.where(np.abs(inverse) > 1e-13 * np.abs(inverse).max(), inverse, 0.0)
-    aligned = not (inverse[0, 1].any() or inverse[1, 0].any())
-    return Points(slopes=slopes, inverse=inverse, aligned=aligned), volumes
+    return Points(slopes=slopes, inverse=inverse), volumes
 
 
 def _shape_slopes(element: Any, X: Floats) -> Floats:

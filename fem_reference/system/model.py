@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import block_diag, csr_matrix, identity, kron
+from scipy.sparse import block_diag, csr_matrix, identity
 
 from fem_reference.contact.contact import Carrier, Pair
 from fem_reference.contact.curve import contact_curve
@@ -88,7 +88,8 @@ def build(problem: SolidProblem, settings: Settings | None = None) -> Model:
         size = max(float(np.hypot(*forces.sum(axis=0))), abs(load.moment) / length)
         largest[load.stage] = max(largest[load.stage], size)
     expansion = block_diag([body.expansion for body in bodies], format="csr")
-    columns = [section.carrier.transposed.toarray() for section in sections]
+    axes = np.eye(2)
+    columns = [section.carrier.columns(axes.repeat(2, axis=0), np.tile(axes, (2, 1))) for section in sections]
     distances = [float(np.hypot(*point)) for strip in problem.strips for point in (strip.start, strip.end)]
     return Model(
         problem=problem,
@@ -118,9 +119,8 @@ def _joined(problem: SolidProblem) -> set[str]:
 
 def _carrier(bodies: list[Body], body: Body, rows: csr_matrix) -> Carrier:
     """Points with the weights ``rows`` of a body's nodes."""
-    both = kron(rows, np.eye(2), format="csr")
-    shape = both.shape[0], 2 * bodies[-1].part.stop
-    everywhere = csr_matrix((both.data, both.indices + 2 * body.part.start, both.indptr), shape=shape)
+    shape = rows.shape[0], bodies[-1].part.stop
+    everywhere = csr_matrix((rows.data, rows.indices + body.part.start, rows.indptr), shape=shape)
     # the weights of a first moment sum to zero
     shift = np.outer(np.round(rows.sum(axis=1), 9), body.offset)
     reference = shift + rows @ body.mesh.nodes

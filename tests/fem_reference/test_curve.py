@@ -50,7 +50,7 @@ def test_a_point_beside_the_centre_of_curvature_has_its_nearest_foot(point):
     s = np.linspace(0, 1, 6)
     curve = curve_through(s)
     X = np.stack([s, 0.15 * np.cos(2 * np.pi * s)], axis=1)
-    zeta, stationary = closest(curve, X - point, curve.slopes @ (X - point))
+    zeta, stationary, _ = closest(curve, X - point, curve.slopes @ (X - point))
     places = np.linspace(0, 1, 4001)
     distances = [np.hypot(*(curve.basis(z)[0] @ X - point)) for z in places]
     assert stationary
