@@ -13,7 +13,6 @@ The decision therefore depends on the path, and not on the prescribed load param
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -46,8 +45,6 @@ _RESOLVED = 1e-8
 """Smaller motions, in the same measure, are round-off, as of a column that stays straight: it moves along itself only."""
 _MEMORY = 4
 """Points in the prediction, a polynomial in the load parameter through their states and usable tangents."""
-_AHEAD = 1e-2
-"""Part of a step ahead of a state at which another one states its tangent; a shorter one has fewer digits."""
 SHORTEST = 1e-6
 """Step of the load parameter below which the tangent alone predicts: the others would be round-off."""
 FOLD = 100.0
@@ -125,6 +122,11 @@ class Point:
         _ = self.speed
         self.system.__dict__.pop("tangent", None)
 
+    def slope(self, t: float) -> Array | None:
+        """Rates towards a load parameter of what `_values` holds."""
+        rates = self._rates_to(t)
+        return rates and np.concatenate([rates.dofs, rates.contacts, rates.motion[self.model.equations :]])
+
     def predicted(self, t: float) -> State:
         """State at a load parameter along the tangent."""
         rates = self._rates_to(t)
@@ -140,39 +142,42 @@ class Track:
         self.newton, self.last, self.before = point.newton, point, point
         # of the last point that has one
         self.index = max(point.index, 0) if point.equilibrium.converged else 0
-        # states with the same contacts, each after one ahead of it along its tangent if there is any
-        self.history: list[tuple[State, ...]] = [(point.state,)]
+        self.history = [_Known(point.state, _values(point.model, point.state))]
 
     def accept(self, point: Point) -> None:
         """Make a point the last of the path."""
-        self.history = [*self._remembered(point), (point.state,)]
+        self.history = [*self._remembered(point), _Known(point.state, _values(point.model, point.state))]
         self.before, self.last = self.last, point
         self.before.release()
         self.index = point.index if point.index >= 0 else self.index
 
-    def _remembered(self, point: Point) -> list[tuple[State, ...]]:
+    def _remembered(self, point: Point) -> list[_Known]:
         """Earlier states that serve for the prediction beyond a point.
 
         The path has a kink where a contact passes from element to element, and one state before it serves where there is no other.
         """
-        kept: list[tuple[State, ...]] = []
-        for *ahead, state in reversed(self.history[1 - _MEMORY :]):
-            if kept and _owners(state) != _owners(point.state) and not point.on_chords:
+        kept: list[_Known] = []
+        for known in reversed(self.history[1 - _MEMORY :]):
+            if kept and _owners(known.state) != _owners(point.state) and not point.on_chords:
                 break
-            if state.load_parameter < point.t:
-                kept.append((*ahead, state))
-        return kept[::-1]
+            if known.state.load_parameter < point.t:
+                kept.append(known)
+        alike = _alike(point.model, [*(known.state for known in kept[::-1]), point.state])[:-1]
+        return [
+            known if state is known.state else _Known(state, _values(point.model, state))
+            for state, known in zip(alike, kept[: len(alike)][::-1], strict=True)
+        ]
 
     def predicted(self, t: float) -> State:
         """State at t from the last states and their tangents, or along the last tangent."""
         last, step, history = self.last, t - self.last.t, self.history
         steady = not last.on_chords and last.speed < FOLD  # a nearly singular tangent leads anywhere
-        if steady and step >= SHORTEST and len(history[-1]) == 1:
-            history[-1] = (last.predicted(last.t + _AHEAD * step), last.state)
+        if steady and step >= SHORTEST and history[-1].slope is None:
+            history[-1] = history[-1]._replace(slope=last.slope(t))
         if (len(history) == 1 and not last.on_chords) or (steady and step < SHORTEST):
             return last.predicted(t)
-        states = [state for near in history if len(near) == 1 + steady for state in near]
-        return self.newton.prescribed(extrapolate(last.model, states, t, tangents=steady), t)
+        used = [known for known in history if steady or known.slope is None]
+        return self.newton.prescribed(_through(last.model, used, t), t)
 
     def unexplained(self, by: Point, reached: Point) -> float:
         """Part of the step to a point that the tangent at one of its ends does not explain; 0 where none is usable. It may not be large."""
@@ -211,62 +216,69 @@ def _owners(state: State) -> list[int]:
     return [touch.element for touch in state.touches if touch is not None]
 
 
-def _weighted(weights: Sequence[float], values: Iterable[Any]) -> Any:
-    return sum(weight * value for weight, value in zip(weights, values, strict=True))
+class _Known(NamedTuple):
+    """A state of the path."""
+
+    state: State
+    values: Array  # see `_values`
+    slope: Array | None = None  # their rates, if they serve for the prediction
 
 
-def extrapolate(model: Model, history: list[State], t: float, *, tangents: bool = False) -> State:
-    """State at t by the polynomial through earlier states, all with the same closed contacts.
+def _values(model: Model, state: State) -> Array:
+    """Displacements, forces, arc positions and angles of the contacts, and angles inside the elements."""
+    contacts = np.zeros(model.contact_unknowns)
+    for _, pair, touch in closed(model, state):
+        own = (*touch.force, pair.arc_position(touch), touch.angle)
+        contacts[pair.slots] = own[: pair.target.kind.contact_unknowns]
+    inside = [state.profile.angle.ravel()] if state.profile else []
+    return np.concatenate([state.q, contacts, *inside])
 
-    With `tangents`, every other one lies ahead of the next along the tangent there, which the polynomial has too.
-    """
-    if model.rods:
-        history = model.rods.alike(history)
-    times = [state.load_parameter for state in history]
-    if tangents and len(times) > 1:
-        history, times = history[len(times) % 2 :], times[len(times) % 2 :]
-        weights = _hermite(times[1::2], times[::2], t)
-    else:
-        weights = [math.prod(part) for _, part, _ in _lagrange(times, t)]
-    last = history[-1]
-    moved = replace(last, load_parameter=t, q=_weighted(weights, [state.q for state in history]))
-    if last.profile:
-        angle = _weighted(weights, [state.profile.angle for state in history if state.profile])
-        moved = replace(moved, profile=replace(last.profile, angle=angle))
-    trails = zip(*(state.touches for state in history), strict=True)
+
+def _alike(model: Model, states: list[State]) -> list[State]:
+    return model.rods.alike(states) if model.rods else states
+
+
+def extrapolate(model: Model, history: list[State], t: float) -> State:
+    """State at t by the polynomial through earlier states, all with the same closed contacts."""
+    return _through(model, [_Known(state, _values(model, state)) for state in _alike(model, history)], t)
+
+
+def _through(model: Model, history: list[_Known], t: float) -> State:
+    """State at t by the polynomial through earlier states, which has their slopes where there are any (Hermite)."""
+    last, terms = history[-1].state, []
+    orders = [(known.state.load_parameter, 1 if known.slope is None else 2) for known in history]
+    weights = []
+    for known, (time, order) in zip(history, orders, strict=True):
+        others = [(other, power) for other, power in orders if other != time]
+        part = math.prod(((t - other) / (time - other)) ** power for other, power in others)
+        bend = sum(power / (time - other) for other, power in others) if order == 2 else 0.0
+        weights.append(part * (1 - (t - time) * bend))
+        terms.append(known.values)
+        if known.slope is not None:
+            weights.append(part * (t - time))
+            terms.append(known.slope)
+    q, contacts, inside = np.split(
+        np.array(weights) @ np.array(terms), [model.dof_count, model.dof_count + model.contact_unknowns]
+    )
+    q[model.slaves] = q[model.masters]
+    profile = last.profile and replace(last.profile, angle=inside.reshape(last.profile.angle.shape))
+    moved = replace(last, load_parameter=t, q=q, profile=profile)
+    placed = contacts.tolist()
     touches = [
-        _touch(pair, weights, trail) if all(trail) else None
-        for pair, trail in zip(model.pairs, trails, strict=True)
+        touch and _touch(pair, touch, *placed[pair.slots])
+        for pair, touch in zip(model.pairs, last.touches, strict=True)
     ]
     return owned(model, handed_over(model, moved, tuple(touches)))
 
 
-def _lagrange(times: list[float], t: float) -> Iterator[tuple[float, list[float], list[float]]]:
-    """For each time, the factors of Lagrange's polynomial at t, and the terms of its derivative at the time."""
-    for n, time in enumerate(times):
-        others = times[:n] + times[n + 1 :]
-        slopes = [1 / (time - other) for other in others]
-        yield time, [(t - other) / (time - other) for other in others], slopes
-
-
-def _hermite(times: list[float], ahead: list[float], t: float) -> list[float]:
-    """Weights of the states ahead and at some times, in turn."""
-    weights = []
-    for (time, part, slope), later in zip(_lagrange(times, t), ahead, strict=True):
-        bell = math.prod(part) ** 2
-        along = (t - time) * bell / (later - time)
-        weights += [along, bell * (1 - 2 * (t - time) * sum(slope)) - along]
-    return weights
-
-
-def _touch(pair: PairModel, weights: list[float], trail: Sequence[Touch]) -> Touch:
-    """Extrapolated contact, on the element that owned it last."""
-    last = trail[-1]
-    arc = _weighted(weights, map(pair.arc_position, trail))
+def _touch(pair: PairModel, last: Touch, *own: float) -> Touch:
+    """Contact with other unknowns, on the element that owned it last."""
+    if not own:
+        return last
+    x, y, arc, *angle = own
     place = last.element - pair.target.first
     xi = (arc - pair.target.arcs[place]) / pair.target.lengths[place]
-    x, y = (_weighted(weights, [touch.force[c] for touch in trail]) for c in range(2))
-    return replace(last, xi=xi, force=(x, y), angle=_weighted(weights, [touch.angle for touch in trail]))
+    return replace(last, xi=xi, force=(x, y), angle=angle[0] if angle else 0.0)
 
 
 def allowed(unexplained: float) -> float:
