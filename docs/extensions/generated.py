@@ -41,6 +41,11 @@ SCHEMAS: dict[str, dict[str, Any]] = {
     "resolved-scene": json.loads((REFERENCE / "resolved-scene.schema.json").read_text(encoding="utf-8")),
 }
 
+PROOFS: dict[str, dict[str, list[str]]] = tomllib.loads(
+    (REFERENCE.parent / "theory" / "proofs.toml").read_text(encoding="utf-8")
+)
+"""The tests of the theory: by page, and by the label of an equation or the heading of a section."""
+
 
 def line(docstring: str) -> str:
     r"""Return one line of Markdown for a docstring's text: code marks and what Markdown would read as its own.
@@ -156,6 +161,21 @@ def statuses() -> str:
     )
 
 
+def proofs() -> str:
+    """Return a table for every page of the theory: its equations and sections, with their tests of ``docs/theory/proofs.toml``."""
+    parts = []
+    for page, rows in PROOFS.items():
+        shown = [
+            (
+                line(key) if " " in key or key[0].isupper() else f"{key} {{eq}}`{key}`",
+                ", ".join(f"{{test}}`{test}`" for test in tests),
+            )
+            for key, tests in rows.items()
+        ]
+        parts.append(f"## [](../theory/{page}.md)\n\n" + table(("equation or section", "tests"), shown))
+    return "\n\n".join(parts)
+
+
 def keys(name: str) -> str:
     """Return a table with a row for every key of a JSON text, from its schema in `SCHEMAS`."""
     return table(("key", "type", "meaning"), _keys(SCHEMAS[name], SCHEMAS[name], ""))
@@ -195,6 +215,7 @@ PAGES: dict[str, Callable[[], str]] = {
     "messages.md": messages,
     "scope.md": scope,
     "statuses.md": statuses,
+    "proofs.md": proofs,
     "response.md": lambda: keys("response"),
     "resolved-scene.md": lambda: keys("resolved-scene"),
     "quantities.md": lambda: table(

@@ -1,39 +1,33 @@
 """Every equation of the theory names the tests that prove it, and every test named exists."""
 
 import re
+from pathlib import Path
 
 import pytest
 
+from docs.extensions.generated import PROOFS
 from docs.extensions.site import mathml
 from tests.docs.snippets import ROOT, pages
 
 PAGES = pages()
-THEORY = {page: text for page, text in PAGES.items() if page.startswith("docs/theory/")}
+THEORY = {Path(page).stem: text for page, text in PAGES.items() if page.startswith("docs/theory/")}
 EQUATION = re.compile(r"^```\{math\}\n:label: ([\w-]+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+HEADING = re.compile(r"^##+ (.*)$", re.MULTILINE)
 TEST = re.compile(r"\{test\}`([^`]+)`")
 
 
-def proofs(page: str) -> dict[str, list[str]]:
-    """Return the tests named behind every equation, up to the next heading; those of a group stand behind its last one."""
-    found: dict[str, list[str]] = {}
-    waiting: list[str] = []
-    for section in re.split(r"^#+ ", page, flags=re.MULTILINE):
-        parts = EQUATION.split(section)
-        for label, text in zip(parts[1::3], parts[3::3], strict=True):
-            waiting.append(label)
-            if names := TEST.findall(text):
-                found.update(dict.fromkeys(waiting, names))
-                waiting = []
-        assert not waiting, f"equations {waiting} name no test"
-    return found
+def test_every_page_of_the_theory_names_its_proofs():
+    assert list(PROOFS) == [page for page in PROOFS if EQUATION.search(THEORY[page])]
+    assert THEORY.keys() - PROOFS.keys() == {"tests"}
 
 
-@pytest.mark.parametrize("page", THEORY)
+@pytest.mark.parametrize("page", PROOFS)
 def test_every_equation_names_its_proof_and_becomes_mathml(page):
     equations = EQUATION.findall(THEORY[page])
-    assert (
-        len(proofs(THEORY[page])) == len(re.findall(r"(?m)^```\{math\}", THEORY[page])) == len(equations) > 0
-    )
+    assert len(equations) == len(re.findall(r"(?m)^```\{math\}", THEORY[page])) > 0
+    labels = {label for label, _ in equations}
+    assert labels <= PROOFS[page].keys() <= labels | {*HEADING.findall(THEORY[page])}
+    assert all(PROOFS[page].values())
     for formula in [text for _, text in equations] + re.findall(r"\$([^$\n]+)\$", THEORY[page]):
         made = mathml(formula, "block")
         assert made.startswith("<math")
@@ -42,6 +36,7 @@ def test_every_equation_names_its_proof_and_becomes_mathml(page):
 
 def test_every_test_named_exists():
     named = {test for text in PAGES.values() for test in TEST.findall(text)}
+    named |= {test for rows in PROOFS.values() for tests in rows.values() for test in tests}
     assert len(named) > 80
     files = {path: (ROOT / path).read_text() for path in {test.partition("::")[0] for test in named}}
     assert [
