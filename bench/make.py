@@ -29,7 +29,12 @@ from comparisons.suites import bench
 HERE = Path(__file__).parent
 MOST = 12
 """Most digits that are stated."""
-KINDS = {"force_x": "force", "force_y": "force", "displacement_x": "displacement", "displacement_y": "displacement"}
+KINDS = {
+    "force_x": "force",
+    "force_y": "force",
+    "displacement_x": "displacement",
+    "displacement_y": "displacement",
+}
 EXACT = Options(element="exact", integration_tolerance=1e-13)
 
 
@@ -99,7 +104,9 @@ def agreed(old: Mapping[str, Any], found: Mapping[str, Response]) -> Iterator[di
         rows.append((query, first, float(second)))
     for query, *values in rows:
         scene, kind = bench.scenes()[query["scene"]][0], KINDS.get(query["what"], query["what"])
-        alike = [abs(v) for q, v, _ in rows if (q["scene"], KINDS.get(q["what"], q["what"])) == (scene.name, kind)]
+        alike = [
+            abs(v) for q, v, _ in rows if (q["scene"], KINDS.get(q["what"], q["what"])) == (scene.name, kind)
+        ]
         scale = 1.0 if "number" in query else float(f"{max(alike):.2g}")
         if kind == "arc_position":
             scale = scene.beam(query["of"].rpartition(">")[2]).length
@@ -112,7 +119,12 @@ def agreed(old: Mapping[str, Any], found: Mapping[str, Response]) -> Iterator[di
         ):
             value, digits = kept["value"], kept["digits"]
         rubs = any(one.friction for one in scene.contacts) or "number" in query
-        yield query | {"value": value, "digits": digits, "scale": scale, "kind": "history" if rubs else "state"}
+        yield query | {
+            "value": value,
+            "digits": digits,
+            "scale": scale,
+            "kind": "history" if rubs else "state",
+        }
 
 
 def texts(old: str) -> dict[str, str]:
@@ -120,7 +132,10 @@ def texts(old: str) -> dict[str, str]:
     kept = json.loads(old)["answers"] if old else []
     keys = ("scene", "of", "what", "at", "number")
     before = {json.dumps({key: row[key] for key in keys if key in row}): row for row in kept}
-    found = {name: replace(solve(scene, "tsm", EXACT), definition=None) for name, (scene, _) in bench.scenes().items()}
+    found = {
+        name: replace(solve(scene, "tsm", EXACT), definition=None)
+        for name, (scene, _) in bench.scenes().items()
+    }
     stated, asked, name = bench.set_texts(found)
     how = "two programs without common code: exact beam elements (tsm), and energy elements (referee)"
     right = bench.lines("answers", list(agreed(before, found)), **bench.HEAD, set=name, obtained=how)

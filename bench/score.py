@@ -109,7 +109,11 @@ def table(found):
     for scene, rows in {**scenes(found), "all": list(found.values())}.items():
         right, refused = (sum(verdict == kind for verdict, *_ in rows) for kind in (RIGHT, REFUSED))
         errors = [error for _, error, _ in rows if not math.isnan(error)]
-        ends = f"{median(errors):10.1e}{max(errors):10.1e}{summary(rows):>14}" if errors else f"{'-':>10}{'-':>10}{'-':>14}"
+        ends = (
+            f"{median(errors):10.1e}{max(errors):10.1e}{summary(rows):>14}"
+            if errors
+            else f"{'-':>10}{'-':>10}{'-':>14}"
+        )
         yield f"{scene:24}{len(rows):8}{right:7}{refused:9}{len(rows) - right - refused:7}{ends}"
 
 
@@ -127,7 +131,9 @@ def junit(programs):
         out = sum(verdict == REFUSED for verdict, *_ in found.values())
         yield f'<testsuite name={quoteattr(program)} tests="{len(found)}" failures="{bad}" skipped="{out}">'
         for query, (verdict, *_) in found.items():
-            name = f"<testcase classname={quoteattr(query[0])} name={quoteattr(words(query).partition(': ')[2])}"
+            name = (
+                f"<testcase classname={quoteattr(query[0])} name={quoteattr(words(query).partition(': ')[2])}"
+            )
             inside = "<skipped/>" if verdict == REFUSED else f"<failure message={quoteattr(verdict)}/>"
             yield f"{name}/>" if verdict == RIGHT else f"{name}>{inside}</testcase>"
         yield "</testsuite>"
@@ -139,13 +145,22 @@ def results(programs, right):
     yield f"# Results of {right['benchmark']} {right['version']}\n"
     yield "Digits of the median / of the worst answer to a scene, over the largest force, moment or displacement, or the length; at most"
     yield "the certain ones. (n of m): so many queries are answered. -: refused. Made by `score.py --results`.\n"
-    yield "| scene | " + " | ".join(program for program, _ in programs) + " |\n" + "| --- " * (len(programs) + 1) + "|"
+    yield (
+        "| scene | "
+        + " | ".join(program for program, _ in programs)
+        + " |\n"
+        + "| --- " * (len(programs) + 1)
+        + "|"
+    )
     parts = [scenes(found) for _, found in programs]
     for scene in parts[0]:
         cells = []
         for part in parts:
             count = sum(not math.isnan(error) for _, error, _ in part[scene])
-            cells.append(summary(part[scene]) + (f" ({count} of {len(part[scene])})" if 0 < count < len(part[scene]) else ""))
+            cells.append(
+                summary(part[scene])
+                + (f" ({count} of {len(part[scene])})" if 0 < count < len(part[scene]) else "")
+            )
         yield f"| {scene} | " + " | ".join(cells) + " |"
 
 
@@ -167,14 +182,22 @@ def main():
             print(f"{file}: {error}", file=sys.stderr)
             return 2
         program, found = programs[-1]
-        print(f"{program}: {right['benchmark']} {right['version']}, wrong below {given.digits:g} digits", *table(found), sep="\n")
+        print(
+            f"{program}: {right['benchmark']} {right['version']}, wrong below {given.digits:g} digits",
+            *table(found),
+            sep="\n",
+        )
         for query, (verdict, error, digits) in found.items():
             if given.every or verdict not in (RIGHT, REFUSED):
-                print(f"{words(query):70} {verdict}" + (f"  {error:.1e}  {digits:.1f}" if given.every else ""))
+                print(
+                    f"{words(query):70} {verdict}" + (f"  {error:.1e}  {digits:.1f}" if given.every else "")
+                )
     for path, text in ((given.junit, junit(programs)), (given.results, results(programs, right))):
         if path:
             path.write_text("\n".join(text) + "\n", encoding="utf-8")
-    return int(any(verdict not in (RIGHT, REFUSED) for _, found in programs for verdict, *_ in found.values()))
+    return int(
+        any(verdict not in (RIGHT, REFUSED) for _, found in programs for verdict, *_ in found.values())
+    )
 
 
 if __name__ == "__main__":

@@ -80,7 +80,10 @@ def _beam(beam: BeamSpec) -> dict[str, Any]:
             for one in (beam.height, beam.width)
         )
         area = _product(h, b)
-        EA, EI = ([c * beam.youngs_modulus / k for c in p] for p, k in ((area, 1.0), (_product(area, _product(h, h)), 12.0)))
+        EA, EI = (
+            [c * beam.youngs_modulus / k for c in p]
+            for p, k in ((area, 1.0), (_product(area, _product(h, h)), 12.0))
+        )
         GA = [c * beam.stiffness(0.0)[1] / EA[0] for c in EA]
     stiffness = zip(("EA", "GA", "EI"), (EA, GA, EI), strict=True)
     return {
@@ -155,9 +158,7 @@ def _free(scene: Scene) -> list[str]:
     """Return an end at every place whose position is not held."""
     held = {scene.place(one.node) for one in scene.all_supports if {"x", "y"} <= set(one.held)}
     ends = {
-        scene.place(node): node
-        for beam in scene.beams
-        for node in (f"{beam.name}.start", f"{beam.name}.end")
+        scene.place(node): node for beam in scene.beams for node in (f"{beam.name}.start", f"{beam.name}.end")
     }
     return [node for place, node in ends.items() if place not in held]
 
