@@ -1,0 +1,223 @@
+"""The benchmark set: resolved scenes, queries addressed by structure, and the answers of models to them."""
+
+import hashlib
+import json
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from itertools import pairwise
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from comparisons.answer import ContactEvent, Response
+from comparisons.answer.table import table
+from comparisons.files import writable_folder, write_text
+from comparisons.models import find, solve
+from comparisons.models.model import ModelError, Options
+from comparisons.models.shared import joints, line_loads
+from comparisons.referee.rod import face_of
+from comparisons.scene import BeamSpec, PinSpec, Scene, load_scene
+
+Query = dict[str, Any]
+SET = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+"""Name, version, conventions and scenes of the set."""
+HEAD = {"benchmark": SET["name"], "version": SET["version"]}
+EVENTS = ("touch", "release", "slip-off", "slip", "stick")
+
+
+@cache
+def scenes() -> dict[str, tuple[Scene, tuple[int, ...]]]:
+    """Return the scenes with the places, from 0, of the load parameters that are asked for."""
+    return {row["name"]: (load_scene(row["name"]), tuple(k - 1 for k in row["at"])) for row in SET["scene"]}
+
+
+def resolved(about: str, scene: Scene, at: Sequence[int]) -> dict[str, Any]:
+    """Return all that a scene's answer depends on, and nothing that only a program needs."""
+    force, length = (unit.strip() for unit in scene.units.split(","))
+    return {
+        "name": scene.name,
+        "about": about,
+        "units": {"force": force, "length": length},
+        "load_parameters": [scene.times[k] for k in at],
+        "beams": [_beam(beam) for beam in scene.beams],
+        "joints": joints(scene),
+        "hinges": [one.node for one in scene.hinges],
+        "supports": [
+            {"end": one.node, **dict(zip(("x", "y", "rotation"), one.motion, strict=True))}
+            for one in scene.all_supports
+        ],
+        "springs": [
+            {"end": one.node, "x": one.stiffness[0], "y": one.stiffness[1], "rotation": one.rotation}
+            for one in scene.springs
+        ],
+        "loads": [
+            *({"end": one.node, "force": one.force, "moment": one.moment} for one in scene.loads),
+            *({"beam": beam.name, "force_per_length": q} for beam, _, (q,), _ in line_loads(scene)),
+        ],
+        "pins": [
+            {"name": pin.name, "radius": pin.radius or 0.0, "path": _path(pin)} for pin in scene.pins
+        ],
+        "contacts": [
+            {
+                "pair": one.pair, "node": one.node, "beam": one.beam, "side": one.side,
+                "distance": _coefficients((face := face_of(scene, one)).start, face.slope * scene.beam(one.beam).length),
+                "friction": one.friction,
+            }
+            for one in scene.contacts
+        ],
+    }  # fmt: skip
+
+
+def _beam(beam: BeamSpec) -> dict[str, Any]:
+    """Return a beam with its stiffnesses, polynomials in the fraction of its length where it tapers."""
+    EA, GA, EI = ([value] for value in (beam.EA, beam.GA, beam.EI))
+    if beam.tapers:
+        h, b = (
+            [one[0], one[1] - one[0]] if isinstance(one, tuple) else [one]
+            for one in (beam.height, beam.width)
+        )
+        area = _product(h, b)
+        EA, EI = (
+            [c * beam.youngs_modulus / k for c in p]
+            for p, k in ((area, 1.0), (_product(area, _product(h, h)), 12.0))
+        )
+        GA = [c * beam.stiffness(0.0)[1] / EA[0] for c in EA]
+    stiffness = zip(("EA", "GA", "EI"), (EA, GA, EI), strict=True)
+    return {
+        **{key: getattr(beam, key) for key in ("name", "start", "end", "length", "curvature")},
+        "direction": beam.tangent(0.0),
+        **{name: _coefficients(*values) for name, values in stiffness},
+    }  # fmt: skip
+
+
+def _tidy(value: Any) -> Any:
+    """Return tables and lists with 15 digits of every number, which do not depend on the machine."""
+    if isinstance(value, dict):
+        return {key: _tidy(one) for key, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_tidy(one) for one in value]
+    return float(f"{value:.15g}") if isinstance(value, float) else value
+
+
+def _product(p: Sequence[Any], q: Sequence[Any]) -> list[float]:
+    """Product of polynomials, by float sums whose order every machine keeps."""
+    return [
+        sum(p[i] * q[k - i] for i in range(len(p)) if 0 <= k - i < len(q)) for k in range(len(p) + len(q) - 1)
+    ]
+
+
+def _coefficients(*values: float) -> float | list[float]:
+    return values[0] if not any(values[1:]) else list(values)
+
+
+def _path(pin: PinSpec) -> list[tuple[float, float, float]]:
+    """Return the places of a pin with their load parameters."""
+    stages = len(pin.moves or ()) + 1
+    turns = (0.0, *pin.corners, float(stages))
+    return [(t, *pin.position(t)) for t in turns]
+
+
+def queries(found: Mapping[str, Response]) -> list[Query]:
+    """Return the queries; which contacts are closed, and which events there are, is told by the right answers."""
+    return [query for name, (scene, at) in scenes().items() for query in _queries(scene, at, found[name])]
+
+
+def _queries(scene: Scene, at: Sequence[int], right: Response) -> Iterator[Query]:
+    """Yield the queries about a scene, without what is zero at all load parameters."""
+    columns = histories(scene, right)
+    wanted = [
+        *((one.pair, what) for one in scene.contacts for what in ("force_x", "force_y", "arc_position")),
+        *((one.pair, "dissipated") for one in scene.contacts if one.friction),
+        *((one.node, what) for one in scene.all_supports for what in ("force_x", "force_y", "moment")),
+        *((end, f"displacement_{x}") for end in _free(scene) for x in "xy"),
+    ]
+    for of, what in wanted:
+        values = columns[f"{of}.{what}"][list(at)]
+        scale = max(abs(v).max() for key, v in columns.items() if key.partition(".")[2][-6:] == what[-6:])
+        if np.nanmax(np.abs(values), initial=0.0) > 1e-9 * scale:
+            yield from (
+                {"scene": scene.name, "of": of, "what": what, "at": k}
+                for k, value in enumerate(values)
+                if isfinite(value)
+            )
+    last, numbers = scene.times[at[-1]], dict[tuple[str, str], int]()
+    jumps = {event.load_parameter for event in right.events or () if event.kind == "slip-off"}
+    for event in right.events or ():
+        key = (event.pair, event.kind)
+        numbers[key] = numbers.get(key, 0) + 1
+        # what else happens in the jump behind a slip-off is no state
+        alone = event.kind == "slip-off" or event.load_parameter not in jumps
+        if event.kind in EVENTS and alone and 0.0 < event.load_parameter < last:
+            yield {"scene": scene.name, "of": event.pair, "what": event.kind, "number": numbers[key]}
+
+
+def _free(scene: Scene) -> list[str]:
+    """Return an end at every place whose position is not held."""
+    held = {scene.place(one.node) for one in scene.all_supports if {"x", "y"} <= set(one.held)}
+    ends = {
+        scene.place(node): node for beam in scene.beams for node in (f"{beam.name}.start", f"{beam.name}.end")
+    }
+    return [node for place, node in ends.items() if place not in held]
+
+
+def histories(scene: Scene, response: Response) -> dict[str, Any]:
+    """Return what a response states, by ``OF.WHAT``, each of shape (s,)."""
+    found, steps = table(response), range(len(response.load_parameter))
+    for node in _free(scene):
+        name, _, end = node.partition(".")
+        lines = [response.axis_line(name, k)[1][0 if end == "start" else -1] for k in steps]
+        moved = np.reshape(lines, (-1, 2)) - scene.place(node)
+        found |= {f"{node}.displacement_{x}": moved[:, i] for i, x in enumerate("xy")}
+    return found
+
+
+def told(query: Query, response: Response, columns: Mapping[str, Any]) -> float | None:
+    """Return a response's answer to a query; None where it states none."""
+    _, at = scenes()[query["scene"]]
+    if "at" in query:
+        column = columns.get(f"{query['of']}.{query['what']}", ())
+        k = at[query["at"]]
+        return float(column[k]) if k < len(column) and isfinite(column[k]) else None
+    found = event(query, response)
+    return None if found is None else float(found.load_parameter)
+
+
+def event(query: Query, response: Response) -> ContactEvent | None:
+    """Return the event that is asked for; None where a response states none."""
+    same = [one for one in response.events or () if (one.pair, one.kind) == (query["of"], query["what"])]
+    return same[query["number"] - 1] if query["number"] <= len(same) else None
+
+
+def lines(key: str, rows: Sequence[Mapping[str, Any]], **head: Any) -> str:
+    """Return JSON text with a row on each line."""
+    first = "".join(f" {json.dumps(name)}: {json.dumps(value)},\n" for name, value in head.items())
+    return f"{{\n{first} {json.dumps(key)}: [\n  " + ",\n  ".join(map(json.dumps, rows)) + "\n ]\n}\n"
+
+
+def set_texts(found: Mapping[str, Response]) -> tuple[str, str, str]:
+    """Return the texts of ``scenes.json`` and ``queries.json``, and the name of the set, which is a digest of both."""
+    rows = [_tidy(resolved(row["about"], *scenes()[row["name"]])) for row in SET["scene"]]
+    stated, asked = lines("scenes", rows, **HEAD, conventions=SET["conventions"]), queries(found)
+    name = hashlib.sha256((stated + json.dumps(asked)).encode()).hexdigest()[:16]
+    return stated, lines("queries", asked, **HEAD, set=name), name
+
+
+def answers(model: str, options: Options, given: Mapping[str, Any]) -> str:
+    """Return the answers of a model to the queries of a set, as JSON text."""
+    rows, refused = list[Query](), dict[str, str]()
+    for name, (scene, _) in scenes().items():
+        try:
+            response = solve(scene, model, options)
+        except ModelError as error:
+            refused[name] = str(error)
+            continue
+        columns = histories(scene, response) if len(response.load_parameter) else {}
+        why = f"{response.status}: {response.message}" if not response.completed else "not stated"
+        for query in (query for query in given["queries"] if query["scene"] == name):
+            value = told(query, response, columns)
+            rows.append(query | ({"refused": why} if value is None else {"value": value}))
+    program = f"{find(model).label} {' '.join(str(v) for v in vars(options).values() if v)}".rstrip()
+    return lines("answers", rows, **HEAD, set=given["set"], program=program, refused=refused)
