@@ -3,6 +3,7 @@
 import errno
 import os
 import re
+import subprocess
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import pytest
 from comparisons import files  # faults of a disk are made here
 from comparisons.cli import main
 from comparisons.scene import load_scene, to_toml
+from tests.comparisons.processes import begun
 
 
 @pytest.mark.parametrize(
@@ -59,6 +61,31 @@ def test_places_that_cannot_be_written_are_named_and_a_link_is_followed(tmp_path
     files.write_text(files.result_file(link), "new")
     assert link.is_symlink()
     assert target.read_text() == "new"
+
+
+HOLD = """
+import sys, time
+from pathlib import Path
+from comparisons.files import alone_in
+with alone_in(Path(sys.argv[1])):
+    print("held", flush=True)
+    time.sleep(float(sys.argv[2]))
+"""
+
+
+def test_a_lock_ends_with_its_process(tmp_path):
+    """Another one waits until then, and no longer, and no file stays."""
+    with begun(HOLD, tmp_path, 600) as first:
+        try:
+            assert first.stdout.readline() == "held\n"
+            with begun(HOLD, tmp_path, 0) as second:
+                with pytest.raises(subprocess.TimeoutExpired):
+                    second.wait(1.0)
+                first.kill()
+                assert second.communicate(timeout=60)[0] == "held\n"
+        finally:
+            first.kill()
+    assert not list(tmp_path.iterdir())
 
 
 HERE = "of a user"

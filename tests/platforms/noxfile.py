@@ -31,7 +31,7 @@ def lowest(python):
 @nox.session(python=PYTHONS)
 @nox.parametrize("versions", ["oldest", "newest"])
 def numbers(session, versions):
-    """Compare answers with the golden files, and show that a lock ends with its process."""
+    """Compare answers with the golden files."""
     session.chdir(ROOT)
     if versions == "oldest":
         session.install("--only-binary", ":all:", *lowest(str(session.python)))
@@ -40,4 +40,3 @@ def numbers(session, versions):
     session.install("--no-deps", "--editable", ".")  # its version is stated in the answers
     threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
     session.run("python", "-m", "tests.platforms.numbers", env=threads)
-    session.run("python", "-m", "tests.platforms.processes")

@@ -82,6 +82,8 @@ BAD = {
     "spring that pushes": (lambda: tsm.Spring(beam="b", end="end", y=-2.0), "y = -2"),
     "past the last stage": (solved(STAGED, [1.0, 2.5]), r"must increase within \(0, 2\]"),
     "arc length over stages": (lambda: tsm.trace(STAGED, arc_length=0.1, steps=2), "arc-length control follows a single stage"),
+    "arc length of nothing": (lambda: tsm.trace(ONE, arc_length=0.0, steps=2), "arc_length = 0.0: must be positive"),
+    "no arc": (lambda: tsm.trace(ONE, arc_length=0.1, steps=0), "steps = 0: must be at least 1"),
     **{
         f"load parameters {t}": (solved(ONE, np.array(t)), "must increase within")
         for t in ([], [0.5, 0.5], [0.5, 1.5], [float("nan")], [[0.5]])

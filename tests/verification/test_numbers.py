@@ -1,7 +1,5 @@
 """Numbers of the pages: the table of errors on the main scene, and the contact force at its end over the coefficient of friction."""
 
-import json
-import sys
 from functools import cache
 
 import numpy as np
@@ -13,6 +11,7 @@ from comparisons.models.model import Options
 from comparisons.scene import load_scene
 from comparisons.suite import changed
 from comparisons.suites.compare import ELASTICA, MIXED, PAPER, ROD, RUNS, SOLID
+from tests.comparisons.models.outside.test_adapters import in_steps
 
 COLUMNS = ("force", "arc", "moment", "tip")
 ROWS = {
@@ -106,12 +105,8 @@ def test_opensees_over_friction_and_load_steps(tmp_path, stated):
     )
     found = []
     for steps in (10, 50, 200, 1000, 2000):
-        words = [sys.executable, "-m", "comparisons.models.outside.adapters.opensees", str(steps)]
-        file = tmp_path / f"opensees-{steps}.toml"
-        file.write_text(
-            f'[program]\nname = "in-{steps}-steps"\ncommand = {json.dumps(words)}\nelements = [20]\n'
-        )
-        response = solve(rubbing(0.3, 10), str(file), Options(elements=20))
+        (folder := tmp_path / str(steps)).mkdir()
+        response = solve(rubbing(0.3, 10), in_steps("opensees", steps, folder), Options(elements=20))
         assert response.reported_success
         found.append(float(response.contacts["pin->cantilever"].force[-1]))
     assert found[:3] == [0.0, 0.0, 0.0]

@@ -82,7 +82,7 @@ KNOWN = {
 tenth; else a bound. In the portal it is the displacement, by .022, from the shear that OpenSees's elements leave out."""
 
 
-@pytest.mark.slow_at(*(KNOWN.keys() - {"opensees-tip", "opensees-roll"}))
+@pytest.mark.slow_at(*(KNOWN.keys() - {"opensees-tip", "opensees-roll", "exudyn-tip", "exudyn-pin"}))
 @pytest.mark.parametrize("case", [row(case.partition("-")[0], case) for case in KNOWN])
 def test_a_program_has_its_known_error(case, tmp_path):
     (given, elements, error), (name, _, what) = KNOWN[case], case.partition("-")

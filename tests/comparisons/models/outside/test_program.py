@@ -158,18 +158,14 @@ def test_solve_and_gate_have_it(program, tmp_path, capsys, monkeypatch):
 
 
 @pytest.mark.slow
-def test_studies_and_comparisons_have_it_and_see_a_changed_program(program, tmp_path):
-    file, out = program("contact['gap'] = [0.0] * 5"), tmp_path / "out"
+def test_studies_have_it_and_see_a_changed_program(program):
+    file = program("contact['gap'] = [0.0] * 5")
     key, found = Case(scene=KS, model=file).key, measure(Case(scene=KS, model=file), repeats=1)
     assert (found.response.status, found.verdict) == ("COMPLETED", "CERTIFIED")
     assert found.seconds > 0.005, "the processor time of the child process counts"
     assert Row.from_json(found.case, found.to_json()).response.reported_success
     program("contact['gap'] = [0.0 for _ in range(5)]")
     assert Case(scene=KS, model=file).key != key
-    assert main(["compare", str(tmp_path / "ks.toml"), "--with", file, "--out", str(out), "--quiet"]) == 0
-    rows = {row["label"]: row for row in json.loads((out / "summary.json").read_text())["runs"]}
-    assert rows["liar"]["errors"]["path"]["force"] < 1e-8
-    assert "liar" in (out / "report.html").read_text()
 
 
 LEAVES = Path(__file__).with_name("leaves.txt").read_text()
