@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import takewhile
-from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -26,7 +25,6 @@ def solve_rods(model: str, scene: Scene, watch: Watch) -> Response:
     referee's. The response ends before the first load parameter at which the verdict is not `Verdict.CERTIFIED`. `watch` receives
     every accepted step of TSM.
     """
-    began = perf_counter()
     followed = TSM.solve(scene, TSM.reference, watch)
     found = certify(followed, scene, at=range(len(followed.load_parameter)))
     judged = takewhile(
@@ -74,7 +72,6 @@ def solve_rods(model: str, scene: Scene, watch: Watch) -> Response:
         critical=followed.critical,
         sections=lambda beam, k: _sections(scene, beam, states[k]),
         index=np.array([state.index for state in states], dtype=np.int64),
-        wall_seconds=perf_counter() - began,
     )
 
 
