@@ -124,7 +124,7 @@ def _events(path: RodPath, local: RodScene) -> Iterator[ContactEvent]:
         )
 
 
-def local_response(model: str, local: RodScene, path: RodPath, *, unknowns: int) -> Response:
+def local_response(local: RodScene, path: RodPath, *, unknowns: int) -> Response:
     """Return the response in the scene's frame, up to the last load parameter at which an equilibrium was found."""
     scene, name, sense = local.scene, local.beam.name, local.sense
     times = np.array(scene.times)
@@ -167,8 +167,6 @@ def local_response(model: str, local: RodScene, path: RodPath, *, unknowns: int)
     # the local frame may be a mirror image, in which moments change their sign
     moment = np.round(np.linalg.det(local.axes)) * path.clamp_moment[at]
     return Response(
-        model=model,
-        scene=scene.name,
         status=stop or "COMPLETED",
         message=f"{STOPS[stop]}{when}" if stop else "all load parameters were reached",
         load_parameter=times[:reached],

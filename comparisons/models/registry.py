@@ -62,7 +62,7 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
         raise ModelError(unknown)
     try:
         began = perf_counter()
-        response = chosen.solve(scene, given, watch)
+        response = replace(chosen.solve(scene, given, watch), model=chosen.name, scene=scene.name)
         taken = perf_counter() - began
         rod, lines = not chosen.continuum, partial(axis_grid, scene, response.axis_line)
         forces = material_forces(response, scene, strains=chosen.rod) if rod else response.material_force

@@ -17,7 +17,7 @@ from comparisons.scene import Scene
 States = Sequence[Equilibrium]
 
 
-def solve_rods(model: str, scene: Scene, watch: Watch) -> Response:
+def solve_rods(scene: Scene, watch: Watch) -> Response:
     """Return the exact equilibria of a scene's rods along the path that exact TSM elements follow.
 
     The referee starts from the TSM answer at every load parameter, solves its own equations, and judges stability, admissibility
@@ -45,8 +45,6 @@ def solve_rods(model: str, scene: Scene, watch: Watch) -> Response:
         return arc, states[k].shape(beam, arc).position
 
     return Response(
-        model=model,
-        scene=scene.name,
         status=followed.status if sound else found.verdict.name,
         message=followed.message if sound else found.reason,
         load_parameter=followed.load_parameter[reached],
