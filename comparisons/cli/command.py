@@ -54,9 +54,11 @@ def _run(arguments: list[str] | None) -> int:
         with _ended_as_a_whole():
             status = import_module(f"comparisons.cli.{given.command}").run(given)
         sys.stdout.flush()
-    except (InputError, ModelError, OutputError) as error:
+    except InputError as error:
         for line in str(error).split("\n"):
             status = _told(line, BAD_INPUT)
+    except (ModelError, OutputError) as error:  # whose names may have line ends
+        status = _told(error, BAD_INPUT)
     except BrokenPipeError:
         # whoever read the output has had enough
         _drop_output()
