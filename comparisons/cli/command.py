@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, redirect_stderr, suppress
 from importlib import import_module
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, NoReturn
 
 from comparisons.cli.options import STATED, add_command
@@ -56,7 +57,7 @@ def _run(arguments: list[str] | None) -> int:
     except InputError as error:
         for line in str(error).split("\n"):
             status = _told(line, BAD_INPUT)
-    except (ModelError, OutputError) as error:
+    except (ModelError, OutputError) as error:  # whose names may have line ends
         status = _told(error, BAD_INPUT)
     except BrokenPipeError:
         # whoever read the output has had enough
@@ -141,13 +142,6 @@ def _version() -> int:
     return DONE if all(state or absent for _, state, absent in rows) else WRONG
 
 
-class _Formatter(argparse.HelpFormatter):
-    """A help whose lists keep their lines."""
-
-    def _fill_text(self, text: str, width: int, indent: str) -> str:
-        return text if "\n  " in text else super()._fill_text(text, width, indent)
-
-
 class _Parser(argparse.ArgumentParser):
     """A parser whose errors show arguments that a terminal would obey as escapes."""
 
@@ -167,7 +161,9 @@ def command_parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for name in STATED["command"]:
         add_command(commands, name)
-    suites = (f"  {name:10s}  {what}" for name, what in SUITES.items())
-    commands.choices["run"].formatter_class = _Formatter
-    commands.choices["run"].description = "\n".join(["What there is to run:", *suites])
+    suites, run = (f"  {name:10s}  {what}" for name, what in SUITES.items()), commands.choices["run"]
+    run.formatter_class = argparse.RawDescriptionHelpFormatter
+    run.epilog = "\n".join(
+        ["what there is to run:", *suites, "", fill(" ".join(str(run.epilog).split()), 79)]
+    )
     return parser

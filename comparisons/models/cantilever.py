@@ -1,11 +1,10 @@
 """One rod, clamped at one end, under one pin: the scene in the rod's frame, and its exact states as a response."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
-from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -125,11 +124,8 @@ def _events(path: RodPath, local: RodScene) -> Iterator[ContactEvent]:
         )
 
 
-def local_response(model: str, local: RodScene, solve: Callable[[], RodPath], *, unknowns: int) -> Response:
+def local_response(local: RodScene, path: RodPath, *, unknowns: int) -> Response:
     """Return the response in the scene's frame, up to the last load parameter at which an equilibrium was found."""
-    began = perf_counter()
-    path = solve()
-    seconds = perf_counter() - began
     scene, name, sense = local.scene, local.beam.name, local.sense
     times = np.array(scene.times)
     stop, reached = _end(path, local, times)
@@ -171,8 +167,6 @@ def local_response(model: str, local: RodScene, solve: Callable[[], RodPath], *,
     # the local frame may be a mirror image, in which moments change their sign
     moment = np.round(np.linalg.det(local.axes)) * path.clamp_moment[at]
     return Response(
-        model=model,
-        scene=scene.name,
         status=stop or "COMPLETED",
         message=f"{STOPS[stop]}{when}" if stop else "all load parameters were reached",
         load_parameter=times[:reached],
@@ -181,7 +175,6 @@ def local_response(model: str, local: RodScene, solve: Callable[[], RodPath], *,
         tips={name: local.position(path.tip[at])},
         newton_iterations=np.diff(np.cumsum(path.iterations)[at], prepend=0),
         unknowns=unknowns,
-        wall_seconds=seconds,
         axis_line=axis_line,
         **more,
     )

@@ -134,7 +134,7 @@ class Model(ABC):
 
     @abstractmethod
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
-        """Return the response to `scene`, not yet checked.
+        """Return the response to `scene`, not yet checked nor named; without `wall_seconds` it has the time of this method.
 
         Raises
         ------

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 from importlib import import_module
+from math import isnan
+from time import perf_counter
 from typing import TYPE_CHECKING, Any, Literal
 
 from comparisons.models.model import ModelError, Options, Watch, unwatched
@@ -59,13 +61,16 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
     if unknown is not None:
         raise ModelError(unknown)
     try:
-        response = chosen.solve(scene, given, watch)
+        began = perf_counter()
+        response = replace(chosen.solve(scene, given, watch), model=chosen.name, scene=scene.name)
+        taken = perf_counter() - began
         rod, lines = not chosen.continuum, partial(axis_grid, scene, response.axis_line)
         forces = material_forces(response, scene, strains=chosen.rod) if rod else response.material_force
         response = replace(
             response,
             **_kind(response, chosen),
             setting=chosen.setting(scene, given),
+            wall_seconds=taken if isnan(response.wall_seconds) else response.wall_seconds,
             definition=scene,
             grid=lines if response.grid is not_kept else response.grid,
             material_force=forces,

@@ -47,16 +47,14 @@ class Rod(Model):
         if self.by_referee(scene):
             from comparisons.models.rods import solve_rods
 
-            return solve_rods(self.name, scene, watch)
+            return solve_rods(scene, watch)
         from comparisons.exact import rod_under_pin
         from comparisons.models.cantilever import local_response, to_rod
 
         local = to_rod(scene)
         section, radius = kept(local.beam, "EA GA EI length"), scene.radius(local.contact)
         pin = {"friction": local.contact.friction, "offset": local.offset - radius, "radius": radius}
-        return local_response(
-            self.name, local, lambda: rod_under_pin(local.path, **section, **pin), unknowns=4
-        )
+        return local_response(local, rod_under_pin(local.path, **section, **pin), unknowns=4)
 
 
 class Elastica(Model):
@@ -84,7 +82,7 @@ class Elastica(Model):
 
         local = _on_axis(scene)
         sizes = kept(local.beam, "EI length")
-        return local_response(self.name, local, lambda: elastica_under_pin(local.path, **sizes), unknowns=1)
+        return local_response(local, elastica_under_pin(local.path, **sizes), unknowns=1)
 
     def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:  # noqa: ARG002 - as above
         """Return the errors from missing stretch and shear."""

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import takewhile
-from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -18,7 +17,7 @@ from comparisons.scene import Scene
 States = Sequence[Equilibrium]
 
 
-def solve_rods(model: str, scene: Scene, watch: Watch) -> Response:
+def solve_rods(scene: Scene, watch: Watch) -> Response:
     """Return the exact equilibria of a scene's rods along the path that exact TSM elements follow.
 
     The referee starts from the TSM answer at every load parameter, solves its own equations, and judges stability, admissibility
@@ -26,7 +25,6 @@ def solve_rods(model: str, scene: Scene, watch: Watch) -> Response:
     referee's. The response ends before the first load parameter at which the verdict is not `Verdict.CERTIFIED`. `watch` receives
     every accepted step of TSM.
     """
-    began = perf_counter()
     followed = TSM.solve(scene, TSM.reference, watch)
     found = certify(followed, scene, at=range(len(followed.load_parameter)))
     judged = takewhile(
@@ -47,8 +45,6 @@ def solve_rods(model: str, scene: Scene, watch: Watch) -> Response:
         return arc, states[k].shape(beam, arc).position
 
     return Response(
-        model=model,
-        scene=scene.name,
         status=followed.status if sound else found.verdict.name,
         message=followed.message if sound else found.reason,
         load_parameter=followed.load_parameter[reached],
@@ -74,7 +70,6 @@ def solve_rods(model: str, scene: Scene, watch: Watch) -> Response:
         critical=followed.critical,
         sections=lambda beam, k: _sections(scene, beam, states[k]),
         index=np.array([state.index for state in states], dtype=np.int64),
-        wall_seconds=perf_counter() - began,
     )
 
 

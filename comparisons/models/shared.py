@@ -74,7 +74,6 @@ def result_of(
 
 
 def of_result(
-    model: str,
     scene: Scene,
     result: Any,
     axis_line: Callable[[str, int], Axis],
@@ -93,8 +92,6 @@ def of_result(
     )
     return Response(
         **kept(result, "message load_parameter newton_iterations cutbacks unknowns wall_seconds index"),
-        model=model,
-        scene=scene.name,
         status=result.status.name,
         supports=held,
         springs=springs,

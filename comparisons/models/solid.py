@@ -89,7 +89,6 @@ class Solid(Model):
             contacts[spec.name] = ContactHistory(**own, friction=friction)
         turn = 2 * np.max([half_turns(beam.name) for beam in scene.beams], axis=0)
         return of_result(
-            self.name,
             scene,
             result,
             axis_line,

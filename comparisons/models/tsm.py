@@ -103,7 +103,6 @@ class Tsm(Model):
             for number, (pair, item) in enumerate(result.contacts.items())
         }
         return of_result(
-            self.name,
             scene,
             result,
             cache(result.axis_line),

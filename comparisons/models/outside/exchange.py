@@ -89,8 +89,8 @@ def _reason(data: dict[str, Any]) -> str | None:
     return one_line(data.get("message") or "no reason given") if data.get("status") == REFUSED else None
 
 
-def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
-    """Return the response that a program wrote, JSON by `comparisons.answer.file.SCHEMA`; it took `seconds` if it states no time itself.
+def answer(output: bytes, scene: Scene, model: str) -> Response:
+    """Return the response that a program wrote, JSON by `comparisons.answer.file.SCHEMA`.
 
     The program states its status, and may leave out what follows from the rest: names of model and scene, message, tips, numbers of
     iterations, wall time. An answer that is not COMPLETED may leave out all histories. A scene that the program refuses is a `ModelError`,
@@ -99,7 +99,7 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
     data = _parsed(output)
     if (reason := _reason(data)) is not None:
         raise ModelError(reason)
-    given: dict[str, Any] = {"message": "as the program reports", "wall_seconds": seconds}
+    given: dict[str, Any] = {"message": "as the program reports", "wall_seconds": None}
     status = data.get("status", MISSING)
     reported = status == COMPLETED
     if not reported and "load_parameter" not in data:

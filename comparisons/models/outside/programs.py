@@ -15,7 +15,6 @@ from functools import cache, lru_cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from comparisons.extras import install
@@ -150,9 +149,8 @@ class Program(Model):
         missing = self.missing()
         if missing is not None:
             raise ModelError(missing)
-        given, began = request(scene, options, scene.times), perf_counter()
         try:
-            return answer(self.source.ask(given), scene, self.name, perf_counter() - began)
+            return answer(self.source.ask(request(scene, options, scene.times)), scene, self.name)
         except ProgramError as error:
             return unanswered(scene, self.name, error)
 

@@ -1,7 +1,7 @@
 """The answer to a scene at a requested accuracy: the model that the scene requires, and the cheapest setting that suffices."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
 
@@ -82,7 +82,7 @@ def solve_to(
     Parameters
     ----------
     scene : Scene
-        The scene to solve; beams that carry no load are left out.
+        The scene to solve.
     accuracy : float
         Largest discretisation error over all load parameters: against the exact rod for beams, against the limit of fine meshes for
         the solid. The error of beam theory itself is estimated separately.
@@ -100,21 +100,20 @@ def solve_to(
     """
     if quantity not in names(path=False):
         raise ModelError(f"quantity = {quantity}: must be one of {', '.join(names(path=False))}")
-    began = perf_counter()
-    loaded, said = without_idle(scene)
+    began, said = perf_counter(), list[str]()
     if model is None:
-        model, reason = _required(loaded, quantity, element)
-        said += (f"{model}: {reason}",)
-    chosen = _checked(loaded, quantity, model, element)
+        model, reason = _required(scene, quantity, element)
+        said.append(f"{model}: {reason}")
+    chosen = _checked(scene, quantity, model, element)
     kind = TSM.element(Options(element=element) if element else chosen.reference or Options())
     if chosen.continuum:
-        tried = trials.solid(loaded, accuracy, quantity)
+        tried = trials.solid(scene, accuracy, quantity)
     elif isinstance(kind, ClosedForm):
-        tried = trials.graded(loaded, accuracy, quantity, kind)
+        tried = trials.graded(scene, accuracy, quantity, kind)
     else:
-        tried = trials.exact(loaded, accuracy, quantity, alone=element is not None)
+        tried = trials.exact(scene, accuracy, quantity, alone=element is not None)
     for trial in tried:
-        said += tuple(trial.said)
+        said += trial.said
         if trial.estimate <= accuracy:
             break
     response = trial.response or solve(trial.scene, chosen.name, trial.options)
@@ -127,7 +126,7 @@ def solve_to(
         asked=accuracy,
         estimate=trial.estimate,
         beam_theory=None if chosen.continuum else beam_theory(response, trial.scene),
-        decisions=said,
+        decisions=tuple(said),
         seconds=perf_counter() - began,
     )
 
@@ -161,26 +160,6 @@ def _checked(scene: Scene, quantity: str, model: str, element: str | None) -> Mo
     if refused:
         raise ModelError(refused)
     return chosen
-
-
-def without_idle(scene: Scene) -> tuple[Scene, tuple[str, ...]]:
-    """Return the scene without beams that no load, weight, moving support or pin can reach, and a sentence for each."""
-    pins, every = {pin.name for pin in scene.pins}, [beam.name for beam in scene.beams]
-    loaded = {contact.beam for contact in scene.contacts if contact.node in pins}
-    loaded |= {history.load.beam for history in scene.load_histories}
-    loaded |= {beam.name for beam in scene.beams if beam.density is not None}
-    loaded |= {motion.support.beam for motion in scene.prescribed_motions.values() if motion.moves}
-    meeting = [{one.node.split(".")[0], one.beam} for one in scene.contacts if one.node not in pins]
-    meeting += [{beam.name for beam, _ in ends} for ends in scene.meeting.values()]
-    while more := {name for beams in meeting if beams & loaded for name in beams} - loaded:
-        loaded |= more
-    said = tuple(f'beam "{name}" lies on no load path: left out' for name in every if name not in loaded)
-    kept: dict[str, Any] = {
-        kind: tuple(one for one in getattr(scene, kind) if one.beam in loaded)
-        for kind in ("supports", "springs", "hinges", "contacts")
-    }
-    beams = tuple(beam for beam in scene.beams if beam.name in loaded)
-    return (replace(scene, beams=beams, **kept), said) if said else (scene, said)
 
 
 def beam_theory(response: Response, scene: Scene) -> Theory | None:

@@ -8,6 +8,7 @@ import pytest
 
 from comparisons.answer.errors import difference
 from comparisons.answer.quantities import KEPT
+from comparisons.cli import main
 from comparisons.models import solve
 from comparisons.models.model import Options
 from comparisons.scene import SPECIAL, BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene, read_scene
@@ -136,35 +137,15 @@ def test_the_promise_is_kept_with_every_special_key(key, element):
         checked(scene, 1e-5, quantity, exact, None if element == "free" else element)
 
 
-LATER = 'load = [{ beam = "a", end = "end", force = [0.0, 2.0] }]'
-SPRING = '[[spring]]\nbeam = "idle"\nend = "end"\nstiffness = [0.0, 3.0]\n'
-
-
-def test_bodies_without_a_load_path_are_left_out():
-    """What holds them goes with them; a heavy beam and a beam that a stage loads are on a load path."""
+def test_an_answer_has_all_beams_of_its_scene_and_is_certified_from_its_file(tmp_path):
+    """Also those that no load reaches."""
     idle = BEAM.replace('"a"', '"idle"').replace("0.0]", "5.0]")
-    heavy = read_scene(USES["density"], "s")
-    text = USES["stage"].replace('pin = [{ name = "p", displacement = [0.0, -0.3] }]', LATER)
-    later, sprung = read_scene(text, "s"), read_scene(USES["spring"] + idle + SPRING, "s")
-    for scene, left, beams, springs in (
-        (replace(heavy, pins=(), contacts=()), 0, 1, 0),
-        (replace(later, pins=(), contacts=()), 0, 1, 0),
-        (sprung, 1, 1, 1),
-    ):
-        answer = solve_to(scene, 1e-3)
-        assert sum("lies on no load path" in line for line in answer.decisions) == left
-        assert (len(answer.scene.beams), len(answer.scene.springs)) == (beams, springs)
-    double = replace(load_scene("double-beam"), load_parameters=2)
-    first = replace(double.beams[0], name="idle", start=(0.0, 5.0), end=(1.0, 5.0))
-    second = replace(first, name="idle2", start=(0.5, 4.9), end=(1.5, 4.9))
-    watched = ContactSpec(node="idle.end", beam="idle2", side="left", surface="axis")
-    scene = replace(double, beams=(*double.beams, first, second), contacts=(*double.contacts, watched))
-    answer = solve_to(scene, 1e-3)
-    assert [line.split(":")[0] for line in answer.decisions if "no load path" in line] == [
-        'beam "idle" lies on no load path',
-        'beam "idle2" lies on no load path',
-    ]
-    assert [beam.name for beam in answer.scene.beams] == [beam.name for beam in double.beams]
+    scene, file = tmp_path / "s.toml", tmp_path / "a.json"
+    scene.write_text(USES["spring"] + idle)
+    for more in ((), ("--element", "mixed")):
+        assert main(["solve", str(scene), "--accuracy", "1e-3", *more, "--out", str(file)]) == 0
+        assert main(["certify", str(file), "--scene", str(scene)]) == 0
+        file.unlink()
 
 
 def test_the_theory_of_curved_and_tapered_beams_has_their_radius_and_local_height():
