@@ -156,7 +156,7 @@ def _pair(problem: SolidProblem, bodies: list[Body], contact: Contact) -> Pair:
     """Build a contact pair."""
     names = [strip.name for strip in problem.strips]
     touched = bodies[names.index(contact.strip)]
-    curve = contact_curve(touched.strip, touched.mesh, contact)
+    curve, rows = contact_curve(touched.strip, touched.mesh, contact)
     node: Pin | Carrier | None = problem.pin(contact.node)
     strips: tuple[int, ...] = (names.index(contact.strip),)
     if node is None:
@@ -170,7 +170,7 @@ def _pair(problem: SolidProblem, bodies: list[Body], contact: Contact) -> Pair:
     return Pair(
         contact=contact,
         curve=curve,
-        carrier=_carrier(bodies, touched, curve.rows),
+        carrier=_carrier(bodies, touched, rows),
         node=node,
         penalty=problem.penalty(contact),
         length=touched.strip.length,

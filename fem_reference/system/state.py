@@ -44,11 +44,8 @@ class State:
     @cached_property
     def forces(self) -> Floats:
         """Forces ``(c,)`` of the constraints: of closed contacts, tangential ones of those with friction, of ties [N or N m]."""
-        normal, tangential = (
-            [touch.force for touch in self.closed],
-            [touch.tangential for touch in self.rubbing],
-        )
-        return np.array([*normal, *tangential, *self.tie_forces])
+        normal = [touch.force for touch in self.closed]
+        return np.array([*normal, *(touch.tangential for touch in self.rubbing), *self.tie_forces])
 
     @cached_property
     def residuals(self) -> Floats:
@@ -67,7 +64,7 @@ class State:
         """Internal forces minus those of loads, contacts and ties, ``(n, 2)``; in equilibrium clamp reactions [N]."""
         R: Floats = self.internal_force - amount(self.model.loads, self.t)
         for touch in self.closed:
-            R -= (touch.slopes[:, :2] @ (touch.force, touch.tangential)).reshape(-1, 2)
+            R -= (touch.columns[:, :2] @ (touch.force, touch.tangential)).reshape(-1, 2)
         return R - self.nodal_forces(self.actions) if self.model.sections else R
 
     @cached_property
@@ -101,16 +98,18 @@ class State:
 
     def moved(self, u: Floats, t: float, forces: Floats | None = None) -> "State":
         """Return the state at other displacements, with the same set of closed contacts, and other ``forces`` if given."""
-        changed = self if forces is None else self._loaded(forces)
-        touches = tuple(replace(touch, at=touch.pair.project(u, t)) for touch in changed.touches)
-        return build_state(self.model, u, t, touches, changed.tie_forces)
-
-    def _loaded(self, forces: Floats) -> "State":
-        """Return the state with other forces of the constraints."""
-        values = iter(forces.tolist())
-        normal = [replace(touch, force=next(values)) if touch.closed else touch for touch in self.touches]
-        touches = [replace(touch, tangential=next(values)) if touch.rubs else touch for touch in normal]
-        return replace(self, touches=tuple(touches), tie_forces=np.array(list(values)))
+        values = (self.forces if forces is None else forces).tolist()
+        normal, others = iter(values), iter(values[len(self.closed) :])
+        touches = tuple(
+            replace(
+                touch,
+                at=touch.pair.project(u, t),
+                force=next(normal) if touch.closed else 0.0,
+                tangential=next(others) if touch.rubs else 0.0,
+            )
+            for touch in self.touches
+        )
+        return build_state(self.model, u, t, touches, np.array(list(others)))
 
     def touching(self, touches: "tuple[Touch, ...] | list[Touch]") -> "State":
         """Return the state with other variables of its contacts at the same displacements."""

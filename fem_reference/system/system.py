@@ -204,7 +204,7 @@ def linearise(state: State) -> Tangent | None:
     factor = factorise(K)
     if factor is None:
         return None
-    U = np.asarray(model.restriction @ np.hstack([*(touch.slopes for touch in state.closed), model.columns]))
+    U = np.asarray(model.restriction @ np.hstack([*(touch.columns for touch in state.closed), model.columns]))
     V = factor.half(U) if U.size else U
     border = build_border(state)
     if not all(np.all(np.isfinite(part)) for part in (V, border.A, border.N)):

@@ -252,7 +252,7 @@ def dense_index(state):
     ]
     A = block_diag(*(full(band).toarray() for band in bands))
     for touch in state.closed:
-        U = model.restriction @ touch.slopes
+        U = model.restriction @ touch.columns
         A += -touch.force * U @ touch.curvature @ U.T
         if touch.pair.contact.penetration is None:
             A += touch.pair.penalty * np.outer(U[:, 0], U[:, 0])
