@@ -126,8 +126,9 @@ class Touch:
 
     def opened(self, *, armed: bool = True) -> "Touch":
         """Return the contact after opening."""
-        open_ = {"closed": False, "force": 0.0, "multiplier": 0.0, "direction": 0, "tangential": 0.0}
-        return replace(self, armed=armed, **open_)  # type: ignore[arg-type]  # fields of several types
+        return replace(
+            self, closed=False, armed=armed, force=0.0, multiplier=0.0, direction=0, tangential=0.0
+        )
 
     @cached_property
     def gap(self) -> float:

@@ -260,10 +260,8 @@ class _March:
         if self.model.pairs[lost].radius > 0 and self.model.pairs[lost].ends:
             return self.end(Status.END_CONTACT, last, lost)  # the pin pushes on, now at the corner
         after = after_slip(last.state, goal, lost)
-        released = None
-        if after is not None and after.status is Status.CONVERGED:
-            released = accept(after.state)
-        if after is None or released is None:
+        released = accept(after.state) if after and after.status is Status.CONVERGED else None
+        if not (after and released):
             return Status.LOST_CONTACT
         step.iterations += after.iterations
         before = len(step.events)
