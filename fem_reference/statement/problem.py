@@ -235,19 +235,18 @@ class SolidProblem:
         for contact in self.contacts:
             strip, pin = self.strip(contact.strip), self.pin(contact.node)
             owner: Pin | Contact = pin or contact
-            field, height, radius = ("path[0]", 0.0, pin.radius) if pin else ("node", 0.0, 0.0)
-            if pin is not None:
-                start = pin.path[0]
+            if pin:
+                field, start, room = "path[0]", pin.path[0], pin.radius
             else:
                 name, end = contact.node.split(".")
-                start = getattr(self.strip(name), end)
+                field, start, room = "node", getattr(self.strip(name), end), 0.0
             axial, transverse = strip.place(start)
             if contact.surface == "face":
-                height = strip.height_at(min(max(axial, 0.0), strip.length)) / 2
-            gap, slack = contact.sign * transverse - height - radius, 1e-9 * strip.length
+                room += strip.height_at(min(max(axial, 0.0), strip.length)) / 2
+            gap, slack = contact.sign * transverse - room, 1e-9 * strip.length
             rule = f"must not start beyond the {contact.side} {contact.surface} of the strip (gap {gap:.3g})"
             require(owner, field, gap >= -slack or not 0 < axial < strip.length, rule, start)
-            if pin is not None and gap <= slack and 0 <= axial <= strip.length:
+            if pin and gap <= slack and 0 <= axial <= strip.length:
                 x, y = map(float, strip.directions(axial)[1])
                 found.append((strip.name, pin.path[0], (x, y)))
         return found

@@ -108,12 +108,11 @@ def judged(state: State) -> Attempt:
         if touch.closed and not (touch.at.stationary or touch.at.inside):
             return Attempt(status=Status.LOST_CONTACT, state=state, pair=number)
     force, length = tolerances(state)
-    heights = [model.sections[tie.section].height for tie in model.ties]
-    arms = [h / 2 if tie.component == ROTATION else 1.0 for tie, h in zip(model.ties, heights, strict=True)]
+    turning = [(tie.component == ROTATION, model.sections[tie.section].height) for tie in model.ties]
     limits = [
         *(force / touch.pair.penalty + model.length_round_off for touch in state.closed),
         *(force if touch.direction else length for touch in state.rubbing),
-        *(length / arm for arm in arms),
+        *(2 * length / height if turns else length for turns, height in turning),
     ]
     done = error <= force + model.round_off and bool(np.all(errors <= limits))
     done = done and all(touch.at.stationary for touch in state.closed)

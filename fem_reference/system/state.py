@@ -92,8 +92,8 @@ class State:
     def force_scale(self) -> float:
         """Scale of tolerances: largest of contact and tie forces, dead loads and ``E I / L^2``; moments count over L [N]."""
         model, forces = self.model, np.abs(self.forces)
-        turning = [tie.component == ROTATION for tie in model.ties]
-        forces[forces.size - len(turning) :] /= np.where(turning, model.length, 1.0)
+        arms = [model.length if tie.component == ROTATION else 1.0 for tie in model.ties]
+        forces[forces.size - len(arms) :] /= arms
         return float(max(model.force_scale, amount(model.largest_loads, self.t), forces.max(initial=0.0)))
 
     def moved(self, u: Floats, t: float, forces: Floats | None = None) -> "State":
