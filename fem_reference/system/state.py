@@ -8,6 +8,7 @@ import numpy as np
 from fem_reference.contact.contact import Touch
 from fem_reference.contact.end_section import ROTATION, Pose
 from fem_reference.contact.friction import slip_residual
+from fem_reference.solid.assembly import deformation_gradient
 from fem_reference.statement.arrays import Floats
 from fem_reference.statement.loads import amount
 from fem_reference.statement.problem import Pin
@@ -20,7 +21,8 @@ class State:
 
     model: Model  # what is solved
     u: Floats  # nodal displacements ``(n, 2)`` [m]
-    internal_force: Floats  # internal nodal forces ``(n, 2)`` at these displacements [N]
+    gradients: tuple[Floats, ...]  # deformation gradients ``(2, 2, e, q)`` of the bodies
+    internal_force: Floats  # internal nodal forces ``(n, 2)`` [N]
     t: float  # load parameter
     touches: tuple[Touch, ...]  # contacts, in the order of the model's pairs
     poses: tuple[Pose, ...]  # motions of the model's end sections
@@ -118,10 +120,13 @@ class State:
 
 def build_state(model: Model, u: Floats, t: float, touches: tuple[Touch, ...], tie_forces: Floats) -> State:
     """Build a state at given displacements."""
+    gradients = tuple(deformation_gradient(body.mesh, u[body.part]) for body in model.bodies)
+    forces = [body.internal_force(F) for body, F in zip(model.bodies, gradients, strict=True)]
     return State(
         model=model,
         u=u,
-        internal_force=np.concatenate([body.internal_force(u[body.part]) for body in model.bodies]),
+        gradients=gradients,
+        internal_force=np.concatenate(forces),
         t=t,
         touches=touches,
         poses=tuple(section.pose(u) for section in model.sections),
@@ -190,7 +195,8 @@ def imbalance(state: State) -> float:
 
 def stored_energy(state: State) -> tuple[float, float]:
     """Strain and contact energy ``eps g^2 / 2``, springs left out [J]."""
-    strain = sum(body.strain_energy(state.u[body.part]) for body in state.model.bodies)
+    bodies = zip(state.model.bodies, state.gradients, strict=True)
+    strain = sum(body.strain_energy(F) for body, F in bodies)
     return strain, sum(touch.pair.penalty * touch.gap**2 / 2 for touch in state.closed)
 
 
