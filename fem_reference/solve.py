@@ -11,7 +11,7 @@ from fem_reference.path.events import SLIP_OFF
 from fem_reference.path.march import Step, march
 from fem_reference.result.observe import section_means
 from fem_reference.result.result import ContactHistory, Result, SolveError, SupportHistory
-from fem_reference.statement.arrays import Floats, Ints
+from fem_reference.statement.arrays import Floats, Ints, determinant
 from fem_reference.statement.problem import SolidProblem
 from fem_reference.statement.settings import Settings
 from fem_reference.statement.status import Status
@@ -122,7 +122,7 @@ def _outcome(model: Model, last: Step) -> tuple[Status, str]:
             end, contact = nearest_end(touched, last.state), touched.contact
             pair, comma = f": {contact.node} meets the {end} of {contact.strip}", ""
     cause = "" if last.cause is status else f" because {last.cause.value}"
-    squeezed = min(float(np.linalg.det(F.T).min()) for F in last.state.gradients)
+    squeezed = min(float(determinant(F).min()) for F in last.state.gradients)
     if status is Status.LIMIT_POINT and squeezed < _SMALL_STRAIN:
         cause += f"; an element is compressed to {squeezed:.2g} of its area: refine the mesh, or the strain is beyond the comparison"
     preposition = "at" if status in EVENTS else "after"

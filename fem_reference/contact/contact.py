@@ -61,13 +61,12 @@ class Pair:
     node: Pin | Carrier  # the pin, or the mean position of another strip's end
     penalty: float  # contact stiffness eps [N/m]
     length: float  # length of the touched strip [m]
-    strips: tuple[
-        int, ...
-    ]  # indices of the touched strip and, if the node is an end, of the strip that it ends
-    ends: dict[
-        str, Carrier
-    ]  # the two corners, lower one first, of every end of the touched strip that the node can meet
-    origin: Floats  # start of the first strip ``(2,)``: positions count from there, so that a distant scene loses no digits [m]
+    # names of the touched strip and, if the node is an end, of the strip that it ends
+    strips: tuple[str, ...]
+    # the two corners, lower one first, of every end of the touched strip that the node can meet
+    ends: dict[str, Carrier]
+    # start ``(2,)`` of the first strip, from which positions count: a distant scene loses no digits [m]
+    origin: Floats
 
     @property
     def radius(self) -> float:

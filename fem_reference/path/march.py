@@ -297,16 +297,15 @@ def after_slip(before: State, goal: float, number: int) -> Attempt | None:
     model, lost = before.model, before.touches[number]
     if lost.pair.contact.keep or not lost.closed:
         return None
-    strip = lost.pair.strips[0]
-    body = model.bodies[strip]
-    tied = any(model.sections[tie.section].strip == body.strip.name for tie in model.ties)
-    held = any(touch.pair.strips[0] == strip and touch is not lost for touch in before.closed)
+    strip = lost.pair.contact.strip
+    tied = any(model.sections[tie.section].strip == strip for tie in model.ties)
+    held = any(touch.pair.contact.strip == strip and touch is not lost for touch in before.closed)
     free, u = not (held or tied), before.u.copy()
     if free:
-        u[body.part] = 0
+        u[model.body(strip).part] = 0
     touches = list[Touch]()
     for touch in before.touches:
-        high = model.problem.strips[touch.pair.strips[0]].largest_height
+        high = model.problem.strip(touch.pair.contact.strip).largest_height
         # every other contact with a gap below the strip's height is closed at first
         near = touch.armed and touch.at.inside and abs(touch.gap) < high
         if touch is lost:

@@ -8,7 +8,7 @@ import numpy as np
 from fem_reference.result.result import Result
 from fem_reference.solid.assembly import deformation_gradient
 from fem_reference.solid.mesh import gradient_at, section_points
-from fem_reference.statement.arrays import Floats, Ints
+from fem_reference.statement.arrays import Floats, Ints, determinant
 from fem_reference.system.body import Body
 from fem_reference.system.state import State, stored_energy
 
@@ -71,7 +71,7 @@ def _at_nodes(result: Result, k: int, values: Callable[[Body, Floats, Floats], F
     found = []
     for body in result.model.bodies:
         F = deformation_gradient(body.mesh, result.states[k].u[body.part], body.mesh.at_nodes)
-        area, cells = F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0], body.mesh.cells.ravel()
+        area, cells = determinant(F), body.mesh.cells.ravel()
         own = values(body, F, np.einsum("ikeq,jkeq->ijeq", body.law.stress(F), F) / area)
         found.append(body.mesh.gather @ own.reshape(len(own), -1).T / np.bincount(cells)[:, None])
     return np.concatenate(found)
