@@ -216,7 +216,7 @@ class SolidProblem:
     @cached_property
     def turns(self) -> tuple[float, ...]:
         """Load parameters at which a load step must end because a stage ends or the path of a pin turns, see `Pin.turns`."""
-        ends = (float(stage) for stage in range(1, self.stages))
+        ends = map(float, range(1, self.stages))
         return tuple(sorted({*ends, *(turn for pin in self.pins for turn in pin.turns)}))
 
     @cached_property
