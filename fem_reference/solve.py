@@ -11,8 +11,7 @@ from fem_reference.path.events import SLIP_OFF
 from fem_reference.path.march import Step, march
 from fem_reference.result.observe import section_means
 from fem_reference.result.result import ContactHistory, Result, SolveError, SupportHistory
-from fem_reference.solid.assembly import deformation_gradient
-from fem_reference.statement.arrays import Floats, Ints
+from fem_reference.statement.arrays import Floats, Ints, determinant
 from fem_reference.statement.problem import SolidProblem
 from fem_reference.statement.settings import Settings
 from fem_reference.statement.status import Status
@@ -113,25 +112,22 @@ def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
 
 def _outcome(model: Model, last: Step) -> tuple[Status, str]:
     """Status and message of the solution from the last step."""
-    status, pair, comma = last.status, "", ","
+    status, text = last.status, last.status.value
     if status is Status.CONVERGED:
         return Status.COMPLETED, Status.COMPLETED.value
-    if last.pair is not None:
-        touched = model.pairs[last.pair]
-        pair = f" ({touched.contact.name})"
-        if status is Status.END_CONTACT:
-            end, contact = nearest_end(touched, last.state), touched.contact
-            pair, comma = f": {contact.node} meets the {end} of {contact.strip}", ""
-    cause = "" if last.cause is status else f" because {last.cause.value}"
-    gradients = [deformation_gradient(body.mesh, last.state.u[body.part]) for body in model.bodies]
-    squeezed = min(float(np.linalg.det(F.T).min()) for F in gradients)
+    where = f"{'at' if status in EVENTS else 'after'} load parameter {last.load_parameter:.9g}"
+    if last.cause is not status:
+        text += f" because {last.cause.value}"
+    squeezed = min(float(determinant(F).min()) for F in last.state.gradients)
     if status is Status.LIMIT_POINT and squeezed < _SMALL_STRAIN:
-        cause += f"; an element is compressed to {squeezed:.2g} of its area: refine the mesh, or the strain is beyond the comparison"
-    preposition = "at" if status in EVENTS else "after"
-    return (
-        status,
-        f"{status.value}{cause}{pair}{comma} {preposition} load parameter {last.load_parameter:.9g}",
-    )
+        text += f"; an element is compressed to {squeezed:.2g} of its area: refine the mesh, or the strain is beyond the comparison"
+    if last.pair is None:
+        return status, f"{text}, {where}"
+    pair, contact = model.pairs[last.pair], model.pairs[last.pair].contact
+    if status is Status.END_CONTACT:
+        end = nearest_end(pair, last.state)
+        return status, f"{text}: {contact.node} meets the {end} of {contact.strip} {where}"
+    return status, f"{text} ({contact.name}), {where}"
 
 
 def _contact(states: tuple[State, ...], steps: list[Step], number: int) -> ContactHistory:

@@ -1,20 +1,20 @@
 r"""Contact of a node, which is a pin or another strip's end, with the contact curve of a strip.
 
-The closest point satisfies ``(r - x_c) . r' = 0``. The gap there is ``g = s n . (x_c - r) - R`` with the left normal n of
-the curve, the side s and the radius R of the pin. The contact force ``lam = -eps g`` is an unknown of its own; the penalty
-energy ``eps g^2 / 2`` becomes
+The node is at x_c, the curve at ``r(zeta)``; a prime is a derivative by zeta. The closest point satisfies ``(r - x_c) . r' = 0``.
+The gap there is ``g = s n . (x_c - r) - R`` with the left normal n of the curve, the side s and the radius R of the pin.
+The contact force ``lam = -eps g`` is an unknown of its own; the penalty energy ``eps g^2 / 2`` becomes
 
     Pi = -lam g - lam^2 / (2 eps).
 
-With ``W = d(r - x_c)/du`` at a fixed zeta, ``W' = dr'/du``, unit tangent t, ``rho = |r'|``, ``d = n . (r - x_c)``,
-``k = n . r''`` and ``D = rho^2 + d k``, elimination of zeta by the stationarity condition gives the derivatives of the gap
-and thus the force and the symmetric tangent on both strips:
+The derivatives by the displacements u use ``W = d(r - x_c)/du`` at a fixed zeta, ``W' = dr'/du``, the unit tangent t,
+``rho = |r'|``, ``d = n . (r - x_c)``, ``k = n . r''`` and ``D = rho^2 + d k``. Zeta follows u by the condition of the closest
+point. Hence the derivatives of the gap, which give the force and the symmetric tangent on both strips:
 
     dg/du   = -s W^T n
     d2g/du2 = -s (k W^T t t^T W - rho (W^T t n^T W' + W'^T n t^T W) - d W'^T n n^T W') / D.
 
-Neither depends on R. Nothing is divided by the gap, so that the second derivative holds at ``d = 0`` too. Elimination of lam
-gives the tangent of the penalty method for a pin of any radius ::
+Neither depends on R. Nothing is divided by d, so that both hold at ``d = 0`` too. Elimination of lam gives the tangent of the
+penalty method for a pin of any radius ::
 
     eps (dg/du dg/du^T + g d2g/du2) = eps (W^T W - c c^T / D - R d2g/du2),    c = W^T r' + W'^T (r - x_c).
 
@@ -35,7 +35,7 @@ from fem_reference.statement.problem import Contact, Pin
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Carrier:
-    """Vectors that are weighted means of the positions of a strip's nodes: points, or first moments of a section."""
+    """Points that a strip carries: weighted means of its nodes' positions. With weights of sum zero, first moments of a section."""
 
     reference: Floats  # undeformed, relative to the model's origin, ``(m, 2)`` [m]
     rows: csr_matrix  # weights ``(m, n)`` of the model's nodes
@@ -58,12 +58,15 @@ class Pair:
     contact: Contact  # input data of the contact
     curve: ContactCurve  # curve of the touched strip
     carrier: Carrier  # the points of the curve
-    node: Pin | Carrier  # the pin, or the point at the end of another strip
+    node: Pin | Carrier  # the pin, or the mean position of another strip's end
     penalty: float  # contact stiffness eps [N/m]
     length: float  # length of the touched strip [m]
-    strips: tuple[int, ...]  # indices of the touched strip and, if the node is an end, of the end's
-    ends: dict[str, Carrier]  # corners of the strip's free ends, upwards, unless a point meets a line there
-    origin: Floats  # origin of positions ``(2,)``, at the first strip: a distant scene loses no digits [m]
+    # names of the touched strip and, if the node is an end, of the strip that it ends
+    strips: tuple[str, ...]
+    # the two corners, lower one first, of every end of the touched strip that the node can meet
+    ends: dict[str, Carrier]
+    # start ``(2,)`` of the first strip, from which positions count: a distant scene loses no digits [m]
+    origin: Floats
 
     @property
     def radius(self) -> float:
@@ -92,14 +95,18 @@ class Touch:
     pair: Pair
     at: Projection
     closed: bool = False  # whether the contact is active
-    armed: bool = True  # whether it may close: not while its node is over an end and not back on its side
+    armed: bool = (
+        True  # whether it may close. A node that has gone round an end may not until it is back on its side
+    )
     force: float = 0.0  # contact force lam, positive in compression; zero if open [N]
     multiplier: float = 0.0  # multiplier lam_0 of the augmented Lagrangian; zero for the penalty method [N]
     direction: int = 0  # 1 or -1 where the node slips along the tangent or against it; 0 where it sticks
     tangential: float = 0.0  # tangential force T on the strip along t; zero if open [N]
-    begin: Projection | None = None  # that of the last accepted state; None without friction
-    slipped: float = 0.0  # sum of the slips up to there [m]
-    dissipated: float = 0.0  # energy dissipated up to there [J]
+    begin: Projection | None = (
+        None  # projection in the last accepted state, from which slip counts; None without friction
+    )
+    slipped: float = 0.0  # sum of the slips up to the last accepted state [m]
+    dissipated: float = 0.0  # energy dissipated up to the last accepted state [J]
 
     @property
     def rubs(self) -> bool:
@@ -118,8 +125,9 @@ class Touch:
 
     def opened(self, *, armed: bool = True) -> "Touch":
         """Return the contact after opening."""
-        open_ = {"closed": False, "force": 0.0, "multiplier": 0.0, "direction": 0, "tangential": 0.0}
-        return replace(self, armed=armed, **open_)  # type: ignore[arg-type]  # fields of several types
+        return replace(
+            self, closed=False, armed=armed, force=0.0, multiplier=0.0, direction=0, tangential=0.0
+        )
 
     @cached_property
     def gap(self) -> float:
@@ -143,8 +151,8 @@ class Touch:
         return np.asarray(self.tangential * self.at.tangent - normal)
 
     @cached_property
-    def slopes(self) -> Floats:
-        """Columns ``U`` ``(2 n, 4)``: ``dg/du``, ``W^T t``, ``W'^T n``, ``W'^T t``; the last one is used by friction."""
+    def columns(self) -> Floats:
+        """Columns ``U`` ``(2 n, 4)``: ``dg/du``, ``W^T t``, ``W'^T n``, ``W'^T t``; only friction needs the last one."""
         pair, t, n = self.pair, self.at.tangent, self.at.normal
         basis = pair.curve.basis(self.at.zeta)[[0, 0, 1, 1]]
         directions = np.stack([-pair.contact.sign * n, t, n, t])
@@ -155,7 +163,7 @@ class Touch:
 
     @property
     def curvature(self) -> Floats:
-        """Matrix H of the gap's second derivative ``U H U^T``, over the columns [1/m]."""
+        """Matrix H ``(4, 4)`` of the gap's second derivative ``U H U^T`` [1/m]."""
         at, H = self.at, np.zeros((4, 4))
         H[1, 1], H[2, 2] = at.bend, at.distance
         H[1, 2] = H[2, 1] = -at.stretch

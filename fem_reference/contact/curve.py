@@ -1,9 +1,11 @@
 """The smooth curve that represents a strip in contact, and the closest point on it.
 
 A cubic spline passes through the section means or the face nodes ``X_k`` over their undeformed axial coordinates. The
-curve is a moving average of this spline, ``r(zeta) = sum_q w_q sum_k B_k(zeta + d_q) X_k``. It is twice continuously
-differentiable, whereas the edges of the elements have kinks. Without the average, the local indentation and the shear kink
-of the axis rotate the normal by up to ``F / (G A_e)``, depending on the position of the contact within an element.
+curve is a moving average of this spline, ``r(zeta) = sum_q w_q sum_k B_k(zeta + d_q) X_k``, with the cardinal splines B_k and
+weights w_q at the offsets d_q. It is twice continuously differentiable, whereas the edges of the elements have kinks.
+
+A contact force F indents the solid, and gives the axis a kink of shear. Without the average these would rotate the normal by up to
+``F / (G A_e)``, which depends on the place of the contact within an element.
 """
 
 from dataclasses import dataclass
@@ -18,7 +20,7 @@ from fem_reference.statement.strip import Strip
 
 _PROJECTION_STEPS = 40
 _REACH, _WINDOW = 90, 256
-"""Stations beyond which a cardinal spline vanishes, and stations whose slopes are computed at once."""
+"""Number of stations over which a cardinal spline decays to round-off, and number of those whose slopes are computed at once."""
 
 _HERMITE = np.array(
     [
@@ -28,7 +30,7 @@ _HERMITE = np.array(
     ],
     dtype=float,
 ).reshape(12, 4)
-"""Coefficients of the powers of z in Hermite's cubic polynomials of [0, 1] and their first two derivatives."""
+"""Coefficients of the powers of z in Hermite's cubic polynomials over [0, 1], and in their first two derivatives."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -37,8 +39,7 @@ class ContactCurve:
 
     stations: Floats  # undeformed axial coordinates of the points, increasing, ``(m,)`` [m]
     slopes: csr_matrix  # from the points to the slopes of their spline at the stations, ``(m, m)`` [1/m]
-    spread: csr_matrix  # transposed `slopes`
-    rows: csr_matrix  # weights ``(m, n)`` of the nodes in the points
+    transposed: csr_matrix  # transposed `slopes`
     offsets: Floats  # offsets ``(q,)`` of the points in the moving average [m]
     kernel: Floats  # weights ``(q,)`` of these points
 
@@ -48,7 +49,7 @@ class ContactCurve:
         both = np.zeros((self.stations.size, 2, 2))  # factors of points and of slopes, by derivative
         np.add.at(both, k, factors[:2, ::2].T)
         np.add.at(both, k + 1, factors[:2, 1::2].T)
-        return np.asarray(both[:, 0] + self.spread @ both[:, 1]).T
+        return np.asarray(both[:, 0] + self.transposed @ both[:, 1]).T
 
     def at(self, zeta: float, X: Floats, D: Floats) -> Floats:
         """Position and first two derivatives ``(3, 2)`` of the curve with points X and slopes D at the stations."""
@@ -56,12 +57,12 @@ class ContactCurve:
         return np.asarray(factors.reshape(3, -1) @ np.concatenate([X[k], X[k + 1], D[k], D[k + 1]]))
 
     def pieces(self, zeta: float) -> tuple[Ints, Floats]:
-        """Spline intervals k ``(q,)`` around ``zeta``, and Hermite's polynomials there, times the kernel, ``(3, 4, q)``."""
-        # rows: value, first and second derivative; columns: factors of X_k, X_k+1 and the slopes at k and k + 1
+        """Intervals k ``(q,)`` of the averaged places, and factors ``(3, 4, q)`` of points and slopes in the curve and its derivatives."""
+        # the kernel times Hermite's polynomials, by derivative: of X_k, X_k+1 and the slopes at k and k + 1
         s, places = self.stations, zeta + self.offsets
         inner = places
-        leaves = bool(places[0] < s[0] or places[-1] > s[-1])  # the offsets increase
-        if leaves:
+        outside = bool(places[0] < s[0] or places[-1] > s[-1])  # the offsets increase
+        if outside:
             inner = np.clip(places, s[0], s[-1])
         k = np.minimum(np.maximum(np.searchsorted(s, inner) - 1, 0), s.size - 2)
         h = s[k + 1] - s[k]
@@ -74,7 +75,7 @@ class ContactCurve:
         hermite[:, 2:] *= h
         hermite[1:] /= h
         hermite[2] /= h
-        if leaves:  # beyond the ends the spline goes on along its tangents
+        if outside:  # beyond the ends the spline goes on along its tangents
             beyond = places - inner
             hermite[0] += beyond * hermite[1]
             hermite[2] *= beyond == 0
@@ -82,7 +83,10 @@ class ContactCurve:
 
 
 def cardinal_slopes(stations: Floats) -> csr_matrix:
-    """Slopes ``(m, m)`` at the stations of the not-a-knot splines that are one at one station and zero at the others."""
+    """Matrix ``(m, m)`` from values at the stations to the slopes of their not-a-knot spline there.
+
+    A column has the slopes of a cardinal spline, which is one at its own station and zero at the others.
+    """
     from scipy.interpolate import CubicSpline  # its import takes longer than that of the package
 
     m, entries = stations.size, list[tuple[Ints, Ints, Floats]]()
@@ -96,8 +100,8 @@ def cardinal_slopes(stations: Floats) -> csr_matrix:
     return csr_matrix((values, (rows, columns)), shape=(m, m))
 
 
-def contact_curve(strip: Strip, mesh: Discretisation, contact: Contact) -> ContactCurve:
-    """Build the curve through the section means ("axis") or the nodes of the touched face ("face")."""
+def contact_curve(strip: Strip, mesh: Discretisation, contact: Contact) -> tuple[ContactCurve, csr_matrix]:
+    """Curve through the section means ("axis") or the nodes of the touched face ("face"), and the nodes' weights ``(m, n)`` in its points."""
     stations, rows = mesh.stations, mesh.sections
     if contact.surface == "face":
         face = mesh.edges[contact.side]
@@ -106,10 +110,11 @@ def contact_curve(strip: Strip, mesh: Discretisation, contact: Contact) -> Conta
     offsets, kernel = averaging(spread, float(np.diff(stations).min()))
     # SciPy's equations for a spline of few stations are ill-conditioned if lengths are far from 1.
     slopes = cardinal_slopes(stations / strip.length) / strip.length
-    spread = csr_matrix(slopes.T)
-    return ContactCurve(
-        stations=stations, slopes=slopes, spread=spread, rows=rows, offsets=offsets, kernel=kernel
+    transposed = csr_matrix(slopes.T)
+    curve = ContactCurve(
+        stations=stations, slopes=slopes, transposed=transposed, offsets=offsets, kernel=kernel
     )
+    return curve, rows
 
 
 def averaging(spread: float, spacing: float) -> tuple[Floats, Floats]:
@@ -131,8 +136,8 @@ class Projection:
 
     zeta: float  # undeformed axial coordinate of the closest point [m]
     inside: bool  # whether the closest point lies on the strip and not on the continuation beyond an end
-    stationary: bool  # whether the iteration reached ``(r - x_c) . r' = 0`` at ``zeta``
-    distance: float  # signed distance ``n . (x_c - r)``, positive on the left [m]
+    stationary: bool  # whether it satisfies the condition of the closest point, ``(r - x_c) . r' = 0``
+    distance: float  # signed distance ``-d = n . (x_c - r)``, positive on the left [m]
     end_distance: float  # distance of the point from the end of the curve nearer to ``zeta`` [m]
     tangent: Floats  # unit tangent of the curve, ``(2,)``
     normal: Floats  # its left normal
@@ -181,7 +186,7 @@ def closest(curve: ContactCurve, Y: Floats, D: Floats) -> tuple[float, bool, Flo
         r, r1, r2 = at = curve.at(zeta, Y, D)
         squared = r1 @ r1
         curvature = squared + r @ r2
-        # Near and beyond the centre of curvature: a bracketed root, otherwise a Gauss-Newton step.
+        # near the centre of curvature and beyond it: the root between the neighbouring stations, or else a Gauss-Newton step
         if curvature <= 0.1 * squared:
             if slope(around[0]) < 0 < slope(around[1]):
                 from scipy.optimize import brentq  # rare, and its import takes as long as that of the package

@@ -92,11 +92,12 @@ def limit_point(a: Accepted, step: float) -> CriticalPoint | None:
 
     def evaluate(delta: float, near: State) -> tuple[float, State] | None:
         state = displacement_controlled(near, Control(origin=a.state.u, c=c, delta=delta))
-        tangent = None if state is None else linearise(state)
-        t = 0.0 if state is None else state.t
-        rate = None if tangent is None else tangent.rate(t, t + model.settings.min_step)
-        speed = 0.0 if rate is None else float(np.sum(c * rate.u))
-        return None if state is None or not speed else (1 / speed, state)
+        tangent = state and linearise(state)
+        if not (state and tangent):
+            return None
+        rate = tangent.rate(state.t, state.t + model.settings.min_step)
+        speed = float(np.sum(c * rate.u)) if rate else 0.0
+        return (1 / speed, state) if speed else None
 
     low, delta = (0.0, 1 / size, a.state), size * step
     while True:
@@ -107,12 +108,10 @@ def limit_point(a: Accepted, step: float) -> CriticalPoint | None:
             break
         low, delta = (delta, *following), 2 * delta
     found = root(evaluate, low, delta, 1e-6 * delta)
-    near = None if found is None else accept(found[1])
-    if near is None:
-        return None
-    # At a bifurcation the load and thus the rate have no component along the null vector.
-    limit = abs(float(np.sum(smallest_eigenpair(near)[1] * c))) > 0.5
-    return critical_point(near, LIMIT) if limit else None
+    near = found and accept(found[1])
+    # at a bifurcation the load and thus the rate have no component along the null vector
+    limit = near and abs(float(np.sum(smallest_eigenpair(near)[1] * c))) > 0.5
+    return critical_point(near, LIMIT) if near and limit else None
 
 
 def opening_limit(a: Accepted) -> CriticalPoint | None:
@@ -175,8 +174,8 @@ def stable_branch(near: Accepted, limit: float) -> Accepted | None:
             size = float(np.linalg.norm(offset))
             control = Control(origin=state.u, c=offset / size, delta=size)
             found = displacement_controlled(state.moved(state.u + offset, near.t), control)
-            entered = None if found is None else accept(found)
-            if entered is not None and near.t < entered.t < limit and entered.index == 0:
+            entered = found and accept(found)
+            if entered and near.t < entered.t < limit and entered.index == 0:
                 entries.append(entered)
                 break
     if len(entries) == 2:

@@ -23,13 +23,11 @@ def room(pair: Pair, u: Floats, node: Floats, *, inside: bool) -> float:
     """Least distance of the node's surface from the free ends; negative where they overlap, infinite beside the strip."""
     beyond, behind = list[float](), list[float]()
     for end, corners in pair.ends.items():
-        first, last = corners.points(u)
-        height = np.hypot(*(last - first))
-        across = (last - first) / height
-        away = node - (first + last) / 2
-        along = (1.0 if end == "end" else -1.0) * np.array([across[1], -across[0]])
-        half = height / 2 if pair.contact.surface == "face" else 0.0
-        ahead, aside = float(away @ along), abs(float(away @ across)) - half
+        first, last = corners.points(u) @ (1, 1j)
+        half = abs(last - first) / 2
+        away = (complex(*node) - (first + last) / 2) * 2 * half / (last - first)
+        half = half if pair.contact.surface == "face" else 0.0
+        ahead, aside = -away.imag if end == "end" else away.imag, abs(away.real) - half
         if ahead > 0 or (aside >= 0 and not inside):
             beyond.append(float(np.hypot(ahead, max(aside, 0.0))) - pair.radius)
         elif aside < -_BESIDE * half:

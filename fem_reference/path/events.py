@@ -96,8 +96,10 @@ def _expected(last: Accepted, candidate: Accepted) -> Iterator[Event]:
             if not _about_to_change(last.state, before):
                 yield pair, partial(_apart, pair), None
         elif before.rubs and before.direction:
-            if event := _rest(last, candidate, pair):
-                yield event
+            # a slip comes to rest, at the last state at a corner of a pin's path, or goes on
+            rate = partial(_speed, pair, before.direction, last)
+            if after.direction != before.direction or rate(candidate) < 0 < rate(last):
+                yield pair, rate, 0
         elif before.rubs and after.direction:
             yield pair, partial(_grip, pair, after.direction), after.direction
 
@@ -114,15 +116,9 @@ def _grip(pair: int, direction: int, at: Accepted) -> float:
     return touch.largest_tangential - direction * touch.tangential
 
 
-def _rest(last: Accepted, candidate: Accepted, pair: int) -> Event | None:
-    """Rest of a slip, at the last state at a corner of a pin's path; None if the slip goes on."""
-    sign = last.state.touches[pair].direction
-
-    def rate(at: Accepted) -> float:
-        return sign * float(at.slip_rates(pair, forward=at is last)[0])
-
-    goes_on = candidate.state.touches[pair].direction == sign
-    return None if goes_on and not rate(candidate) < 0 < rate(last) else (pair, rate, 0)
+def _speed(pair: int, direction: int, last: Accepted, at: Accepted) -> float:
+    """Rate of slip in a direction [m]; at the state ``last`` behind a corner of a pin's path."""
+    return direction * float(at.slip_rates(pair, forward=at is last)[0])
 
 
 def clearance(state: State) -> tuple[float, int]:

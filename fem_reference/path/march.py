@@ -1,6 +1,7 @@
-"""March along the load parameters with step control, branch control and slip-off.
+"""The march along the load parameters: it tries a step, judges the state that is found, and names the reason where the path ends.
 
-A step is accepted if it departs little from the tangents at its ends. A new index with the same contacts is a bifurcation.
+A step is accepted if it departs little from the tangents at its two ends. If the index changes within a step and the contacts do not, the
+step holds a bifurcation. After rejected steps the obstacle is sought: line contact, a limit point, or a contact that slips off its strip.
 """
 
 from collections.abc import Iterator
@@ -36,22 +37,22 @@ from fem_reference.system.newton import Attempt, displacement_tolerance, equilib
 from fem_reference.system.state import State, at_rest
 
 _RESOLVED = 0.05
-"""Largest round-off of a nodal force, over the forces that bend or load the strips. Measured on strips of one bending stiffness: at .018
-the tip is right to 2e-6 of the length, at .14 Newton's method takes no steps of use."""
+"""Largest ratio of the round-off of a nodal force to the forces that bend or load the strips. Measured on strips of equal bending
+stiffness: at .018 the tip is right to 2e-6 of the length; at .14 Newton's corrections are round-off."""
 _LOAD_ROUND_OFF = 1e-9
-"""Largest distance at which the turn of a pin's path and the end of a step coincide."""
+"""Difference of load parameters below which a turn of a pin's path counts as reached."""
 _FIRST_STEP = 0.1
 """First step of the load parameter, unless the first requested load parameter is smaller."""
 _RATE_GROWTH = 1.5
-"""Growth of the rate over a step beyond which a limit point is searched."""
+"""Growth of the displacements' rate over a step that suggests a limit point ahead."""
 _SEARCH_INTERVAL = 5
-"""Number of consecutive rejected attempts after which a limit point is searched."""
+"""Number of consecutive rejected attempts after which a limit point is sought in any case."""
 _CLEARANCE_LIMIT = 0.05
-"""Clearance below which contact along a line is searched ahead of a rejected attempt."""
+"""Clearance, see `clearance`, below which line contact is sought after a rejected attempt."""
 _TOUCHES_ALONG_A_LINE = 1e-2
-"""Clearance up to which a state counts as line contact: below it Newton's method may not converge."""
+"""Largest clearance at the last state before line contact: nearer to it Newton's method may not converge."""
 _AT_END = 1e-2
-"""Largest distance from an end, over the strip's length, of a contact that slips off there within the smallest step."""
+"""Largest distance from an end, over the strip's length, from which a contact slips off there within the smallest step."""
 
 
 @dataclass(kw_only=True, eq=False)
@@ -59,11 +60,11 @@ class Step:
     """Progress to one requested load parameter, counted since the previous one."""
 
     status: Status = Status.CONVERGED  # the reason why the march ended, else ``CONVERGED``
-    cause: Status = Status.CONVERGED  # latest failure or path end
+    cause: Status = Status.CONVERGED  # why the latest attempt was rejected, or the path ended
     pair: int | None = None  # index of the contact that the cause refers to
     load_parameter: float  # last accepted load parameter, or that of the event which ends the path
-    state: State  # last state on track
-    index: int  # its index
+    state: State  # last accepted state
+    index: int  # index of that state
     iterations: int = 0  # number of linear solutions
     cutbacks: int = 0  # number of rejected attempts
     substeps: int = 0  # number of accepted states
@@ -77,13 +78,15 @@ def march(model: Model, load_parameters: Floats) -> Iterator[Step]:
 
 
 class _March:
-    """Variables of the march."""
+    """A march in progress."""
 
     def __init__(self, model: Model) -> None:
         start = accept(_start(model))
         assert start is not None, "singular undeformed stiffness: a strip moves without strain"
         self.model, self.settings = model, model.settings
+        # the last accepted state, and the one before unless the path has a corner between
         self.track: tuple[Accepted, ...] = (start,)
+        # length of the next step, and number of attempts rejected since the last accepted state
         self.trial, self.failures = _FIRST_STEP, 0
 
     @property
@@ -127,7 +130,7 @@ class _March:
         return ended
 
     def goal(self, target: float) -> float:
-        """Load parameter of the next attempt. The step ends at a turn of a pin's path and leaves no tiny remainder."""
+        """Load parameter of the next attempt. It does not pass a turn of a pin's path, and leaves no tiny rest before one."""
         t, slack = self.last.t, _LOAD_ROUND_OFF
         end = next((turn for turn in self.model.problem.turns if t + slack < turn < target - slack), target)
         return end if self.trial >= (end - t) * (1 - 1e-6) else t + self.trial
@@ -135,7 +138,7 @@ class _March:
     def end(
         self, status: Status, at: Accepted | CriticalPoint | None = None, pair: int | None = None
     ) -> Status:
-        """End the path at a state or critical point, for contact `pair`."""
+        """Note why the path ends, at which state or critical point, and for which contact; return the status."""
         step = self.step
         step.cause, step.pair = status, pair
         if isinstance(at, CriticalPoint):
@@ -146,7 +149,7 @@ class _March:
         return status
 
     def judge(self, candidate: Accepted, h: float) -> Status | None:
-        """Accept the state of an attempt after a step ``h``, or shorten the step; return a status if the path ends."""
+        """Accept the state that an attempt over a step ``h`` has found, or shorten the step; return a status if the path ends."""
         last, allowed = self.last, LARGEST_DEPARTURE
         distance = departure(last, candidate, displacement_tolerance(last.state))
         if not distance <= allowed:
@@ -172,7 +175,7 @@ class _March:
         return None
 
     def bifurcate(self, candidate: Accepted, h: float) -> Status | None:
-        """Continue on the branch of `Settings.branch` from a bifurcation before a state; return a status if the path ends there."""
+        """Go on from the bifurcation before a state as `Settings.branch` says; return a status if the path ends there."""
         near = bifurcation(self.last, candidate)
         if near is None:
             return self.shorten(h, Status.ANOTHER_BRANCH)
@@ -199,7 +202,7 @@ class _March:
     def shorten(
         self, h: float, cause: Status | None = None, pair: int | None = None, reduction: float = 0.5
     ) -> Status | None:
-        """Reject an attempt over a step ``h``: shorten the step, and extrapolate along the tangent. Returns None."""
+        """Reject an attempt over a step ``h``; the next one is shorter. Returns None: the path goes on."""
         step = self.step
         step.cutbacks += 1
         if cause is not None:
@@ -215,7 +218,7 @@ class _March:
         least, pair = clearance(last if at is None else at.state)
         if at is None or least > _TOUCHES_ALONG_A_LINE:
             return None
-        # only short steps converge near this place, so that it is extrapolated along the tangent
+        # near line contact only short steps converge: the rest of the way is extrapolated along the tangent
         ahead = at.state.moved(at.state.u + h * at.rate(at.t, at.t + h).u, at.t + h)
         fall = (least - clearance(ahead)[0]) / h
         self.end(Status.LINE_CONTACT, at, pair)
@@ -223,7 +226,7 @@ class _March:
         return Status.LINE_CONTACT
 
     def obstacle(self, attempt: Attempt, goal: float, target: float) -> Status | None:
-        """After a rejected attempt, look for line contact, a limit point or slip-off; return a status if the path ends."""
+        """Find out what stopped an attempt: line contact, a limit point or slip-off; return a status if the path ends."""
         last, min_step = self.last, self.settings.min_step
         at_floor = self.trial < min_step
         if clearance(last.state)[0] <= _CLEARANCE_LIMIT and attempt.status is not Status.CONVERGED:
@@ -238,7 +241,7 @@ class _March:
         return self.at_smallest_step(attempt, goal) if at_floor else None
 
     def approaches_fold(self) -> bool:
-        """Whether the rate grows over the last step as before a limit point."""
+        """Whether the rate has grown over the last step as it does before a limit point."""
         *_, a, b = (self.last, *self.track)
         if a.state.contact_set != b.state.contact_set or a is b:
             return False
@@ -246,7 +249,7 @@ class _March:
         return second > _RATE_GROWTH * first
 
     def at_smallest_step(self, attempt: Attempt, goal: float) -> Status | None:
-        """Go on after a contact slips off; else return the status that ends the path."""
+        """Where steps cannot be shortened any more, go on without a contact that slips off, or return the status that ends the path."""
         last, step = self.last, self.step
         limit = opening_limit(last)
         if limit is not None:
@@ -257,10 +260,8 @@ class _March:
         if self.model.pairs[lost].radius > 0 and self.model.pairs[lost].ends:
             return self.end(Status.END_CONTACT, last, lost)  # the pin pushes on, now at the corner
         after = after_slip(last.state, goal, lost)
-        released = None
-        if after is not None and after.status is Status.CONVERGED:
-            released = accept(after.state)
-        if after is None or released is None:
+        released = accept(after.state) if after and after.status is Status.CONVERGED else None
+        if not (after and released):
             return Status.LOST_CONTACT
         step.iterations += after.iterations
         before = len(step.events)
@@ -282,7 +283,7 @@ def _start(model: Model) -> State:
 
 
 def slipped_off(before: State, attempt: Attempt) -> int | None:
-    """Contact that an attempt lost, if its node was near an end before. A diverging attempt may lose any contact."""
+    """Index of the contact that slipped off in an attempt. Its node was near an end before: a diverging attempt may lose any contact."""
     if attempt.status is not Status.LOST_CONTACT or attempt.pair is None:
         return None
     touch = before.touches[attempt.pair]
@@ -292,21 +293,20 @@ def slipped_off(before: State, attempt: Attempt) -> int | None:
 
 
 def after_slip(before: State, goal: float, number: int) -> Attempt | None:
-    """Equilibrium without a lost contact; with no tie or contact left, its strip starts undeformed. None if kept."""
+    """Equilibrium without a lost contact; None if it must be kept. A strip that nothing else holds is sought from its undeformed shape."""
     model, lost = before.model, before.touches[number]
     if lost.pair.contact.keep or not lost.closed:
         return None
-    strip = lost.pair.strips[0]
-    body = model.bodies[strip]
-    tied = any(model.sections[tie.section].strip == body.strip.name for tie in model.ties)
-    held = any(touch.pair.strips[0] == strip and touch is not lost for touch in before.closed)
+    strip = lost.pair.contact.strip
+    tied = any(model.sections[tie.section].strip == strip for tie in model.ties)
+    held = any(touch.pair.contact.strip == strip and touch is not lost for touch in before.closed)
     free, u = not (held or tied), before.u.copy()
     if free:
-        u[body.part] = 0
+        u[model.body(strip).part] = 0
     touches = list[Touch]()
     for touch in before.touches:
-        high = model.problem.strips[touch.pair.strips[0]].largest_height
-        # the guess closes every other contact with a gap below the height
+        high = model.problem.strip(touch.pair.contact.strip).largest_height
+        # every other contact with a gap below the strip's height is closed at first
         near = touch.armed and touch.at.inside and abs(touch.gap) < high
         if touch is lost:
             touches.append(touch.opened(armed=False))
@@ -319,7 +319,7 @@ def after_slip(before: State, goal: float, number: int) -> Attempt | None:
 
 
 def _slid_without_friction(guess: State) -> State:
-    """Return the frictionless equilibrium, with the slip that leads to it; the guess if nothing rubs or none is found."""
+    """Equilibrium without friction, with contacts that slip as they have slid to it; the guess where nothing rubs or none is found."""
     if not guess.rubbing:
         return guess
     touches = [replace(one, begin=None, direction=0, tangential=0.0) for one in guess.touches]

@@ -55,7 +55,7 @@ class Accepted:
         state, touch = self.state, self.state.touches[pair]
         before, after = (self.t, self.t + _INTERVAL) if forward else (self.t - _INTERVAL, self.t)
         rate = self.rate(before, after)
-        motion = touch.slopes.T @ rate.u.ravel() + pin_motion(touch, before, after)
+        motion = touch.columns.T @ rate.u.ravel() + pin_motion(touch, before, after)
         number = len(state.closed) + state.rubbing.index(touch)
         return np.array([slip_gradient(touch) @ motion, rate.forces[number]])
 

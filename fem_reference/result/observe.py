@@ -8,7 +8,7 @@ import numpy as np
 from fem_reference.result.result import Result
 from fem_reference.solid.assembly import deformation_gradient
 from fem_reference.solid.mesh import gradient_at, section_points
-from fem_reference.statement.arrays import Floats, Ints
+from fem_reference.statement.arrays import Floats, Ints, determinant
 from fem_reference.system.body import Body
 from fem_reference.system.state import State, stored_energy
 
@@ -71,7 +71,7 @@ def _at_nodes(result: Result, k: int, values: Callable[[Body, Floats, Floats], F
     found = []
     for body in result.model.bodies:
         F = deformation_gradient(body.mesh, result.states[k].u[body.part], body.mesh.at_nodes)
-        area, cells = F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0], body.mesh.cells.ravel()
+        area, cells = determinant(F), body.mesh.cells.ravel()
         own = values(body, F, np.einsum("ikeq,jkeq->ijeq", body.law.stress(F), F) / area)
         found.append(body.mesh.gather @ own.reshape(len(own), -1).T / np.bincount(cells)[:, None])
     return np.concatenate(found)
@@ -133,35 +133,31 @@ def section_forces(result: Result, strip: str, k: int, stations: Floats | None =
     X = gauss_stations(body) if stations is None else np.asarray(stations, dtype=float)
     own = body.strip
     points, shares, heights = section_points(own, body.mesh.places, body.mesh.edges, X)
-    weights = (own.width_at(X) * heights)[:, None] * shares
-
-    def integral(values: Floats) -> Floats:
-        """Integrals ``(m, ...)`` over the sections of values ``(p, ...)``."""
-        parts = values.reshape(*weights.shape, *values.shape[1:])
-        return np.asarray(np.einsum("mq,mq...->m...", weights, parts))
-
-    def from_mean(values: Floats) -> Floats:
-        """Values ``(p, ...)`` less their means over the sections."""
-        means = (integral(values).T / weights.sum(axis=1)).T
-        return np.asarray(values - np.repeat(means, weights.shape[1], axis=0))
-
+    weights = (own.width_at(X) * heights)[
+        :, None
+    ] * shares  # of the points ``(m, q)`` in integrals over the sections
     u = result.states[k].u[body.part]
     F = gradient_at(body.mesh, u, points)
+    W, P = body.law.energy(F), body.law.stress(F)
     N, _ = own.directions(points[:, 0])
-    p, along = (np.einsum("ijp,jp->pi", A, N) for A in (body.law.stress(F), F))
-    arm = from_mean(own.placed(points) + body.mesh.basis.probes(points.T) @ u)
-    up = integral(from_mean(points[:, 1])[:, None] * arm)
-    rotation = np.angle(up @ (-1j, 1) * own.direction.conjugate()) + np.angle(own.direction)
-    f = integral(p)
-    turned = f @ (1, 1j) * np.exp(-1j * rotation)
+    places = (own.placed(points) + body.mesh.basis.probes(points.T) @ u) @ (1, 1j)
+    # positions and vectors in the complex plane
+    p, along = ((np.array([1, 1j]) @ np.einsum("ijp,jp->ip", A, N)).reshape(weights.shape) for A in (P, F))
+    x, y = (
+        part - (part @ shares)[:, None] for part in np.reshape([places, points[:, 1]], (2, *weights.shape))
+    )
+    rotation = np.angle(-1j * (weights * y * x).sum(axis=1) * own.direction.conjugate())
+    rotation += np.angle(own.direction)
+    f = (weights * p).sum(axis=1)
+    turned = f * np.exp(-1j * rotation)
     return SectionForces(
         stations=X,
-        N=np.asarray(turned.real, dtype=float),
-        V=np.asarray(turned.imag, dtype=float),
-        M=integral(arm[:, 0] * p[:, 1] - arm[:, 1] * p[:, 0]),
+        N=turned.real,
+        V=turned.imag,
+        M=(weights * (x.conj() * p).imag).sum(axis=1),
         rotation=rotation,
-        force=f,
-        material_force=integral((p * along).sum(axis=1) - body.law.energy(F)),
+        force=np.stack([f.real, f.imag], axis=1),
+        material_force=(weights * ((p.conj() * along).real - W.reshape(weights.shape))).sum(axis=1),
     )
 
 

@@ -201,8 +201,9 @@ class Result:
             faint = 0.35 + 0.65 * (k + 1) / reached if k >= 0 else 1.0
             for kind, cells in self.mesh_cells.items():
                 outlines = list(points[cells[:, OUTLINES[kind]]])
-                drawn = PolyCollection(outlines, facecolors="none", edgecolors=colour, alpha=faint)
-                drawn.set_linewidth(0.4)
+                drawn = PolyCollection(
+                    outlines, facecolors="none", edgecolors=colour, linewidths=0.4, alpha=faint
+                )
                 axes.add_collection(drawn)
             axes.update_datalim(points)
         for pin in self.model.problem.pins:

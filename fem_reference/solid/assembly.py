@@ -12,7 +12,6 @@ from scipy.sparse import csr_matrix, tril
 
 from fem_reference.solid.mesh import Discretisation, Points, blocks
 from fem_reference.statement.arrays import Array, Floats, Ints
-from fem_reference.statement.material import Law
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -78,9 +77,12 @@ def internal_force(mesh: Discretisation, P: Array) -> Array:
     return np.asarray(mesh.gather @ forces.reshape(2, -1).T)
 
 
-def element_entries(mesh: Discretisation, law: Law, u: Array) -> Array:
-    """Entries of all element stiffnesses, the integral of ``dN/dX . A . dN/dX``, in one array, block after block of `products`."""
-    A, parts = law.tangent(deformation_gradient(mesh, u)), []
+def element_entries(mesh: Discretisation, A: Array) -> Array:
+    """Entries of all element stiffnesses, the integral of ``dN/dX . A . dN/dX``, in one array, block after block of `products`.
+
+    ``A``: moduli ``(2, 2, 2, 2, e, q)``.
+    """
+    parts = []
     inverse, weighted = mesh.gauss.inverse, mesh.weights * mesh.gauss.inverse
     for i, k, products in mesh.products:
         half = np.einsum("jleq,Kjeq->Kleq", A[i, :, k], weighted)

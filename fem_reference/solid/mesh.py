@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from fem_reference.statement.arrays import Floats, Ints
+from fem_reference.statement.arrays import Floats, Ints, cofactor, determinant
 from fem_reference.statement.strip import Strip
 
 GAUSS = {"Q1": (2, 2), "Q2": (2, 3), "Q2-full": (3, 3)}
@@ -125,7 +125,9 @@ def from_basis(
 def _points(element: Any, X: Floats, positions: Floats) -> tuple[Points, Floats]:
     """The points X ``(2, q)`` in elements whose nodes are at ``positions`` ``(e, k, 2)``, and the determinants ``(e, q)`` there."""
     slopes = _shape_slopes(element, X)
-    inverse, volumes = _inverted(np.einsum("eaj,Kqa->jKeq", positions, slopes, order="C"))
+    J = np.einsum("eaj,Kqa->jKeq", positions, slopes, order="C")
+    volumes = determinant(J)
+    inverse = cofactor(J).swapaxes(0, 1) / volumes
     inverse = np.where(np.abs(inverse) > 1e-13 * np.abs(inverse).max(), inverse, 0.0)
     return Points(slopes=slopes, inverse=inverse), volumes
 
@@ -133,13 +135,6 @@ def _points(element: Any, X: Floats, positions: Floats) -> tuple[Points, Floats]
 def _shape_slopes(element: Any, X: Floats) -> Floats:
     """Derivatives ``(2, q, k)`` of the shape functions of a scikit-fem element at the points X ``(2, q)`` of the reference square."""
     return np.stack([element.lbasis(X, number)[1] for number in range(len(element.doflocs))], axis=-1)
-
-
-def _inverted(J: Floats) -> tuple[Floats, Floats]:
-    """Inverse matrices and determinants of ``(2, 2, ...)``."""
-    (a, b), (c, d) = J
-    determinant = a * d - b * c
-    return np.array([[d, -b], [-c, a]]) / determinant, determinant
 
 
 def edge_weights(element: str, along: Floats, traction: Floats | None = None) -> Floats:
@@ -162,8 +157,9 @@ def gradient_at(mesh: Discretisation, u: Floats, points: Floats) -> Floats:
     containing = mesh.basis.mesh.element_finder()(*points.T)
     local = mesh.basis.mapping.invF(points.T[:, :, None], tind=containing)[:, :, 0]
     slopes, cells = _shape_slopes(mesh.basis.elem, local), mesh.cells[containing]
-    inverse, _ = _inverted(np.einsum("paj,Kpa->jKp", mesh.nodes[cells], slopes))
-    return np.asarray(np.eye(2)[:, :, None] + np.einsum("pai,Kpa,Kjp->ijp", u[cells], slopes, inverse))
+    J = np.einsum("paj,Kpa->jKp", mesh.nodes[cells], slopes)
+    H = np.einsum("pai,Kpa,jKp->ijp", u[cells], slopes, cofactor(J) / determinant(J))
+    return np.asarray(np.eye(2)[:, :, None] + H)
 
 
 def section_points(

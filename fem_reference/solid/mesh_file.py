@@ -7,8 +7,7 @@ from stat import S_ISREG
 from typing import Any
 
 import numpy as np
-from scipy.sparse import coo_matrix, csr_matrix, kron
-from scipy.sparse.csgraph import connected_components
+from scipy.sparse import csr_matrix, kron
 
 from fem_reference.solid.mesh import (
     EDGES,
@@ -28,10 +27,6 @@ _LARGEST = 16 * 2**20
 """Largest mesh file that is read [bytes]."""
 
 
-class MeshError(ValueError):
-    """A mesh file breaks a rule; the message is one line."""
-
-
 def read_mesh(strip: Strip) -> Discretisation:
     """Read ``strip.mesh_file``, a mesh of straight-sided quadrilaterals in the strip's frame.
 
@@ -39,22 +34,23 @@ def read_mesh(strip: Strip) -> Discretisation:
     height below and above the axis.
 
     Raises ValueError if the file is not a regular file of at most 16 MB or cannot be read; if the boundary lies
-    elsewhere; if an element is clockwise, not convex or has no area; if a node belongs to no element; if the mesh
-    has several parts or holes.
+    elsewhere, as it does at holes and cracks; if an element is clockwise, not convex or has no area; if a node belongs
+    to no element; if elements cover the strip more than once.
     """
     from skfem import MeshQuad
 
     assert strip.mesh_file is not None, "structured strips have no file"
     try:
         points, quads = _contents(_read(Path(strip.mesh_file)))
-        _check_elements(points, quads)
+        covered = _checked_area(points, quads) / (strip.length * strip.height)
         # the first side of every element has the largest increase of x
         x = points[quads, 0]
         first = np.argmax(np.roll(x, -1, axis=1) - x, axis=1)
         quads = np.take_along_axis(quads, (first[:, None] + np.arange(4)) % 4, axis=1)
         basis = scalar_basis(MeshQuad(points.T, quads.T), strip.element)
         edges = _edges(strip, basis)
-    except MeshError as error:
+        _require(covered > 1.5, f"covers the strip {covered:.3g} times")
+    except ValueError as error:
         raise ValueError(f"Strip({strip.name!r}).mesh_file = {strip.mesh_file!r}: {error}") from None
     stations = basis.doflocs[0, edges["right"]]
     return from_basis(strip, basis, edges, stations, _sections(strip, basis, edges, stations))
@@ -63,7 +59,7 @@ def read_mesh(strip: Strip) -> Discretisation:
 def _require(failed: Any, rule: str) -> None:
     """Raise an error where something failed; the first number of what failed replaces ``#`` in the rule."""
     if np.any(failed):
-        raise MeshError(rule.replace("#", str(int(np.argmax(failed)))))
+        raise ValueError(rule.replace("#", str(int(np.argmax(failed)))))
 
 
 def _read(path: Path) -> Any:
@@ -72,15 +68,15 @@ def _read(path: Path) -> Any:
 
     try:
         info = path.stat()
-        _require(not S_ISREG(info.st_mode), "must be a regular file")
-        _require(info.st_size > _LARGEST, f"must not be larger than 16 MB, it has {info.st_size / 2**20:.4g}")
+        fits = S_ISREG(info.st_mode) and info.st_size <= _LARGEST
         with redirect_stdout(StringIO()), redirect_stderr(StringIO()):  # meshio prints what it cannot read
-            return meshio.read(path)
-    except MeshError:
-        raise
+            mesh = meshio.read(path) if fits else None
     except (Exception, SystemExit) as error:  # noqa: BLE001 - meshio's readers raise anything on a broken file
         reason = " ".join(str(getattr(error, "strerror", None) or error).split())[:80] or type(error).__name__
-        raise MeshError(f"cannot be read ({reason})") from None
+        raise ValueError(f"cannot be read ({reason})") from None
+    _require(not S_ISREG(info.st_mode), "must be a regular file")
+    _require(not fits, f"must not be larger than 16 MB, it has {info.st_size / 2**20:.4g}")
+    return mesh
 
 
 def _contents(mesh: Any) -> tuple[Floats, Ints]:
@@ -120,18 +116,16 @@ def _check_straight(points: Floats, cells: Ints) -> None:
     _require(off > _ROUND_OFF * np.ptp(corners, axis=1).max(axis=1), "element # must have straight sides")
 
 
-def _check_elements(points: Floats, quads: Ints) -> None:
-    """Require convex anticlockwise quadrilaterals in one connected part."""
-    x, y = points[quads].T
-    sides = np.roll(x + 1j * y, -1, axis=0) - (x + 1j * y)
-    turn = (sides.conj() * np.roll(sides, -1, axis=0)).imag
-    area, size = turn.sum(axis=0) / 4, (np.abs(sides) ** 2).max(axis=0)
-    _require(np.abs(area) <= _ROUND_OFF * size, "element # has no area")
-    _require(area < 0, "element # is clockwise, must be anticlockwise")
-    _require(turn.min(axis=0) <= _ROUND_OFF * size, "element # is not convex")
-    shares = coo_matrix((np.ones(quads.size), (np.repeat(np.arange(len(quads)), 4), quads.ravel())))
-    parts, _ = connected_components(shares.T @ shares)
-    _require(parts > 1, f"falls into {parts} parts without a common node")
+def _checked_area(points: Floats, quads: Ints) -> float:
+    """Area of quadrilaterals, which must be convex and anticlockwise."""
+    corners = points[quads] @ (1, 1j)
+    sides = np.roll(corners, -1, axis=1) - corners
+    turn = (sides.conj() * np.roll(sides, -1, axis=1)).imag
+    areas, least = turn.sum(axis=1) / 4, _ROUND_OFF * (np.abs(sides) ** 2).max(axis=1)
+    _require(np.abs(areas) <= least, "element # has no area")
+    _require(areas < 0, "element # is clockwise, must be anticlockwise")
+    _require(turn.min(axis=1) <= least, "element # is not convex")
+    return float(areas.sum())
 
 
 def _edges(strip: Strip, basis: Any) -> dict[str, Ints]:
@@ -144,7 +138,7 @@ def _edges(strip: Strip, basis: Any) -> dict[str, Ints]:
     on = np.all(distances <= slack[:, None, None], axis=1)
     for (xa, ya), (xb, yb) in lines.T[~on.any(axis=0)]:
         rule = f"must lie at x = 0 or {L:g}, or at y = {-half:g} or {half:g} (half the height)"
-        raise MeshError(f"the boundary from ({xa:g}, {ya:g}) to ({xb:g}, {yb:g}) {rule}")
+        raise ValueError(f"the boundary from ({xa:g}, {ya:g}) to ({xb:g}, {yb:g}) {rule}")
     edges = dict[str, Ints]()
     for name, along, here in zip(EDGES, (1, 1, 0, 0), on, strict=True):
         dofs = np.unique(basis.get_dofs(facets[here]).flatten())

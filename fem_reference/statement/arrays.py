@@ -19,3 +19,14 @@ from numpy.typing import NDArray
 Array: TypeAlias = NDArray[Any]
 Floats: TypeAlias = NDArray[np.float64]
 Ints: TypeAlias = NDArray[np.int64]
+
+
+def cofactor(A: Array) -> Array:
+    """Cofactors of matrices ``(2, 2, ...)``."""
+    (a, b), (c, d) = A
+    return np.array([[d, -c], [-b, a]])
+
+
+def determinant(A: Array) -> Array:
+    """Determinants of matrices ``(2, 2, ...)``."""
+    return np.asarray(A[0, 0] * A[1, 1] - A[0, 1] * A[1, 0])

@@ -138,8 +138,7 @@ def stage_of(t: float, stages: int) -> int:
 def amount(increments: Any, t: float) -> Any:
     """Quantity at ``t`` that changes by ``increments[k]`` in the stage k."""
     stage = stage_of(t, len(increments))
-    total = (t - stage) * increments[stage]
-    return total if stage == 0 else total + sum(increments[1:stage], start=increments[0])
+    return (t - stage) * increments[stage] + sum(increments[:stage])
 
 
 def increment(increments: Any, before: float, after: float) -> Any:

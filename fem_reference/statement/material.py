@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fem_reference.statement.arrays import Array
+from fem_reference.statement.arrays import Array, cofactor, determinant
 
 LawFunction = Callable[[Array], Array]
 PLANES = ("stress", "strain")
@@ -58,18 +58,10 @@ def _outer(A: Array, B: Array) -> Array:
     return A[:, :, None, None] * B[None, None]
 
 
-def _cofactor(F: Array) -> Array:
-    return np.stack([np.stack([F[1, 1], -F[1, 0]]), np.stack([-F[0, 1], F[0, 0]])])
-
-
-def _determinant(F: Array) -> Array:
-    return np.asarray(F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0])
-
-
 def _log_area(F: Array) -> Array:
     """``ln det F``; nan at a folded point, which ends the iteration by name."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(np.log(_determinant(F)))
+        return np.asarray(np.log(determinant(F)))
 
 
 def st_venant_kirchhoff(lam: float, mu: float, plane: str) -> Law:
@@ -124,7 +116,7 @@ def biot_linear(lam: float, mu: float, plane: str) -> Law:
     lam = in_plane_lam(lam, mu, plane)
 
     def rotation(F: Array) -> tuple[Array, Array]:
-        Z = F + _cofactor(F)
+        Z = F + cofactor(F)
         s = np.sqrt(Z[0, 0] ** 2 + Z[1, 0] ** 2)
         return Z / s, s
 
@@ -174,13 +166,13 @@ def neo_hookean(lam: float, mu: float, plane: str) -> Law:
         return np.asarray(mu / 2 * (_contract(F, F) + np.exp(2 * z) - 3) - mu * log_J + lam / 2 * log_J**2)
 
     def stress(F: Array) -> Array:
-        J = _determinant(F)
-        return np.asarray(mu * F + (lam * (_log_area(F) + log_stretch(F)) - mu) * _cofactor(F) / J)
+        J = determinant(F)
+        return np.asarray(mu * F + (lam * (_log_area(F) + log_stretch(F)) - mu) * cofactor(F) / J)
 
     def tangent(F: Array) -> Array:
         """``mu I + c F^-T F^-T - (lam ln J - mu) F^-T_il F^-T_kj``, c = lam, condensed: ``lam W_zz0 / (lam + W_zz0)``."""
-        J, z = _determinant(F), log_stretch(F)
-        inverse = _cofactor(F) / J
+        J, z = determinant(F), log_stretch(F)
+        inverse = cofactor(F) / J
         both = _outer(inverse, inverse)
         free = 2 * mu * np.exp(2 * z)
         c = lam * free / (lam + free) if plane == "stress" else lam

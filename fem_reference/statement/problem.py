@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fem_reference.statement.arrays import Floats
+from fem_reference.statement.arrays import Array, Floats
 from fem_reference.statement.checks import (
     Point,
     require,
@@ -68,18 +68,17 @@ class Pin:
     def position(self, t: float) -> Floats:
         """Return the position ``(2,)`` of the pin's centre at the load parameter ``t``."""
         stage = stage_of(t, len(self._ways))
-        fractions, axes = self._ways[stage]
-        return np.array([np.interp(t - stage, fractions, axis) for axis in axes])
+        place = np.interp(t - stage, *self._ways[stage])
+        return np.array([place.real, place.imag])
 
     @cached_property
-    def _ways(self) -> tuple[tuple[Floats, Floats], ...]:
-        """Fractions of the length ``(k,)`` and coordinates ``(2, k)`` of the path's points in every stage."""
+    def _ways(self) -> tuple[tuple[Floats, Array], ...]:
+        """Fractions of the length, and places in the complex plane, of the path's points in every stage, each ``(k,)``."""
         ways, last = [], self.path[:1]
         for points in (self.path[1:], *self.onward):
-            way = np.array((*last, *points), dtype=float)
-            legs = np.hypot(*np.diff(way, axis=0).T)
-            whole = legs.sum() or 1.0
-            ways.append((np.concatenate([[0.0], np.cumsum(legs)]) / whole, way.T.copy()))
+            way = np.array((*last, *points)) @ (1, 1j)
+            reached = np.append(0.0, np.abs(np.diff(way)).cumsum())
+            ways.append((reached / (reached[-1] or 1.0), way))
             last = (points or last)[-1:]
         return tuple(ways)
 
@@ -91,9 +90,9 @@ class Pin:
         (0.5,)
         """
         load_parameters = []
-        for stage, (fractions, axes) in enumerate(self._ways):
-            directions, turned = np.arctan2(*np.diff(axes)[::-1]), 0.0
-            bends = np.abs(np.angle(np.exp(1j * np.diff(directions))))
+        for stage, (fractions, way) in enumerate(self._ways):
+            legs, turned = np.diff(way), 0.0
+            bends = np.abs(np.angle(legs[1:] * legs[:-1].conj()))
             for t, bend in zip(fractions[1:-1].tolist(), bends.tolist(), strict=True):
                 turned += bend
                 if turned >= TURN:
@@ -217,7 +216,7 @@ class SolidProblem:
     @cached_property
     def turns(self) -> tuple[float, ...]:
         """Load parameters at which a load step must end because a stage ends or the path of a pin turns, see `Pin.turns`."""
-        ends = (float(stage) for stage in range(1, self.stages))
+        ends = map(float, range(1, self.stages))
         return tuple(sorted({*ends, *(turn for pin in self.pins for turn in pin.turns)}))
 
     @cached_property
@@ -236,19 +235,18 @@ class SolidProblem:
         for contact in self.contacts:
             strip, pin = self.strip(contact.strip), self.pin(contact.node)
             owner: Pin | Contact = pin or contact
-            field, height, radius = ("path[0]", 0.0, pin.radius) if pin else ("node", 0.0, 0.0)
-            if pin is not None:
-                start = pin.path[0]
+            if pin:
+                field, start, room = "path[0]", pin.path[0], pin.radius
             else:
                 name, end = contact.node.split(".")
-                start = getattr(self.strip(name), end)
+                field, start, room = "node", getattr(self.strip(name), end), 0.0
             axial, transverse = strip.place(start)
             if contact.surface == "face":
-                height = strip.height_at(min(max(axial, 0.0), strip.length)) / 2
-            gap, slack = contact.sign * transverse - height - radius, 1e-9 * strip.length
+                room += strip.height_at(min(max(axial, 0.0), strip.length)) / 2
+            gap, slack = contact.sign * transverse - room, 1e-9 * strip.length
             rule = f"must not start beyond the {contact.side} {contact.surface} of the strip (gap {gap:.3g})"
             require(owner, field, gap >= -slack or not 0 < axial < strip.length, rule, start)
-            if pin is not None and gap <= slack and 0 <= axial <= strip.length:
+            if pin and gap <= slack and 0 <= axial <= strip.length:
                 x, y = map(float, strip.directions(axial)[1])
                 found.append((strip.name, pin.path[0], (x, y)))
         return found

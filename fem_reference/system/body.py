@@ -7,13 +7,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from fem_reference.contact.end_section import anchor
-from fem_reference.solid.assembly import (
-    Pattern,
-    deformation_gradient,
-    element_entries,
-    internal_force,
-    pattern,
-)
+from fem_reference.solid.assembly import Pattern, element_entries, internal_force, pattern
 from fem_reference.solid.mesh import Discretisation, structured_mesh
 from fem_reference.statement.arrays import Floats
 from fem_reference.statement.material import Law, elastic_law
@@ -36,18 +30,18 @@ class Body:
     offset: Floats  # start ``(2,)`` from that of the first strip, so that a distant scene loses no digits [m]
     round_off: float  # round-off of a nodal force [N], see `force_round_off`
 
-    def internal_force(self, u: Floats) -> Floats:
-        """Internal nodal forces ``(n, 2)`` [N] from nodal displacements ``u`` ``(n, 2)``."""
-        return internal_force(self.mesh, self.law.stress(deformation_gradient(self.mesh, u)))
+    def internal_force(self, F: Floats) -> Floats:
+        """Internal nodal forces ``(n, 2)`` [N] from deformation gradients ``F`` ``(2, 2, e, q)``."""
+        return internal_force(self.mesh, self.law.stress(F))
 
-    def band(self, u: Floats) -> Floats:
+    def band(self, F: Floats) -> Floats:
         """Lower band of the tangent stiffness with the anchor."""
-        K = self.stiffness.band(element_entries(self.mesh, self.law, u))
+        K = self.stiffness.band(element_entries(self.mesh, self.law.tangent(F)))
         return K if self.anchor is None else K + self.anchor
 
-    def strain_energy(self, u: Floats) -> float:
+    def strain_energy(self, F: Floats) -> float:
         """Strain energy [J]."""
-        return float((self.law.energy(deformation_gradient(self.mesh, u)) * self.mesh.weights).sum())
+        return float((self.law.energy(F) * self.mesh.weights).sum())
 
 
 def discretise(strip: Strip) -> Discretisation:

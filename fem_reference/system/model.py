@@ -100,7 +100,7 @@ def build(problem: SolidProblem, settings: Settings | None = None) -> Model:
         restriction=csr_matrix(expansion.T),
         loads=loads,
         sections=sections,
-        columns=np.hstack(columns) if columns else np.zeros((2 * bodies[-1].part.stop, 0)),
+        columns=np.hstack([np.zeros((2 * bodies[-1].part.stop, 0)), *columns]),
         ties=tuple(_ties(problem, numbers)),
         moments=moments,
         largest_loads=largest,
@@ -154,27 +154,26 @@ def _sections(problem: SolidProblem, bodies: list[Body]) -> Iterator[EndSection]
 
 def _pair(problem: SolidProblem, bodies: list[Body], contact: Contact) -> Pair:
     """Build a contact pair."""
-    names = [strip.name for strip in problem.strips]
-    touched = bodies[names.index(contact.strip)]
-    curve = contact_curve(touched.strip, touched.mesh, contact)
+    named = {body.strip.name: body for body in bodies}
+    touched, strips = named[contact.strip], [contact.strip]
+    curve, rows = contact_curve(touched.strip, touched.mesh, contact)
     node: Pin | Carrier | None = problem.pin(contact.node)
-    strips: tuple[int, ...] = (names.index(contact.strip),)
     if node is None:
         name, end = contact.node.split(".")
-        strips = (*strips, names.index(name))
-        body = bodies[strips[1]]
-        node = _carrier(bodies, body, body.mesh.sections[[0 if end == "start" else -1]])
+        strips.append(name)
+        section = named[name].mesh.sections[[0 if end == "start" else -1]]
+        node = _carrier(bodies, named[name], section)
     # a point in contact with an axis does not meet its ends
     meets = contact.surface == "face" or (isinstance(node, Pin) and node.radius > 0)
     corners = identity(len(touched.mesh.nodes), format="csr")
     return Pair(
         contact=contact,
         curve=curve,
-        carrier=_carrier(bodies, touched, curve.rows),
+        carrier=_carrier(bodies, touched, rows),
         node=node,
         penalty=problem.penalty(contact),
         length=touched.strip.length,
-        strips=strips,
+        strips=tuple(strips),
         ends={
             end: _carrier(bodies, touched, corners[touched.mesh.edges[end][[0, -1]]])
             for end in ENDS

@@ -13,13 +13,13 @@ from fem_reference.system.state import State, imbalance
 from fem_reference.system.system import Correction, Tangent, linearise
 
 _LARGEST_GROWTH, _SMALLEST_DAMPING = 5.0, 1 / 64
-"""Ratio of two corrections beyond which the first one is halved, and least part of a correction that is taken."""
+"""Growth from a correction to the next beyond which only half of the first one is taken, and the least part that is taken."""
 _MAX_CONTACT_CHANGES, _MAX_AUGMENTATIONS = 6, 12
 """Largest numbers of changes of the set of closed contacts, and of augmented Lagrangian steps, in one attempt."""
 _MAX_PENETRATION = 1e-3
 """Largest accepted penetration, relative to the strip's length."""
 _BALANCE = 1e-6
-"""Largest accepted imbalance of reactions, contact forces and end loads, relative to the same force as `Settings.tolerance`."""
+"""Largest accepted imbalance of reactions, contact forces and loads, relative to `State.force_scale`."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -34,18 +34,18 @@ class Attempt:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Control:
-    """Displacement control ``c . (u - origin) = delta``, by which the load parameter is an unknown."""
+    """Displacement control: ``c . (u - origin) = delta`` is prescribed, and the load parameter is an unknown."""
 
     origin: Floats  # displacements ``(n, 2)`` [m]
     c: Floats  # unit vector ``(n, 2)``
     delta: float  # displacement along it [m]
 
     def missing(self, state: State) -> float:
-        """Displacement that is missing in a state [m]."""
+        """What a state lacks of the prescribed displacement [m]."""
         return self.delta - float(np.sum(self.c * (state.u - self.origin)))
 
     def completed(self, tangent: Tangent, correction: Correction) -> Correction | None:
-        """Correction with a change of the load parameter; None if it is not finite."""
+        """Correction with the change of the load parameter that gives the prescribed displacement; None if it is not finite."""
         t = tangent.state.t
         rate = tangent.rate(t, t + tangent.state.model.settings.min_step)
         along = 0.0 if rate is None else float(np.sum(self.c * rate.u))
@@ -64,7 +64,7 @@ def iterate(state: State, control: Control | None = None) -> Attempt:
     most = state.model.settings.max_iterations
     base, last, size, damping = state, Correction(u=0 * state.u, forces=0 * state.forces), np.inf, 1.0
     for iteration in range(most + 1):
-        attempt = converged(state)
+        attempt = judged(state)
         done = control is None or abs(control.missing(state)) <= displacement_tolerance(state)
         if attempt.status is Status.CONVERGED and not done:
             attempt = replace(attempt, status=Status.ITERATION_LIMIT)
@@ -93,12 +93,12 @@ def corrected(state: State, correction: Correction, damping: float = 1.0) -> Sta
 
 
 def displacement_tolerance(state: State) -> float:
-    """Displacement [m] below which differences of two states are within Newton's tolerance."""
+    """Difference of two states' displacements [m] that Newton's tolerance allows."""
     return 10 * state.model.settings.tolerance * state.model.length
 
 
-def converged(state: State) -> Attempt:
-    """Attempt with the status of an iterate: ``ITERATION_LIMIT`` if another iteration is needed."""
+def judged(state: State) -> Attempt:
+    """Attempt that ends with this iterate: its status is ``ITERATION_LIMIT`` if another iteration is needed."""
     model = state.model
     error = float(np.abs(state.reduced).max())
     errors = np.abs(state.residuals)
@@ -107,21 +107,20 @@ def converged(state: State) -> Attempt:
     for number, touch in enumerate(state.touches):
         if touch.closed and not (touch.at.stationary or touch.at.inside):
             return Attempt(status=Status.LOST_CONTACT, state=state, pair=number)
-    force, length = round_off(state)
-    heights = [model.sections[tie.section].height for tie in model.ties]
-    arms = [h / 2 if tie.component == ROTATION else 1.0 for tie, h in zip(model.ties, heights, strict=True)]
+    force, length = tolerances(state)
+    turning = [(tie.component == ROTATION, model.sections[tie.section].height) for tie in model.ties]
     limits = [
         *(force / touch.pair.penalty + model.length_round_off for touch in state.closed),
         *(force if touch.direction else length for touch in state.rubbing),
-        *(length / arm for arm in arms),
+        *(2 * length / height if turns else length for turns, height in turning),
     ]
     done = error <= force + model.round_off and bool(np.all(errors <= limits))
     done = done and all(touch.at.stationary for touch in state.closed)
     return Attempt(status=Status.CONVERGED if done else Status.ITERATION_LIMIT, state=state)
 
 
-def round_off(state: State) -> tuple[float, float]:
-    """Force [N] and displacement [m] within the tolerance of Newton's method."""
+def tolerances(state: State) -> tuple[float, float]:
+    """Force [N] and displacement [m] that Newton's method leaves."""
     force = state.model.settings.tolerance * state.force_scale
     return force, force / state.model.axial_stiffness + state.model.length_round_off
 
@@ -130,8 +129,8 @@ def round_off(state: State) -> tuple[float, float]:
 def equilibrium(guess: State, *, keep_set: bool = False) -> Attempt:
     """Find the equilibrium with unilateral contact at the load parameter of ``guess``; never raises.
 
-    Newton's method converges with a fixed set of closed contacts before the set is revised and the method repeated, so that gaps of
-    unconverged iterates cause no change. Augmented Lagrangian steps follow. With ``keep_set`` the set of the guess is kept.
+    Newton's method converges with a fixed set of closed contacts. Only then is the set revised and the method repeated: the gaps of
+    unconverged iterates open and close no contact. Augmented Lagrangian steps come last. With ``keep_set`` the set of the guess is kept.
     """
     state = guess
     if not keep_set:
@@ -165,7 +164,7 @@ def equilibrium(guess: State, *, keep_set: bool = False) -> Attempt:
 
 def revised(state: State) -> State:
     """Return a converged state with contacts that open, close, stick or slip where their conditions do not hold."""
-    force, length = round_off(state)
+    force, length = tolerances(state)
     touches = []
     for touch in state.touches:
         if touch.closed and touch.force < 0:
@@ -178,7 +177,7 @@ def revised(state: State) -> State:
 
 
 def _closed_if_penetrated(state: State, touch: Touch) -> Touch:
-    """Close an open contact that is penetrated by more than round-off. With friction it first slips as it did while open."""
+    """Close an open contact whose penetration exceeds round-off. With friction it slips at first, as it slid while it was open."""
     if touch.closed or not touch.armed or touch.reported_gap >= -state.model.length_round_off:
         return touch
     return replace(slipping(touch), closed=True)
@@ -196,13 +195,13 @@ def augmented(touch: Touch) -> Touch:
 
 
 def _verified(attempt: Attempt) -> Attempt:
-    """Check slip-off, penetration and balance of a converged state, and arm or disarm its open contacts."""
+    """Check slip-off, penetration and balance of a converged state, and set which open contacts may close, see `Touch.armed`."""
     state, model, touches = attempt.state, attempt.state.model, list[Touch]()
     for number, touch in enumerate(state.touches):
         behind, inside = touch.gap < -model.length_round_off, touch.at.inside
         # a node that goes round the end of an axis has left it; the ends of a thick strip are met
-        round_it = touch.armed and behind and touch.pair.contact.keep and not touch.pair.ends
-        if not inside and (touch.closed or round_it):
+        went_round = touch.armed and behind and touch.pair.contact.keep and not touch.pair.ends
+        if not inside and (touch.closed or went_round):
             return replace(attempt, status=Status.LOST_CONTACT, pair=number)
         if touch.closed and -touch.gap > _MAX_PENETRATION * touch.pair.length:
             return replace(attempt, status=Status.TOO_DEEP, pair=number)

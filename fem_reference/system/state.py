@@ -8,6 +8,7 @@ import numpy as np
 from fem_reference.contact.contact import Touch
 from fem_reference.contact.end_section import ROTATION, Pose
 from fem_reference.contact.friction import slip_residual
+from fem_reference.solid.assembly import deformation_gradient
 from fem_reference.statement.arrays import Floats
 from fem_reference.statement.loads import amount
 from fem_reference.statement.problem import Pin
@@ -20,7 +21,8 @@ class State:
 
     model: Model  # what is solved
     u: Floats  # nodal displacements ``(n, 2)`` [m]
-    internal_force: Floats  # internal nodal forces ``(n, 2)`` at these displacements [N]
+    gradients: tuple[Floats, ...]  # deformation gradients ``(2, 2, e, q)`` of the bodies
+    internal_force: Floats  # internal nodal forces ``(n, 2)`` [N]
     t: float  # load parameter
     touches: tuple[Touch, ...]  # contacts, in the order of the model's pairs
     poses: tuple[Pose, ...]  # motions of the model's end sections
@@ -44,11 +46,8 @@ class State:
     @cached_property
     def forces(self) -> Floats:
         """Forces ``(c,)`` of the constraints: of closed contacts, tangential ones of those with friction, of ties [N or N m]."""
-        normal, tangential = (
-            [touch.force for touch in self.closed],
-            [touch.tangential for touch in self.rubbing],
-        )
-        return np.array([*normal, *tangential, *self.tie_forces])
+        normal = [touch.force for touch in self.closed]
+        return np.array([*normal, *(touch.tangential for touch in self.rubbing), *self.tie_forces])
 
     @cached_property
     def residuals(self) -> Floats:
@@ -67,7 +66,7 @@ class State:
         """Internal forces minus those of loads, contacts and ties, ``(n, 2)``; in equilibrium clamp reactions [N]."""
         R: Floats = self.internal_force - amount(self.model.loads, self.t)
         for touch in self.closed:
-            R -= (touch.slopes[:, :2] @ (touch.force, touch.tangential)).reshape(-1, 2)
+            R -= (touch.columns[:, :2] @ (touch.force, touch.tangential)).reshape(-1, 2)
         return R - self.nodal_forces(self.actions) if self.model.sections else R
 
     @cached_property
@@ -95,22 +94,24 @@ class State:
     def force_scale(self) -> float:
         """Scale of tolerances: largest of contact and tie forces, dead loads and ``E I / L^2``; moments count over L [N]."""
         model, forces = self.model, np.abs(self.forces)
-        turning = [tie.component == ROTATION for tie in model.ties]
-        forces[forces.size - len(turning) :] /= np.where(turning, model.length, 1.0)
+        arms = [model.length if tie.component == ROTATION else 1.0 for tie in model.ties]
+        forces[forces.size - len(arms) :] /= arms
         return float(max(model.force_scale, amount(model.largest_loads, self.t), forces.max(initial=0.0)))
 
     def moved(self, u: Floats, t: float, forces: Floats | None = None) -> "State":
         """Return the state at other displacements, with the same set of closed contacts, and other ``forces`` if given."""
-        changed = self if forces is None else self._loaded(forces)
-        touches = tuple(replace(touch, at=touch.pair.project(u, t)) for touch in changed.touches)
-        return build_state(self.model, u, t, touches, changed.tie_forces)
-
-    def _loaded(self, forces: Floats) -> "State":
-        """Return the state with other forces of the constraints."""
-        values = iter(forces.tolist())
-        normal = [replace(touch, force=next(values)) if touch.closed else touch for touch in self.touches]
-        touches = [replace(touch, tangential=next(values)) if touch.rubs else touch for touch in normal]
-        return replace(self, touches=tuple(touches), tie_forces=np.array(list(values)))
+        values = (self.forces if forces is None else forces).tolist()
+        normal, others = iter(values), iter(values[len(self.closed) :])
+        touches = tuple(
+            replace(
+                touch,
+                at=touch.pair.project(u, t),
+                force=next(normal) if touch.closed else 0.0,
+                tangential=next(others) if touch.rubs else 0.0,
+            )
+            for touch in self.touches
+        )
+        return build_state(self.model, u, t, touches, np.array(list(others)))
 
     def touching(self, touches: "tuple[Touch, ...] | list[Touch]") -> "State":
         """Return the state with other variables of its contacts at the same displacements."""
@@ -119,10 +120,13 @@ class State:
 
 def build_state(model: Model, u: Floats, t: float, touches: tuple[Touch, ...], tie_forces: Floats) -> State:
     """Build a state at given displacements."""
+    gradients = tuple(deformation_gradient(body.mesh, u[body.part]) for body in model.bodies)
+    forces = [body.internal_force(F) for body, F in zip(model.bodies, gradients, strict=True)]
     return State(
         model=model,
         u=u,
-        internal_force=np.concatenate([body.internal_force(u[body.part]) for body in model.bodies]),
+        gradients=gradients,
+        internal_force=np.concatenate(forces),
         t=t,
         touches=touches,
         poses=tuple(section.pose(u) for section in model.sections),
@@ -191,7 +195,8 @@ def imbalance(state: State) -> float:
 
 def stored_energy(state: State) -> tuple[float, float]:
     """Strain and contact energy ``eps g^2 / 2``, springs left out [J]."""
-    strain = sum(body.strain_energy(state.u[body.part]) for body in state.model.bodies)
+    bodies = zip(state.model.bodies, state.gradients, strict=True)
+    strain = sum(body.strain_energy(F) for body, F in bodies)
     return strain, sum(touch.pair.penalty * touch.gap**2 / 2 for touch in state.closed)
 
 

@@ -198,13 +198,13 @@ def linearise(state: State) -> Tangent | None:
     """Linearise equilibrium at a state; None if the stiffness is singular or not finite."""
     model = state.model
     K = np.zeros((model.unknowns, 1 + max(body.stiffness.width for body in model.bodies))).T
-    for body in model.bodies:
-        band = body.band(state.u[body.part])
+    for body, F in zip(model.bodies, state.gradients, strict=True):
+        band = body.band(F)
         K[: len(band), body.unknowns] = band
     factor = factorise(K)
     if factor is None:
         return None
-    U = np.asarray(model.restriction @ np.hstack([*(touch.slopes for touch in state.closed), model.columns]))
+    U = np.asarray(model.restriction @ np.hstack([*(touch.columns for touch in state.closed), model.columns]))
     V = factor.half(U) if U.size else U
     border = build_border(state)
     if not all(np.all(np.isfinite(part)) for part in (V, border.A, border.N)):

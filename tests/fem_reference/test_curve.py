@@ -3,17 +3,15 @@
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
-from scipy.sparse import eye_array
 
 # Orders and derivatives of the curve: answers hold it to about 1e-4 only.
 from fem_reference.contact.curve import ContactCurve, averaging, cardinal_slopes, closest
 
 
 def curve_through(stations, offsets=(0.0,), kernel=(1.0,)):
-    rows = eye_array(stations.size, format="csr")
     slopes = cardinal_slopes(stations)
     kernel, offsets = np.array(kernel), np.array(offsets)
-    values = {"slopes": slopes, "spread": slopes.T, "rows": rows, "offsets": offsets, "kernel": kernel}
+    values = {"slopes": slopes, "transposed": slopes.T, "offsets": offsets, "kernel": kernel}
     return ContactCurve(stations=stations, **values)
 
 

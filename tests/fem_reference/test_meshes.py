@@ -155,7 +155,12 @@ BROKEN = {
     "element 3 is clockwise": flipped,
     "element 5 has no area": flat,
     "element .* is not convex": moved(lambda p: p + (np.arange(len(p)) == 31)[:, None] * [0.07, 0, 0]),
-    "falls into 2 parts": parted,
+    r"the boundary from \(0\.495, .* must lie at x = 0": parted,
+    "covers the strip 2 times": lambda points, quads, lines: (
+        np.concatenate([points, points]),
+        np.concatenate([quads, quads + len(points)]),
+        lines,
+    ),
     r"the boundary from \(0\.8.*, .* must lie at x = 0 or 1, or at y = -0\.01 or 0\.01": lambda p, quads, lines: (
         p,
         np.delete(quads, 34, axis=0),

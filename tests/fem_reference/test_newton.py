@@ -11,6 +11,7 @@ from scipy.linalg import block_diag, null_space
 import fem_reference as fr
 from fem_reference.contact.friction import force_before_slip  # a turn within a step is rare
 from fem_reference.path.march import slipped_off  # no path is known on which Newton's method diverges so
+from fem_reference.solid.assembly import deformation_gradient
 from fem_reference.solid.factor import full
 from fem_reference.statement.material import Law, lame_constants
 from fem_reference.statement.status import Status
@@ -49,9 +50,9 @@ def test_tangent_and_residual_equal_scikit_fems_own_assembly():
     basis = reference.vector_basis(body.mesh.nodes, body.mesh.cells)
     np.testing.assert_array_equal(basis.doflocs[:, ::2].T, body.mesh.nodes)
     K, f = reference.tangent_and_residual(basis, u.ravel(), 2 * lam * mu / (lam + 2 * mu), mu, B)
-    T = body.expansion
-    assert abs(full(body.band(u)) - T.T @ K @ T).max() <= 1e-12 * abs(K).max()
-    np.testing.assert_allclose(body.internal_force(u).ravel(), f, rtol=0, atol=1e-12 * np.abs(f).max())
+    T, F = body.expansion, deformation_gradient(body.mesh, u)
+    assert abs(full(body.band(F)) - T.T @ K @ T).max() <= 1e-12 * abs(K).max()
+    np.testing.assert_allclose(body.internal_force(F).ravel(), f, rtol=0, atol=1e-12 * np.abs(f).max())
 
 
 def noisy(problem, size=0.005, forces=0.0):
@@ -248,11 +249,12 @@ def dense_index(state):
     """Negative eigenvalues of ``K - sum lam g'' - sum m theta''`` with springs, over the displacements that constraints admit."""
     model, constraints = state.model, []
     bands = [
-        body.band(state.u[body.part]) - (body.anchor is not None and body.anchor) for body in model.bodies
+        body.band(F) - (body.anchor is not None and body.anchor)
+        for body, F in zip(model.bodies, state.gradients, strict=True)
     ]
     A = block_diag(*(full(band).toarray() for band in bands))
     for touch in state.closed:
-        U = model.restriction @ touch.slopes
+        U = model.restriction @ touch.columns
         A += -touch.force * U @ touch.curvature @ U.T
         if touch.pair.contact.penetration is None:
             A += touch.pair.penalty * np.outer(U[:, 0], U[:, 0])

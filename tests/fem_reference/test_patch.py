@@ -38,7 +38,7 @@ def solve_inside(mesh, law, exact, loads):
     for _ in range(30):
         F = deformation_gradient(mesh, u)
         R = T.T @ (internal_force(mesh, law.stress(F)) - loads).ravel()
-        step = spsolve(full(stiffness.band(element_entries(mesh, law, u))), -R)
+        step = spsolve(full(stiffness.band(element_entries(mesh, law.tangent(F)))), -R)
         u = u + (T @ step).reshape(-1, 2)
         if np.abs(step).max() < 1e-14:
             return u
