@@ -19,9 +19,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tsm.contact.contact_set import owned
 from tsm.elements.properties import Array
-from tsm.model.contact import closed, handed_over
+from tsm.model.contact import closed, owned
 from tsm.model.model import Model
 from tsm.model.pairs import PairModel
 from tsm.model.state import State, Touch
@@ -82,7 +81,8 @@ class Point:
     def index(self) -> int:
         """Number of the energy's negative eigenvalues, -1 where it is not defined, see `tsm.system.stability`."""
         _ = self.system.tangent  # which the rates need besides, and the index is cheaper with
-        return index(self.newton.assembler, self.system)
+        with np.errstate(all="ignore"):  # a singular tangent has infinite entries
+            return index(self.newton.assembler, self.system)
 
     @cached_property
     def on_chords(self) -> bool:
@@ -257,18 +257,16 @@ def _through(model: Model, history: list[_Known], t: float) -> State:
         if known.slope is not None:
             weights.append(part * (t - time))
             terms.append(known.slope)
-    q, contacts, inside = np.split(
-        np.array(weights) @ np.array(terms), [model.dof_count, model.dof_count + model.contact_unknowns]
-    )
+    values, first = np.array(weights) @ np.array(terms), model.dof_count
+    q, inside = values[:first], values[first + model.contact_unknowns :]
     q[model.slaves] = q[model.masters]
     profile = last.profile and replace(last.profile, angle=inside.reshape(last.profile.angle.shape))
-    moved = replace(last, load_parameter=t, q=q, profile=profile)
-    placed = contacts.tolist()
-    touches = [
+    placed = values[first : first + model.contact_unknowns].tolist()
+    touches = tuple(
         touch and _touch(pair, touch, *placed[pair.slots])
         for pair, touch in zip(model.pairs, last.touches, strict=True)
-    ]
-    return owned(model, handed_over(model, moved, tuple(touches)))
+    )
+    return owned(model, replace(last, load_parameter=t, q=q, touches=touches, profile=profile))
 
 
 def _touch(pair: PairModel, last: Touch, *own: float) -> Touch:

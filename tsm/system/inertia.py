@@ -81,8 +81,7 @@ def _negatives_sparse(symmetric: Symmetric) -> int | None:
 
 def _equilibrating(largest: Array) -> Array:
     """Scale factors that bring the largest entry of every row near one. Scaling keeps the number of negative eigenvalues (Sylvester)."""
-    with np.errstate(all="ignore"):
-        factor = 1 / np.sqrt(largest)
+    factor = 1 / np.sqrt(largest)
     return np.where(np.isfinite(factor), factor, 1.0)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tsm.elements.properties import Array
-from tsm.model.contact import chord_owner, handed_over
+from tsm.model.contact import owned
 from tsm.model.groups import Change
 from tsm.model.model import Model
 from tsm.model.scales import ROUND_OFF, SHARP, TURN, WAY, largest, units_of
@@ -275,23 +275,13 @@ class Newton:
         if rods:
             change = Change(dofs, dz, float(residual), factor, end - begin)
             profile = rods.changed(state, system.tangent.groups[rods.number], change)
-        moved = State(
-            load_parameter=state.load_parameter,
-            q=q,
-            touches=state.touches,
-            armed=state.armed,
-            profile=profile,
-        )
-        if not state.touches:
-            return moved
-        dz_taken = (factor * dz).tolist()
-        touches = (
-            None if touch is None
-            else chord_owner(model, pair, moved, touch) if pair.slot < 0
-            else pair.moved(touch, dz_taken[pair.slots])
+        taken = (factor * dz).tolist()
+        touches = tuple(
+            touch and (pair.moved(touch, taken[pair.slots]) if pair.slot >= 0 else touch)
             for pair, touch in zip(model.pairs, state.touches, strict=True)
-        )  # fmt: skip
-        return handed_over(model, moved, tuple(touches), past)
+        )
+        moved = State(load_parameter=end, q=q, touches=touches, armed=state.armed, profile=profile)
+        return owned(model, moved, past)
 
 
 def _alternates(owners: list[tuple[int, ...]]) -> bool:

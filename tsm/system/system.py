@@ -235,7 +235,7 @@ class Assembler:
         model = self.model
         banded, border, count = model.banded, model.border, 1 + len(more)
         tangent = system.tangent
-        sides = np.stack([-(system.residual + tangent.condensed_residual), *more], axis=1)
+        sides = np.array([-(system.residual + tangent.condensed_residual), *more]).T
         if self.units:
             tangent, sides = self.units.without(tangent, sides)
         rhs = np.concatenate([sides[:banded], tangent.right[:banded]], axis=1)
