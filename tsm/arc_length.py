@@ -27,13 +27,14 @@ from tsm.elements.properties import Array
 from tsm.model.model import Model
 from tsm.path.friction import regripped
 from tsm.path.margins import Margin, broken, margins
-from tsm.path.path import SMALLEST, Point
+from tsm.path.path import SMALLEST
 from tsm.path.step import Step
 from tsm.result.result import Result
 from tsm.solve import ended
 from tsm.statement.settings import Settings
 from tsm.statement.status import RefusedError, Status, StopError
 from tsm.statement.structure import Structure
+from tsm.system.equilibrium import Equilibrium
 from tsm.system.newton import Newton
 from tsm.system.system import Drive
 
@@ -108,21 +109,21 @@ class _Path:
 
     def __init__(self, model: Model, settings: Settings) -> None:
         self.newton = Newton(model, settings)
-        start = Point(self.newton, self.newton.solve(initial_state(model)))
-        if not start.equilibrium.converged:
-            raise StopError(start.equilibrium.status)
+        start = self.newton.solve(initial_state(model))
+        if not start.converged:
+            raise StopError(start.status)
         self.here = regripped(start, self._drive(start), start.state)
         per_beam = np.where(model.kind < 2, model.extent / model.length, 1.0) * self.newton.per_step
         self.weight = np.where(model.kind < 3, per_beam, 0.0) ** 2
         self.direction = self._direction(self.here, None)
         self.growth = 1.0
 
-    def _drive(self, point: Point) -> Drive:
+    def _drive(self, point: Equilibrium) -> Drive:
         return self.newton.assembler.drive(point.t)
 
     def advance(self, arc_length: float) -> Step:
         """One step, shortened where it does not converge, with the limit point it passed if any."""
-        step = Step(equilibrium=self.here.equilibrium)
+        step = Step(equilibrium=self.here)
         while True:
             try:
                 length = arc_length * self.growth
@@ -141,15 +142,15 @@ class _Path:
         self.here.release()
         self.here, self.direction = there, direction
         self.growth = min(2 * self.growth, 1.0)
-        step.equilibrium = there.equilibrium
+        step.equilibrium = there
         return step
 
-    def _margins(self, point: Point, load: float) -> list[Margin]:
+    def _margins(self, point: Equilibrium, load: float) -> list[Margin]:
         """Margins on the way on which the load parameter grows or falls."""
         found, way, stick = margins(point, self._drive(point)), math.copysign(1, load), EventKind.STICK
         return [m._replace(value=way * m.value) if m.kind is stick else m for m in found]
 
-    def _direction(self, point: Point, last: _Direction | None) -> _Direction:
+    def _direction(self, point: Equilibrium, last: _Direction | None) -> _Direction:
         """Direction of the path in the sense of the last one; at first, towards an increasing load."""
         rates = point.rates(self._drive(point))
         if rates is None:
@@ -159,15 +160,14 @@ class _Path:
         sign = 1.0 if last is None or x @ (self.weight * last.x) >= 0 else -1.0
         return _Direction(sign * x / size, sign / size)
 
-    def _step(self, length: float, log: Step) -> tuple[Point, _Direction]:
-        """Point a distance along the direction of the path."""
+    def _step(self, length: float, log: Step) -> tuple[Equilibrium, _Direction]:
+        """Equilibrium a distance along the direction of the path."""
         here, (x, load) = self.here, self.direction
         start = self.newton.update(here.state, length * x, here.system, t=here.t + length * load)
-        there = self.newton.solve(start, across=self.weight * x)
-        log.iterations += there.iterations
-        if not there.converged:
-            raise RefusedError(there.status)
-        point = Point(self.newton, there)
+        point = self.newton.solve(start, across=self.weight * x)
+        log.iterations += point.iterations
+        if not point.converged:
+            raise RefusedError(point.status)
         return point, self._direction(point, self.direction)
 
     def _limit_point(self, length: float, before: float, after: float, log: Step) -> Event:

@@ -88,7 +88,7 @@ def test_a_new_event_is_a_row(monkeypatch):
     rows = {row.kind: row for row in WATCHES}
     rows[EventKind.LINE_CONTACT] = rows[EventKind.LINE_CONTACT]._replace(
         awaited=lambda point, k: point.state.touches[k] is not None,
-        margin=lambda point, k, _: 1.0 - normal_force(point.model, point.equilibrium, k) / 0.5,
+        margin=lambda point, k, _: 1.0 - normal_force(point, k) / 0.5,
     )
     monkeypatch.setattr("tsm.path.margins.WATCHES", tuple(rows.values()))
     path = ((0.8, 0.0), (0.8, 0.3))

@@ -152,7 +152,7 @@ def test_iteration_limit(monkeypatch):
 def test_ping_pong(monkeypatch):
     """A search of the owner that always answers with the other of two elements."""
     monkeypatch.setattr(
-        "tsm.system.newton.chord_owner",
+        "tsm.model.contact.chord_owner",
         lambda *a: Touch(element=15 - a[-1].element, xi=0.5, force=a[-1].force),
     )
     model = Model(cantilever(WAY, element="timoshenko"))

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from tsm.contact.events import ROUND_OFF, EventKind, over, touch_at
-from tsm.model.contact import chord_owner, closed, with_touches
+from tsm.model.contact import closed, owned, with_touches
 from tsm.model.groups.shape import undeformed
 from tsm.model.model import Model
 from tsm.model.pairs import PairModel
@@ -91,12 +91,3 @@ def end_beside(model: Model, pair: PairModel, touch: Touch) -> tuple[tuple[int, 
     last = arc >= length / 2
     node = model.end_node(f"{pair.target.beam.name}.{'end' if last else 'start'}")
     return (node, last), any(3 * node + c in model.prescribed for c in range(3)), min(arc, length - arc)
-
-
-def owned(model: Model, state: State) -> State:
-    """State with the owners of projected contacts renewed."""
-    touches = list(state.touches)
-    for k, pair, touch in closed(model, state):
-        if pair.slot < 0:
-            touches[k] = chord_owner(model, pair, state, touch)
-    return state if touches == list(state.touches) else replace(state, touches=tuple(touches))

@@ -27,7 +27,7 @@ from enum import Enum
 from tsm.model.model import Model
 from tsm.model.projection import Projection, arc_position
 from tsm.model.state import State, Touch, Traction
-from tsm.system.newton import Equilibrium
+from tsm.system.equilibrium import Equilibrium
 
 ROUND_OFF = 1e-10
 """Absolute margin below which a margin counts as zero."""
@@ -96,33 +96,33 @@ def over(model: Model, seen: Projection) -> bool:
     return seen.overshoot <= ROUND_OFF * model.length
 
 
-def traction(model: Model, equilibrium: Equilibrium, k: int) -> Traction:
+def traction(point: Equilibrium, k: int) -> Traction:
     """Force and place of closed pair k, which has friction."""
-    rods = model.rods
+    rods = point.model.rods
     assert rods is not None, "a contact with friction cuts its element"
-    return rods.traction(k, equilibrium.system.groups[rods.number])
+    return rods.traction(k, point.system.groups[rods.number])
 
 
-def normal_force(model: Model, equilibrium: Equilibrium, k: int) -> float:
+def normal_force(point: Equilibrium, k: int) -> float:
     """Contact force of closed pair k, friction included, positive where it pushes the beam away from the node's side."""
-    fx, fy = equilibrium.system.forces[k]
-    pair, state, touch = model.pairs[k], equilibrium.state, touch_at(equilibrium.state, k)
+    fx, fy = point.system.forces[k]
+    pair, state, touch = point.model.pairs[k], point.state, touch_at(point.state, k)
     if touch.grip is not None:
-        return math.copysign(math.hypot(fx, fy), traction(model, equilibrium, k).normal)
-    dx, dy = model.direction(pair, touch, state)
+        return math.copysign(math.hypot(fx, fy), traction(point, k).normal)
+    dx, dy = point.model.direction(pair, touch, state)
     size = float((fx * fx + fy * fy) ** 0.5)
     return size if pair.side * (fy * dx - fx * dy) >= 0 else -size
 
 
-def passes(model: Model, before: Equilibrium, after: Equilibrium) -> Iterator[Event]:
+def passes(before: Equilibrium, after: Equilibrium) -> Iterator[Event]:
     """Yield the pass-throughs of the contacts between two equilibria, one per beam node, interpolated linearly in the arc."""
-    t0, t1 = before.state.load_parameter, after.state.load_parameter
+    t0, t1 = before.t, after.t
     for k, (old, new) in enumerate(zip(before.state.touches, after.state.touches, strict=True)):
         if old is None or new is None or old.element == new.element:
             continue
-        pair, ahead = model.pairs[k], 1 if new.element > old.element else -1
+        pair, ahead = before.model.pairs[k], 1 if new.element > old.element else -1
         start, end = pair.arc_position(old), pair.arc_position(new)
-        push, pushed = normal_force(model, before, k), normal_force(model, after, k)
+        push, pushed = normal_force(before, k), normal_force(after, k)
         for element in range(old.element + ahead, new.element + ahead, ahead):
             arc = arc_position(pair.target, element, 0.0 if ahead > 0 else 1.0)
             # an end of the step on a node is beside it but for round-off

@@ -43,9 +43,7 @@ def unwind(angle: Any) -> Any:
     """Angle less its whole turns."""
     if isinstance(angle, float):
         return math.remainder(angle, math.tau)
-    if not np.iscomplexobj(angle):
-        return np.arctan2(np.sin(angle), np.cos(angle))
-    return angle - math.tau * np.rint(angle.real / math.tau)
+    return angle - math.tau * np.rint(np.real(angle) / math.tau)
 
 
 def tangent_of(angle: Any) -> Any:

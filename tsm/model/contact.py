@@ -16,7 +16,7 @@ from dataclasses import replace
 from tsm.model.groups.shape import recut
 from tsm.model.model import Model
 from tsm.model.pairs import PairModel
-from tsm.model.projection import nearest_chord, slide
+from tsm.model.projection import AT_NODE, nearest_chord, slide
 from tsm.model.state import State, Touch
 
 _AT_NODE = 1e-6
@@ -41,15 +41,18 @@ def with_touches(model: Model, state: State, touches: tuple[Touch | None, ...]) 
     return recut(model.rods, state, after) if model.rods else after
 
 
-def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...], past: float = 0.0) -> State:
-    """State with moved contacts; a contact that left its element by a part of its length is handed over to the neighbour."""
-    moved, owned = replace(state, touches=touches), list(touches)
-    for number, pair, touch in closed(model, moved):
-        first, past_node = pair.target.first, max(past, model.group_of(pair.target).past_node)
-        k, xi = slide(pair.target.lengths, touch.element - first, touch.xi, past_node)
+def owned(model: Model, state: State, past: float = 0.0) -> State:
+    """State whose contacts have the elements on which they lie; `past`: part of an element's length by which one may lie past its end."""
+    touches = list(state.touches)
+    for number, pair, touch in closed(model, state):
+        if pair.slot < 0:
+            touches[number] = chord_owner(model, pair, state, touch)
+            continue
+        first, least = pair.target.first, 0.0 if pair.cuts else AT_NODE
+        k, xi = slide(pair.target.lengths, touch.element - first, touch.xi, max(past, least))
         if touch.element != first + k:
-            owned[number] = replace(touch, element=first + k, xi=xi)
-    return with_touches(model, moved, tuple(owned))
+            touches[number] = replace(touch, element=first + k, xi=xi)
+    return with_touches(model, state, tuple(touches))
 
 
 def chord_owner(model: Model, pair: PairModel, state: State, touch: Touch) -> Touch:

@@ -21,9 +21,9 @@ from tsm.elements.properties import Array
 from tsm.model.contact import closed
 from tsm.model.model import Model
 from tsm.model.state import State
-from tsm.path.path import Point
 from tsm.statement.status import RefusedError
 from tsm.system.axis import axis_line
+from tsm.system.equilibrium import Equilibrium
 from tsm.system.stability import IDLE, mode, softness
 from tsm.system.system import Drive
 
@@ -66,7 +66,9 @@ class CriticalPoint:
     mode: dict[str, Array]
 
 
-def locate_bifurcation(before: Point, after: Point, solve: Callable[[float], Point]) -> Point:
+def locate_bifurcation(
+    before: Equilibrium, after: Equilibrium, solve: Callable[[float], Equilibrium]
+) -> Equilibrium:
     """Locate a bifurcation, the point with a singular tangent on a path that goes on.
 
     The index shows the side of the bifurcation, and the smallest singular value measures the distance to it. Raises
@@ -77,7 +79,7 @@ def locate_bifurcation(before: Point, after: Point, solve: Callable[[float], Poi
     """
     nearest = before, softness(before.newton.assembler, before.system)
 
-    def evaluate(point: Point) -> tuple[float, Point]:
+    def evaluate(point: Equilibrium) -> tuple[float, Equilibrium]:
         nonlocal nearest
         size = softness(point.newton.assembler, point.system)
         nearest = min(nearest, (point, size), key=itemgetter(1))
@@ -97,14 +99,14 @@ def locate_bifurcation(before: Point, after: Point, solve: Callable[[float], Poi
     return root
 
 
-def critical_point(kind: CriticalKind, point: Point, load_parameter: float) -> CriticalPoint:
+def critical_point(kind: CriticalKind, point: Equilibrium, load_parameter: float) -> CriticalPoint:
     """Critical point with the mode of the tangent at a point beside it."""
     shape = mode_shape(point)
     shapes = {} if shape is None else shape[1]
     return CriticalPoint(kind=kind, load_parameter=load_parameter, mode=shapes)
 
 
-def mode_shape(point: Point) -> tuple[Array, dict[str, Array]] | None:
+def mode_shape(point: Equilibrium) -> tuple[Array, dict[str, Array]] | None:
     """Buckling mode near a critical point, of the sign with which it begins to the left: see `_side`.
 
     Returns the change of the unknowns that moves some point of an axis by 1, and the displacements (m, 2) of
@@ -139,7 +141,7 @@ def _side(left: Array) -> float:
     return 1.0 if left[first] >= 0 else -1.0
 
 
-def mechanism(point: Point, drive: Drive) -> bool:
+def mechanism(point: Equilibrium, drive: Drive) -> bool:
     """Whether a structure can move without strain as a drive begins. A contact without force holds it only if it begins to push."""
     model, state = point.model, point.state
     edge, opened = IDLE * model.force_scale, state
@@ -162,7 +164,7 @@ def mechanism(point: Point, drive: Drive) -> bool:
     return state is not point.state and _free(point.with_state(state))
 
 
-def _free(point: Point) -> bool:
+def _free(point: Equilibrium) -> bool:
     """Whether beams that are rigid can move, and no load stiffens the motion; the tangent of many slender elements is loose too."""
     return not softness(point.newton.assembler, point.system) and _moves(point.model, point.state)
 

@@ -25,10 +25,10 @@ from tsm.contact.events import traction
 from tsm.elements.properties import Array
 from tsm.model.pairs import PairModel
 from tsm.model.state import Grip, Place, State
-from tsm.path.friction import grips, slip_rate, traction_at, with_grips
-from tsm.path.path import SHORTEST, Point, Track, extrapolate
+from tsm.path.friction import grips, slip_rate, with_grips
+from tsm.path.path import SHORTEST, Track, extrapolate
 from tsm.statement.status import RefusedError, Status
-from tsm.system.newton import Equilibrium, Newton
+from tsm.system.equilibrium import Equilibrium
 from tsm.system.system import Drive
 
 _FIVE = np.array([9, 49, 64, 49, 9]) / 180
@@ -57,13 +57,13 @@ _SWEEPS = 12
 Held = dict[int, Place]
 
 
-def rolled(newton: Newton, before: State, reached: Equilibrium) -> Equilibrium:
+def rolled(before: State, reached: Equilibrium) -> Equilibrium:
     """Equilibrium whose contacts in stick have not slipped since an equilibrium before, and are held in their own places.
 
     ``before``: in whose places the contacts of `reached` are held, so that their rows are the trapezium since
     then. Returns one that has not converged where none is found.
     """
-    model, small = newton.model, _ZERO * newton.model.length
+    newton, model = reached.newton, reached.model
     held = {
         k: grip.held
         for k, grip in grips(reached.state).items()
@@ -74,7 +74,7 @@ def rolled(newton: Newton, before: State, reached: Equilibrium) -> Equilibrium:
     begin, end = before.load_parameter, reached.state.load_parameter
     found = {1.0: reached}
     for part, least in ((LOBATTO[1], _ZERO), (LOBATTO[0], _LARGE), (LOBATTO[2], _LARGE)):
-        arcs, stretches = np.ptp(_curves(newton, held, list(found.values())), axis=-1)
+        arcs, stretches = np.ptp(_curves(held, list(found.values())), axis=-1)
         if (arcs * stretches).max() <= least * model.length:
             break
         t = begin + part * (end - begin)
@@ -83,39 +83,35 @@ def rolled(newton: Newton, before: State, reached: Equilibrium) -> Equilibrium:
         if not found[part].converged:
             return found[part]
     if len(found) == 1:
-        return _anchored(newton, held, reached)
+        return _anchored(held, reached)
     places, nodes = np.array([0, *sorted(found)]), [found[part] for part in sorted(found)]
-    middle, areas = found[0.5], _areas(newton, held, nodes, places)
-    fewer = _areas(newton, held, [middle, reached], np.array([0, 0.5, 1]))
+    middle, areas = found[0.5], _areas(held, nodes, places)
+    fewer = _areas(held, [middle, reached], np.array([0, 0.5, 1]))
     apart = np.abs(areas - fewer[:, 1:])[:, -1].max()
     if apart > _AREAS * model.length and abs(end - begin) > _WHOLE:
-        first = rolled(newton, before, middle)
+        first = rolled(before, middle)
         there = {k: grip for k, grip in grips(first.state).items() if k in held}
         second = newton.solve(with_grips(reached.state, there))
-        return rolled(newton, first.state, second) if first.converged else first
+        return rolled(first.state, second) if first.converged else first
     for _ in range(_SWEEPS):
-        nodes = [_corrected(newton, held, node, area) for node, area in zip(nodes, areas.T, strict=True)]
-        last, areas = areas, _areas(newton, held, nodes, places)
-        if np.abs(areas - last).max() <= small:
-            return _anchored(newton, held, nodes[-1])
+        nodes = [_corrected(held, node, area) for node, area in zip(nodes, areas.T, strict=True)]
+        last, areas = areas, _areas(held, nodes, places)
+        if np.abs(areas - last).max() <= _ZERO * model.length:
+            return _anchored(held, nodes[-1])
     return replace(reached, status=Status.ITERATION_LIMIT)
 
 
-def _place(newton: Newton, node: Equilibrium, k: int) -> Place:
-    return traction(newton.model, node, k).place
-
-
-def _curves(newton: Newton, held: Held, nodes: list[Equilibrium]) -> Array:
+def _curves(held: Held, nodes: list[Equilibrium]) -> Array:
     """Arc positions s and lengths A of the contacts in their held places and at equilibria, shape (2, contacts, 1 + nodes)."""
-    trails = [[place, *(_place(newton, node, k) for node in nodes)] for k, place in held.items()]
+    trails = [[place, *(traction(node, k).place for node in nodes)] for k, place in held.items()]
     points = np.array([[(place.arc, place.stretch) for place in trail] for trail in trails])
     return np.moveaxis(points, -1, 0)
 
 
-def _areas(newton: Newton, held: Held, nodes: list[Equilibrium], places: Array) -> Array:
+def _areas(held: Held, nodes: list[Equilibrium], places: Array) -> Array:
     """Area c between path and chord of every contact up to every equilibrium, shape (contacts, nodes)."""
     areas = []
-    for s, A in np.moveaxis(_curves(newton, held, nodes), 1, 0):
+    for s, A in np.moveaxis(_curves(held, nodes), 1, 0):
         arc, stretch = (Polynomial.fit(places, x - x[0], len(places) - 1, domain=[0, 1]) for x in (s, A))
         below = (stretch * arc.deriv()).integ(lbnd=0)
         areas.append(((A - A[0]) * (s - s[0]) / 2 - below(places))[1:])
@@ -129,28 +125,30 @@ def _shifted(pair: PairModel, place: Place, by: float) -> Place:
     return place._replace(shear=place.shear + by / pair.lever)
 
 
-def _corrected(newton: Newton, held: Held, node: Equilibrium, areas: Array) -> Equilibrium:
+def _corrected(held: Held, node: Equilibrium, areas: Array) -> Equilibrium:
     """One iteration towards the equilibrium in which the trapezium of every contact is the area."""
     shifted = zip(held.items(), areas.tolist(), strict=True)
-    places = {k: Grip(0, _shifted(newton.model.pairs[k], place, area)) for (k, place), area in shifted}
-    held_there = newton.at(node, with_grips(node.state, places))
-    solved = newton.assembler.solve(held_there.system)
+    places = {k: Grip(0, _shifted(node.model.pairs[k], place, area)) for (k, place), area in shifted}
+    held_there = node.with_state(with_grips(node.state, places))
+    solved = node.newton.assembler.solve(held_there.system)
     if solved is None:
         return node
-    return newton.at(node, newton.update(held_there.state, solved[:, 0], held_there.system, residual=True))
+    return node.with_state(
+        node.newton.update(held_there.state, solved[:, 0], held_there.system, residual=True)
+    )
 
 
-def _anchored(newton: Newton, held: Held, node: Equilibrium) -> Equilibrium:
+def _anchored(held: Held, node: Equilibrium) -> Equilibrium:
     """Equilibrium whose contacts are held in their own places, with what is left of their rows, so that it does not add up."""
     places = {}
     for k, grip in grips(node.state).items():
         if k in held and grip.held is not None:
-            pair, here = newton.model.pairs[k], _place(newton, node, k)
+            pair, here = node.model.pairs[k], traction(node, k).place
             places[k] = Grip(0, _shifted(pair, here, -pair.slid(here, grip.held)))
-    return newton.at(node, with_grips(node.state, places))
+    return node.with_state(with_grips(node.state, places))
 
 
-def power(point: Point, drive: Drive) -> Array | None:
+def power(point: Equilibrium, drive: Drive) -> Array | None:
     """Work of pins, supports and loads for a unit of the load parameter, then the dissipation of every pair, (1 + pairs,).
 
     None where the tangent is singular.
@@ -169,11 +167,11 @@ def power(point: Point, drive: Drive) -> Array | None:
             spent[0] += fx * drive.velocities[k][0] + fy * drive.velocities[k][1]
     for k, grip in grips(state).items():
         if grip.slip:
-            spent[1 + k] = traction_at(point, k).tangential * slip_rate(point, by, k)
+            spent[1 + k] = traction(point, k).tangential * slip_rate(point, by, k)
     return spent
 
 
-def spent(track: Track, end: Point, drive: Drive) -> tuple[Array, list[Point]]:
+def spent(track: Track, end: Equilibrium, drive: Drive) -> tuple[Array, list[Equilibrium]]:
     """Work and dissipation from the last point of a path to the next one, and points in between, in order.
 
     Refuses a step with a singular tangent at an end, or without an equilibrium in between. A short part without
@@ -183,15 +181,15 @@ def spent(track: Track, end: Point, drive: Drive) -> tuple[Array, list[Point]]:
     near, trail = _NEAR * (end.t - begin.t), [begin.state, end.state]
     if end.t - begin.t > SHORTEST:
         trail = [begin.predicted(begin.t + near), end.predicted(end.t - near), *trail]
-    between: list[Point] = []
+    between: list[Equilibrium] = []
 
     def at(t: float) -> Array | None:
         near = [*trail, *(inner.state for inner in between[-3:])]
         start = newton.prescribed(extrapolate(newton.model, near, t), t)
-        reached = rolled(newton, near[-1], newton.solve(start))
+        reached = rolled(near[-1], newton.solve(start))
         if not reached.converged:
             return None
-        between.append(Point(newton, reached))
+        between.append(reached)
         return power(between[-1], drive)
 
     def over(start: float, stop: float, first: Array | None, last: Array | None) -> Array:

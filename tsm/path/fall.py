@@ -20,9 +20,9 @@ from tsm.model.state import State
 from tsm.path.critical import mode_shape
 from tsm.path.friction import grips
 from tsm.path.margins import Margin, least_push
-from tsm.path.path import Point
 from tsm.path.step import Step
 from tsm.statement.status import Status, StopError
+from tsm.system.equilibrium import Equilibrium
 from tsm.system.newton import Newton
 from tsm.system.system import Drag
 
@@ -45,10 +45,10 @@ class Fall:
     """Falls of a structure."""
 
     newton: Newton
-    measure: Callable[[Point], list[Margin]]  # margins at a point
+    measure: Callable[[Equilibrium], list[Margin]]  # margins at a point
     log: Step  # where iterations, touches and releases are noted
 
-    def beside(self, critical: Point, ahead: float) -> tuple[Point, float]:
+    def beside(self, critical: Equilibrium, ahead: float) -> tuple[Equilibrium, float]:
         """Return the point of least potential beside a critical one, and the potential that the fall there releases.
 
         The structure is pushed along its mode, one way and the other. Of two points with the same potential
@@ -72,7 +72,7 @@ class Fall:
         least = min(newton.potential(rest.state) for rest in rests)
         return next(r for r in rests if self._descends(least, r.state)), newton.potential(held) - least
 
-    def after(self, event: Point, state: State) -> tuple[Point, float]:
+    def after(self, event: Equilibrium, state: State) -> tuple[Equilibrium, float]:
         """Return the point after a slip-off, and the released potential; contacts whose force would become tensile are released.
 
         ``state``: the configuration of the slip-off without the lost contact. Raises StopError with FALLING if
@@ -86,26 +86,23 @@ class Fall:
                 raise StopError(Status.FALLING)
             state, energy = point.state, self.newton.potential(point.state)
             closed = (k for k, touch in enumerate(state.touches) if touch is not None)
-            pushes = (
-                (normal_force(model, point.equilibrium, k) / least_push(self.newton, k), k) for k in closed
-            )
+            pushes = ((normal_force(point, k) / least_push(self.newton, k), k) for k in closed)
             least, k = min(pushes, default=(0.0, -1))
             if least >= -1.0:
                 return point, began - energy
             self.log.note(EventKind.RELEASE, event, state, k)
             state = opened(model, state, k, EventKind.RELEASE, alone=True)
 
-    def _next(self, state: State, energy: float) -> Point | None:
-        """Point near the state, of a potential of at most `energy`, or at the end of a fall."""
-        equilibrium = self.newton.solve(state)
-        self.log.iterations += equilibrium.iterations
-        near = equilibrium.converged and self.newton.apart(state, equilibrium.state) <= _FAR
-        point = Point(self.newton, equilibrium)
-        if near and self._descends(energy, equilibrium.state) and not met(self.measure(point)):
+    def _next(self, state: State, energy: float) -> Equilibrium | None:
+        """Equilibrium near the state, of a potential of at most `energy`, or at the end of a fall."""
+        point = self.newton.solve(state)
+        self.log.iterations += point.iterations
+        near = point.converged and self.newton.apart(state, point.state) <= _FAR
+        if near and self._descends(energy, point.state) and not met(self.measure(point)):
             return point
         return self.rest(state, energy)
 
-    def rest(self, state: State, energy: float) -> Point | None:
+    def rest(self, state: State, energy: float) -> Equilibrium | None:
         """Find the point that the structure reaches against a drag which is reduced from step to step; None if there is none.
 
         ``state``: configuration at the start of the fall, without the lost contact and therefore out of
@@ -116,10 +113,10 @@ class Fall:
         for _ in range(_TRIALS):
             at_rest = pace > _FIRST_PACE * 1e8
             drag = None if at_rest else Drag(resistance / pace, state.q)
-            point = Point(newton, newton.solve(state, drag=drag))
-            self.log.iterations += point.equilibrium.iterations
+            point = newton.solve(state, drag=drag)
+            self.log.iterations += point.iterations
             taken = 0.0 if drag is None else float(drag.per_way @ (point.state.q - state.q) ** 2) / 2
-            down = point.equilibrium.converged and self._descends(energy - taken, point.state)
+            down = point.converged and self._descends(energy - taken, point.state)
             margins = self.measure(point) if down else []
             landed = met(margins)
             if down and not landed:

@@ -27,11 +27,12 @@ from tsm.path.energy import rolled, spent
 from tsm.path.fall import Fall
 from tsm.path.friction import grips, regripped
 from tsm.path.margins import Margin, Search, broken, margins
-from tsm.path.path import FOLD, SMALLEST, Point, Track, allowed
+from tsm.path.path import FOLD, SMALLEST, Track, allowed
 from tsm.path.step import NEAR, Step, ends
 from tsm.statement.settings import Settings
 from tsm.statement.stages import stage_of
 from tsm.statement.status import RefusedError, Status, StopError
+from tsm.system.equilibrium import Equilibrium
 from tsm.system.newton import Newton
 from tsm.system.system import Drive
 
@@ -63,16 +64,16 @@ class Follower:
         self.step = 1.0  # length of the next load step
         self.target = 0.0  # load parameter to reach next
         self.turned = -1.0  # last kink; -1 before any
-        start = Point(self.newton, self.newton.solve(initial_state(model)))
+        start = self.newton.solve(initial_state(model))
         self.track = Track(start)
-        self.log = Step(equilibrium=start.equilibrium)  # since the last yielded step
+        self.log = Step(equilibrium=start)  # since the last yielded step
         if model.rubbed:
             self.log.spent = np.zeros(1 + len(model.pairs))
         self.chatter: Counter[tuple[int, float]] = Counter()  # number of changes by pair and load parameter
         # margins of the events that the contacts of the last point may have next
-        self.margins = self._measure(start) if start.equilibrium.converged else []
+        self.margins = self._measure(start) if start.converged else []
 
-    def _measure(self, point: Point) -> list[Margin]:
+    def _measure(self, point: Equilibrium) -> list[Margin]:
         return margins(point, self._drive(point.t))
 
     def _drive(self, t: float) -> Drive:
@@ -102,8 +103,8 @@ class Follower:
         start = self.track.last
         if mechanism(start, self._drive(0.0)):
             raise StopError(Status.MECHANISM)
-        if not start.equilibrium.converged:
-            raise StopError(start.equilibrium.status)
+        if not start.converged:
+            raise StopError(start.status)
         check_ends(self.model, start.state, start.state)
 
     def _try_step(self, attempt: int) -> bool:
@@ -154,8 +155,8 @@ class Follower:
         self.turned = here.t
         self._begin(self._gripped(here, here.state))
 
-    def _gripped(self, point: Point, last: State) -> Point:
-        """Point with slip or stick chosen anew where there is friction; `last`: state before. Logs the changes."""
+    def _gripped(self, point: Equilibrium, last: State) -> Equilibrium:
+        """Equilibrium with slip or stick chosen anew where there is friction; `last`: state before. Logs the changes."""
         if not self.model.rubbed:
             return point
         before, gripped = grips(point.state), regripped(point, self._drive(point.t), last)
@@ -168,14 +169,14 @@ class Follower:
         """The step that ends here; the log starts anew."""
         log, last, stage = self.log, self.track.last, 1 + stage_of(self.target, self.model.stages)
         log.equilibrium, log.index, log.status, log.requested = (
-            last.equilibrium,
+            last,
             last.index,
             status,
             requested,
         )
         if stage > 1:
             log.events = [replace(event, stage=stage) for event in log.events]
-        self.log = Step(equilibrium=last.equilibrium, spent=log.spent)
+        self.log = Step(equilibrium=last, spent=log.spent)
         return log
 
     def _reach(self, goal: float) -> None:
@@ -199,8 +200,8 @@ class Follower:
     def _search(self, goal: float) -> Search:
         return Search(self.track.last, self.margins, goal, self._solve, self._measure)
 
-    def _solve(self, t: float) -> Point:
-        """Point at t from the prediction; refused if it is off the path."""
+    def _solve(self, t: float) -> Equilibrium:
+        """Equilibrium at t from the prediction; refused if it is off the path."""
         last, start = self.track.last, self.track.predicted(t)
         reached = self._converged(start, last.state)
         reached.behind = self.track.unexplained(last, reached)
@@ -208,17 +209,17 @@ class Follower:
             raise RefusedError
         return reached
 
-    def _converged(self, start: State, before: State | None = None) -> Point:
+    def _converged(self, start: State, before: State | None = None) -> Equilibrium:
         """Converged point near `start`; contacts in stick have no slip since `before`."""
-        equilibrium = self.newton.solve(start)
+        point = self.newton.solve(start)
         if before is not None and self.model.rubbed:
-            equilibrium = rolled(self.newton, before, equilibrium)
-        self.log.iterations += equilibrium.iterations
-        if not equilibrium.converged:
-            raise RefusedError(equilibrium.status)
-        return Point(self.newton, equilibrium)
+            point = rolled(before, point)
+        self.log.iterations += point.iterations
+        if not point.converged:
+            raise RefusedError(point.status)
+        return point
 
-    def _advance(self, reached: Point) -> None:
+    def _advance(self, reached: Equilibrium) -> None:
         """Accept a point, or meet the bifurcation before it; refuse a step that may have left the path."""
         last, track = self.track.last, self.track
         unexplained = max(reached.behind, track.unexplained(reached, reached))
@@ -231,31 +232,31 @@ class Follower:
             more, between = spent(track, reached, self._drive(reached.t))
             self._search(reached.t).check_dips([*between, reached])
             self.log.spent = self.log.spent + more
-        self.log.events += passes(self.model, last.equilibrium, reached.equilibrium)
+        self.log.events += passes(last, reached)
         self._accept(reached)
         # the next step, after one that could have been `fitting` times as long
         fitting, taken = allowed(unexplained), reached.t - last.t
         self.step = min(max(min(2.0, fitting) * taken, self.step if fitting >= 1 else 0.0), 1.0)
 
-    def _accept(self, point: Point) -> None:
+    def _accept(self, point: Equilibrium) -> None:
         """Make a point the last of the path."""
         state = rearm(self.model, point.state)
         if state is not point.state:
-            point = Point(self.newton, replace(point.equilibrium, state=state))
+            point = replace(point, state=state)
         self.track.accept(point)
         self.margins = self._measure(point)
 
-    def _begin(self, point: Point) -> None:
+    def _begin(self, point: Equilibrium) -> None:
         """Make a point the last of the path, and the first one with its contacts."""
         self.track.history = []
         self._accept(point)
 
-    def _meet_bifurcation(self, reached: Point) -> None:
+    def _meet_bifurcation(self, reached: Equilibrium) -> None:
         """At a bifurcation within a step, end the path, turn to the stable branch, or accept the point beyond."""
         singular = locate_bifurcation(self.track.last, reached, self._solve)
         self._note_critical(CriticalKind.BIFURCATION, singular, singular.t)
         ahead = reached if self.branch == "primary" else singular
-        self.log.events += passes(self.model, self.track.last.equilibrium, ahead.equilibrium)
+        self.log.events += passes(self.track.last, ahead)
         self._accept(ahead)
         if self.branch != "primary":
             self._end_or_fall(singular, Status.BIFURCATION)
@@ -265,11 +266,11 @@ class Follower:
         self._note_critical(CriticalKind.LIMIT_POINT, self.track.last, self.track.limit())
         self._end_or_fall(self.track.last, Status.LIMIT_POINT)
 
-    def _note_critical(self, kind: CriticalKind, point: Point, load_parameter: float) -> None:
+    def _note_critical(self, kind: CriticalKind, point: Equilibrium, load_parameter: float) -> None:
         self.log.critical.append(critical_point(kind, point, load_parameter))
         self.log.events.append(Event(kind=EventKind[kind.name], load_parameter=load_parameter))
 
-    def _end_or_fall(self, critical: Point, status: Status) -> None:
+    def _end_or_fall(self, critical: Equilibrium, status: Status) -> None:
         """End the path, or let the structure fall from a critical point, pushed along its mode in both directions."""
         if self.branch != "stable":
             raise StopError(status)
@@ -283,7 +284,7 @@ class Follower:
     def _fall(self) -> Fall:
         return Fall(newton=self.newton, measure=self._measure, log=self.log)
 
-    def _switch(self, event: Point, changes: list[Margin]) -> None:
+    def _switch(self, event: Equilibrium, changes: list[Margin]) -> None:
         """Accept the configuration of the events, then open and close its contacts."""
         if event is not self.track.last:
             self._advance(event)
@@ -304,7 +305,7 @@ class Follower:
             del self.log.events[noted:]
             raise
 
-    def _resume(self, event: Point, state: State, *, jump: bool) -> None:
+    def _resume(self, event: Equilibrium, state: State, *, jump: bool) -> None:
         """Accept the new contacts; a higher index is a limit point."""
         if jump:
             found, released = self._fall().after(event, state)

@@ -16,8 +16,8 @@ from itertools import islice, product
 from tsm.contact.events import touch_at, traction
 from tsm.model.model import Model
 from tsm.model.state import UNDECIDED, Grip, State, Traction
-from tsm.path.path import Point, Rates
 from tsm.statement.status import Status, StopError
+from tsm.system.equilibrium import Equilibrium, Rates
 from tsm.system.system import Drive
 
 _EDGE = 1e-9
@@ -37,28 +37,23 @@ Grips = dict[int, Grip]
 """States of contacts by their numbers."""
 
 
-def traction_at(point: Point, k: int) -> Traction:
-    """Force and place of closed pair k, which has friction."""
-    return traction(point.model, point.equilibrium, k)
-
-
-def cone(point: Point, k: int) -> float:
+def cone(point: Equilibrium, k: int) -> float:
     """Distance of the force of closed pair k from the edge of its cone, ``mu F_n - |F_t|``."""
-    return _inside(point.model, k, traction_at(point, k))
+    return _inside(point.model, k, traction(point, k))
 
 
 def _inside(model: Model, k: int, here: Traction) -> float:
     return model.pairs[k].pair.friction * here.normal - abs(here.tangential)
 
 
-def slip_rate(point: Point, rates: Rates, k: int) -> float:
+def slip_rate(point: Equilibrium, rates: Rates, k: int) -> float:
     """Slip rate of closed pair k."""
     rods = point.model.rods
     assert rods is not None, "a contact with friction cuts its element"
     return rods.slip_rate(k, point.system.tangent.groups[rods.number], rates.dofs, rates.contacts)
 
 
-def regripped(point: Point, drive: Drive, last: State) -> Point:
+def regripped(point: Equilibrium, drive: Drive, last: State) -> Equilibrium:
     """Equilibrium whose contacts with friction slip or stick as the load parameter grows, after a state `last`.
 
     Where a slip ends, its rate is zero, and the force of the stick that follows moves along the cone: its
@@ -68,7 +63,7 @@ def regripped(point: Point, drive: Drive, last: State) -> Point:
     model, now = point.model, grips(point.state)
     if not now:
         return point
-    here = {k: traction_at(point, k) for k in now}
+    here = {k: traction(point, k) for k in now}
     # a contact that has just closed has a force of round-off, which may be considerable near a support
     here |= {k: here[k]._replace(tangential=0.0, normal=0.0) for k, grip in now.items() if grip == UNDECIDED}
     # the round-off of a slip rate is a force in a stiff beam, so more is allowed where a slip ends, and where nothing
@@ -89,9 +84,9 @@ def regripped(point: Point, drive: Drive, last: State) -> Point:
     raise StopError(Status.JAMMED)
 
 
-def turned(point: Point, k: int) -> Grip:
+def turned(point: Equilibrium, k: int) -> Grip:
     """State of pair k that sticks where it slipped, or slips the way of its force where it stuck."""
-    here = traction_at(point, k)
+    here = traction(point, k)
     return Grip(0, here.place) if grips(point.state)[k].slip else Grip(here.way, None)
 
 
@@ -137,9 +132,9 @@ def _reversed(model: Model, chosen: Grips, here: dict[int, Traction]) -> Iterato
 
 
 def _going_on(
-    point: Point, chosen: Grips, drive: Drive, here: dict[int, Traction], leaving: dict[int, float]
-) -> Point | None:
-    """Point with contacts in the chosen states, if they can go on; forces may leave their cones at the rates `leaving`."""
+    point: Equilibrium, chosen: Grips, drive: Drive, here: dict[int, Traction], leaving: dict[int, float]
+) -> Equilibrium | None:
+    """Equilibrium with contacts in the chosen states, if they can go on; forces may leave their cones at the rates `leaving`."""
     state = with_grips(point.state, chosen)
     going = point if state.touches == point.state.touches else point.with_state(state)
     by = going.rates(drive)
@@ -147,7 +142,7 @@ def _going_on(
     return going if lasting else None
 
 
-def _lasts(point: Point, by: Rates, k: int, grip: Grip, here: Traction, leaving: float) -> bool:
+def _lasts(point: Equilibrium, by: Rates, k: int, grip: Grip, here: Traction, leaving: float) -> bool:
     """Whether a contact can go on in its state."""
     model, idle = point.model, _idle(point.model, here)
     if idle and not _grows(model, k, here, by, grip):
@@ -171,7 +166,7 @@ def _grows(model: Model, k: int, here: Traction, by: Rates, grip: Grip) -> bool:
     return bool(normal >= -edge if grip.slip else abs(tangential) <= pair.pair.friction * normal + edge)
 
 
-def _row_rate(point: Point, by: Rates, k: int, way: int) -> float:
+def _row_rate(point: Equilibrium, by: Rates, k: int, way: int) -> float:
     """Derivative of ``F_t - sigma mu F_n``, times a positive number, along rates that do not hold it at zero."""
     model, assembler = point.model, point.newton.assembler
     slipping, slot = with_grips(point.state, {k: Grip(way, None)}), model.pairs[k].slot + 2

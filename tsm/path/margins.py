@@ -23,8 +23,8 @@ from tsm.elements.properties import Array
 from tsm.model import scales
 from tsm.model.state import UNDECIDED, Grip, State
 from tsm.path.friction import cone, slip_rate, turned, with_grips
-from tsm.path.path import Point
 from tsm.statement.status import RefusedError, Status, StopError
+from tsm.system.equilibrium import Equilibrium
 from tsm.system.newton import Newton
 from tsm.system.system import Drive
 
@@ -56,44 +56,44 @@ class Watch(NamedTuple):
     """An event that may come."""
 
     kind: EventKind
-    awaited: Callable[[Point, int], bool]  # whether pair k may have it next
-    margin: Callable[[Point, int, Drive], float]  # under what changes on the way
+    awaited: Callable[[Equilibrium, int], bool]  # whether pair k may have it next
+    margin: Callable[[Equilibrium, int, Drive], float]  # under what changes on the way
     # contacts after it: at the event, in the state with the changes of events beside it, by its margin, and whether
     # it is alone; raises StopError where the path ends
-    apply: Callable[[Point, State, Margin, bool], State]
+    apply: Callable[[Equilibrium, State, Margin, bool], State]
 
 
-def _closed(point: Point, k: int) -> bool:
+def _closed(point: Equilibrium, k: int) -> bool:
     return point.state.touches[k] is not None
 
 
-def _thick(point: Point, k: int) -> bool:
+def _thick(point: Equilibrium, k: int) -> bool:
     return point.model.pairs[k].pair.offset > 0
 
 
-def _grip(point: Point, k: int) -> Grip:
+def _grip(point: Equilibrium, k: int) -> Grip:
     """Slip or stick, neither where a contact is open or has no friction."""
     touch = point.state.touches[k]
     return touch.grip if touch is not None and touch.grip is not None else UNDECIDED
 
 
-def _inside(point: Point, k: int, _drive: Drive) -> float:
+def _inside(point: Equilibrium, k: int, _drive: Drive) -> float:
     pair = point.model.pairs[k]
     arc = pair.arc_position(touch_at(point.state, k))
     return min(arc, pair.target.beam.length - arc) / point.model.length
 
 
-def _push(point: Point, k: int, _drive: Drive) -> float:
-    return normal_force(point.model, point.equilibrium, k) * ROUND_OFF / least_push(point.newton, k)
+def _push(point: Equilibrium, k: int, _drive: Drive) -> float:
+    return normal_force(point, k) * ROUND_OFF / least_push(point.newton, k)
 
 
-def _slip_rate(point: Point, k: int, drive: Drive) -> float:
+def _slip_rate(point: Equilibrium, k: int, drive: Drive) -> float:
     """Slip rate, positive the way it slips; a pair without a rate slips on."""
     rates = point.rates(drive)
     return 1.0 if rates is None else _grip(point, k).slip * slip_rate(point, rates, k) / point.model.length
 
 
-def _roundness(point: Point, k: int, _drive: Drive) -> float:
+def _roundness(point: Equilibrium, k: int, _drive: Drive) -> float:
     """Curvature ``theta'/(1 + e)``, ``theta' = m/EI``, by which the beam may still bend round the node, over 1/d."""
     pair, touch, system = point.model.pairs[k], touch_at(point.state, k), point.system
     group = point.model.group_of(pair.target)
@@ -102,13 +102,13 @@ def _roundness(point: Point, k: int, _drive: Drive) -> float:
     return 1.0 - abs(pair.reach_at(pair.arc_position(touch))) * curvature
 
 
-def _gap(point: Point, k: int, _drive: Drive) -> float:
+def _gap(point: Equilibrium, k: int, _drive: Drive) -> float:
     pair, model = point.model.pairs[k], point.model
     seen = model.project(pair, point.state)
     return seen.gap / model.length if over(model, seen) else 1.0
 
 
-def _close(point: Point, state: State, margin: Margin, _alone: bool) -> State:
+def _close(point: Equilibrium, state: State, margin: Margin, _alone: bool) -> State:
     """State with an open pair closed without force. A pair whose node is on the far side stays open and may not close (not armed)."""
     k, model = margin.pair, point.model
     if margin.value < -ROUND_OFF:
@@ -117,15 +117,15 @@ def _close(point: Point, state: State, margin: Margin, _alone: bool) -> State:
     return changed(model, state, k, closed_at(pair, model.project(pair, state)), armed=True)
 
 
-def _open(point: Point, state: State, margin: Margin, alone: bool) -> State:
+def _open(point: Equilibrium, state: State, margin: Margin, alone: bool) -> State:
     return opened(point.model, state, margin.pair, margin.kind, alone=alone)
 
 
-def _turn(point: Point, state: State, margin: Margin, _alone: bool) -> State:
+def _turn(point: Equilibrium, state: State, margin: Margin, _alone: bool) -> State:
     return with_grips(state, {margin.pair: turned(point, margin.pair)})
 
 
-def _end(_point: Point, state: State, margin: Margin, _alone: bool) -> State:
+def _end(_point: Equilibrium, state: State, margin: Margin, _alone: bool) -> State:
     met = (state, margin.pair) if margin.kind is EventKind.END_CONTACT else None
     raise StopError(Status[margin.kind.name], met)
 
@@ -152,7 +152,7 @@ WATCHES = (
 """The events of a contact."""
 
 
-def margins(point: Point, drive: Drive) -> list[Margin]:
+def margins(point: Equilibrium, drive: Drive) -> list[Margin]:
     """Margins of the events that may come next, under what changes on the way; computed once for each change."""
     if drive not in point.margins:
         numbers = range(len(point.model.pairs))
@@ -161,7 +161,7 @@ def margins(point: Point, drive: Drive) -> list[Margin]:
     return point.margins[drive]
 
 
-def applied(point: Point, state: State, margin: Margin, *, alone: bool) -> State:
+def applied(point: Equilibrium, state: State, margin: Margin, *, alone: bool) -> State:
     """State after an event at a point; `alone` if no contact takes over. Raises StopError where the path ends."""
     watch = next(watch for watch in WATCHES if watch.kind is margin.kind)
     return watch.apply(point, state, margin, alone)
@@ -179,13 +179,13 @@ def least_push(newton: Newton, k: int) -> float:
 class Search(NamedTuple):
     """Search from the last point of a path, which has margins, to a goal. A search raises RefusedError where the step is too long."""
 
-    last: Point
+    last: Equilibrium
     margins: list[Margin]
     goal: float
-    solve: Callable[[float], Point]  # point at a load parameter
-    measure: Callable[[Point], list[Margin]]
+    solve: Callable[[float], Equilibrium]  # point at a load parameter
+    measure: Callable[[Equilibrium], list[Margin]]
 
-    def first(self, after: list[Margin], numbers: list[int]) -> tuple[Point, list[Margin]]:
+    def first(self, after: list[Margin], numbers: list[int]) -> tuple[Equilibrium, list[Margin]]:
         """First of the events with some numbers, with the margins of what happens there.
 
         ``after``: margins at the goal. If a force or position jumps, the step is too long.
@@ -207,8 +207,8 @@ class Search(NamedTuple):
         ]
         return event, sorted([first, *together], key=lambda m: m.kind is EventKind.TOUCH)
 
-    def _located(self, n: int, value: float) -> Point:
-        """Point at an event, by the number of its margin and the margin's value at the goal."""
+    def _located(self, n: int, value: float) -> Equilibrium:
+        """Equilibrium at an event, by the number of its margin and the margin's value at the goal."""
         before = self.margins[n]
         if before.value <= ROUND_OFF:
             if before.kind in _GRIPS:
@@ -218,7 +218,7 @@ class Search(NamedTuple):
                 raise RefusedError(part=_PROBE)
             return self.last
 
-        def evaluate(t: float) -> tuple[float, Point]:
+        def evaluate(t: float) -> tuple[float, Equilibrium]:
             point = self.solve(t)
             return self.measure(point)[n].value, point
 
@@ -246,7 +246,7 @@ class Search(NamedTuple):
         if ahead and not idle.isdisjoint(broken(self.margins, ahead)):
             raise RefusedError(part=_PROBE)
 
-    def check_dips(self, points: list[Point]) -> None:
+    def check_dips(self, points: list[Equilibrium]) -> None:
         """Refuse a step inside which a margin of slip or stick is below zero, though not at its end.
 
         ``points``: points inside the step and at its end.

@@ -14,21 +14,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from tsm.contact.contact_set import owned
 from tsm.elements.properties import Array
-from tsm.model.contact import closed, handed_over
+from tsm.model.contact import closed, owned
 from tsm.model.model import Model
 from tsm.model.pairs import PairModel
 from tsm.model.state import State, Touch
 from tsm.statement.status import RefusedError
-from tsm.system.newton import Equilibrium, Newton
-from tsm.system.stability import index
-from tsm.system.system import Drive
+from tsm.system.equilibrium import RESOLVED, Equilibrium
+from tsm.system.newton import Newton
 
 _FOLLOWED = 0.35
 """The bound c. A limit point is approached by a factor of (1 + 2 c)^2 = 2.9 a step."""
@@ -41,8 +38,6 @@ _LONGEST = 1.0
 from its prediction where no tangent is usable. With 2 instead of 1, one random pin in a hundred ends on another branch."""
 _PROMISED = 0.8
 """Longest step at the last speed, in the same measure: most of the longer ones would be refused."""
-_RESOLVED = 1e-8
-"""Smaller motions, in the same measure, are round-off, as of a column that stays straight: it moves along itself only."""
 _MEMORY = 4
 """Points in the prediction, a polynomial in the load parameter through their states and usable tangents."""
 SHORTEST = 1e-6
@@ -53,105 +48,24 @@ _GROWING, _ROOM = 1.4, 0.6
 """Growth of the speed that shows a limit point ahead, and the next step over the distance to it."""
 
 
-class Rates(NamedTuple):
-    """Derivatives in the load parameter."""
-
-    unknowns: Array  # of the equations and the contacts' unknowns
-    dofs: Array  # of all degrees of freedom
-    contacts: Array  # of the contacts' unknowns
-    motion: Array  # of the motion, see `Newton.motion`
-
-
-class Point:
-    """An equilibrium with what the path has there; each is computed once."""
-
-    behind = 0.0  # part of the step to here that the tangent at its start does not explain
-
-    def __init__(self, newton: Newton, equilibrium: Equilibrium) -> None:
-        self.newton, self.model, self.equilibrium = newton, newton.model, equilibrium
-        self.state, self.system = equilibrium.state, equilibrium.system
-        self.t = self.state.load_parameter
-        self._rates: dict[Drive, Rates | None] = {}
-        self.margins: dict[Drive, list[Any]] = {}  # see `tsm.path.margins`
-
-    def with_state(self, state: State) -> Point:
-        """The same with other contacts, in equilibrium too."""
-        return Point(self.newton, self.newton.at(self.equilibrium, state))
-
-    @cached_property
-    def index(self) -> int:
-        """Number of the energy's negative eigenvalues, -1 where it is not defined, see `tsm.system.stability`."""
-        _ = self.system.tangent  # which the rates need besides, and the index is cheaper with
-        return index(self.newton.assembler, self.system)
-
-    @cached_property
-    def on_chords(self) -> bool:
-        """Whether a closed contact has a stiffness that grows without bound at the beam nodes: round-off spoils its tangent."""
-        return any(pair.slot < 0 for _, pair, _ in closed(self.model, self.state))
-
-    def rates(self, drive: Drive) -> Rates | None:
-        """Rates while the pins go straight and the loads grow as the drive says; None where the tangent is singular."""
-        if drive not in self._rates:
-            self._rates[drive] = self._solved(drive)
-        return self._rates[drive]
-
-    def _solved(self, drive: Drive) -> Rates | None:
-        assembler, model = self.newton.assembler, self.model
-        solved = assembler.solve(self.system, -assembler.rate(self.system, drive))
-        if solved is None or not np.isfinite(solved[:, 1]).all():
-            return None
-        rates, dofs = solved[:, 1], assembler.prescribed_rate(drive.stage)
-        dofs[model.free], contacts = rates[: model.equations], rates[model.equations :]
-        motion, rods = dofs[model.free], model.rods
-        if rods:
-            tangent = self.system.tangent.groups[rods.number]
-            motion = np.concatenate([motion, rods.turning(self.state, tangent, dofs, contacts)])
-        return Rates(rates, dofs, contacts, motion)
-
-    def _rates_to(self, t: float) -> Rates | None:
-        return self.rates(self.newton.assembler.drive(self.t, t))
-
-    @cached_property
-    def speed(self) -> float:
-        """Size of the motion per whole load, no less than what round-off may be; infinite at a limit point."""
-        rates = self._rates_to(self.t)
-        return math.inf if rates is None else max(self.newton.size(rates.motion), _RESOLVED)
-
-    def release(self) -> None:
-        """Let go of the assembled tangent, which every accepted configuration would hold otherwise; its speed stays known."""
-        _ = self.speed
-        self.system.__dict__.pop("tangent", None)
-
-    def slope(self, t: float) -> Array | None:
-        """Rates towards a load parameter of what `_values` holds."""
-        rates = self._rates_to(t)
-        return rates and np.concatenate([rates.dofs, rates.contacts, rates.motion[self.model.equations :]])
-
-    def predicted(self, t: float) -> State:
-        """State at a load parameter along the tangent."""
-        rates = self._rates_to(t)
-        if rates is None:
-            return self.newton.prescribed(self.state, t)
-        return self.newton.update(self.state, (t - self.t) * rates.unknowns, self.system, t=t)
-
-
 class Track:
     """The path up to its last point."""
 
-    def __init__(self, point: Point) -> None:
-        self.newton, self.last, self.before = point.newton, point, point
+    def __init__(self, point: Equilibrium) -> None:
+        self.newton: Newton = point.newton
+        self.last, self.before = point, point
         # of the last point that has one
-        self.index = max(point.index, 0) if point.equilibrium.converged else 0
+        self.index = max(point.index, 0) if point.converged else 0
         self.history = [_Known(point.state, _values(point.model, point.state))]
 
-    def accept(self, point: Point) -> None:
+    def accept(self, point: Equilibrium) -> None:
         """Make a point the last of the path."""
         self.history = [*self._remembered(point), _Known(point.state, _values(point.model, point.state))]
         self.before, self.last = self.last, point
         self.before.release()
         self.index = point.index if point.index >= 0 else self.index
 
-    def _remembered(self, point: Point) -> list[_Known]:
+    def _remembered(self, point: Equilibrium) -> list[_Known]:
         """Earlier states that serve for the prediction beyond a point.
 
         The path has a kink where a contact passes from element to element, and one state before it serves where there is no other.
@@ -179,7 +93,7 @@ class Track:
         used = [known for known in history if steady or known.slope is None]
         return self.newton.prescribed(_through(last.model, used, t), t)
 
-    def unexplained(self, by: Point, reached: Point) -> float:
+    def unexplained(self, by: Equilibrium, reached: Equilibrium) -> float:
         """Part of the step to a point that the tangent at one of its ends does not explain; 0 where none is usable. It may not be large."""
         last, newton = self.last, self.newton
         rates = None if last.on_chords else by.rates(newton.assembler.drive(last.t, reached.t))
@@ -187,7 +101,7 @@ class Track:
             return 0.0
         step = newton.motion(last.state, reached.state, by.state)
         size, left = newton.size(step), newton.size(step - (reached.t - last.t) * rates.motion)
-        part = left / size if min(left, size) > _RESOLVED else 0.0
+        part = left / size if min(left, size) > RESOLVED else 0.0
         if part > _FOLLOWED:
             raise RefusedError(part=allowed(part))
         return part
@@ -257,18 +171,16 @@ def _through(model: Model, history: list[_Known], t: float) -> State:
         if known.slope is not None:
             weights.append(part * (t - time))
             terms.append(known.slope)
-    q, contacts, inside = np.split(
-        np.array(weights) @ np.array(terms), [model.dof_count, model.dof_count + model.contact_unknowns]
-    )
+    values, first = np.array(weights) @ np.array(terms), model.dof_count
+    q, inside = values[:first], values[first + model.contact_unknowns :]
     q[model.slaves] = q[model.masters]
     profile = last.profile and replace(last.profile, angle=inside.reshape(last.profile.angle.shape))
-    moved = replace(last, load_parameter=t, q=q, profile=profile)
-    placed = contacts.tolist()
-    touches = [
+    placed = values[first : first + model.contact_unknowns].tolist()
+    touches = tuple(
         touch and _touch(pair, touch, *placed[pair.slots])
         for pair, touch in zip(model.pairs, last.touches, strict=True)
-    ]
-    return owned(model, handed_over(model, moved, tuple(touches)))
+    )
+    return owned(model, replace(last, load_parameter=t, q=q, touches=touches, profile=profile))
 
 
 def _touch(pair: PairModel, last: Touch, *own: float) -> Touch:

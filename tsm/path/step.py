@@ -14,9 +14,8 @@ from tsm.model.model import Model
 from tsm.model.state import State
 from tsm.path.critical import CriticalPoint
 from tsm.path.margins import Margin, applied
-from tsm.path.path import Point
 from tsm.statement.status import Status
-from tsm.system.newton import Equilibrium
+from tsm.system.equilibrium import Equilibrium
 
 NEAR = 1e-9
 """Distance in the load parameter below which a corner of a pin's path coincides with a prescribed load parameter."""
@@ -59,7 +58,7 @@ class Step:
     index: int = -1
     spent: Array = field(default_factory=lambda: np.zeros(0))
 
-    def note(self, kind: EventKind, point: Point, state: State, k: int) -> None:
+    def note(self, kind: EventKind, point: Equilibrium, state: State, k: int) -> None:
         """Record an event of a contact that is closed in a state, with its force at a point."""
         pair, touch = point.model.pairs[k], touch_at(state, k)
         pushes = kind is not EventKind.TOUCH and point.state.touches[k] is not None
@@ -70,11 +69,11 @@ class Step:
                 pair=pair.pair.name,
                 element=touch.element - pair.target.first,
                 arc_position=pair.arc_position(touch),
-                force=normal_force(point.model, point.equilibrium, k) if pushes else 0.0,
+                force=normal_force(point, k) if pushes else 0.0,
             )
         )
 
-    def applied(self, point: Point, state: State, margin: Margin, *, alone: bool = True) -> State:
+    def applied(self, point: Equilibrium, state: State, margin: Margin, *, alone: bool = True) -> State:
         """State after an event at a point, which is recorded; `alone` if no contact takes over. Raises StopError where the path ends."""
         k, touches = margin.pair, margin.kind is EventKind.TOUCH
         if not touches and state.touches[k] is not None:

@@ -11,7 +11,7 @@ import numpy as np
 from tsm.contact.events import normal_force
 from tsm.elements.properties import Array, Properties
 from tsm.model.model import Model
-from tsm.system.newton import Equilibrium
+from tsm.system.equilibrium import Equilibrium
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -72,7 +72,7 @@ def _closed_form(model: Model, equilibria: Sequence[Equilibrium], number: int) -
         for k, touch in enumerate(equilibrium.state.touches):
             if touch is None or model.pairs[k].cuts:
                 continue
-            e, pressed = int(model.place[touch.element]), normal_force(model, equilibrium, k)
+            e, pressed = int(model.place[touch.element]), normal_force(equilibrium, k)
             arm = p.l0[e] * min(max(touch.xi, 0.0), max(1.0 - touch.xi, 0.0))
             turn[n] = max(turn[n], pressed * arm * p.l0[e] / p.EI[e])
             strain[n] = max(strain[n], pressed / stiffness[e])

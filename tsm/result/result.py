@@ -19,7 +19,7 @@ from tsm.result import present
 from tsm.result.deformation import Deformation, deformation
 from tsm.statement.status import Status
 from tsm.system.axis import axis_line
-from tsm.system.newton import Equilibrium
+from tsm.system.equilibrium import Equilibrium
 from tsm.system.system import Assembler
 
 
@@ -280,28 +280,29 @@ def _where(model: Model, steps: list[Step], status: Status) -> str:
 
 
 def _contact(model: Model, steps: list[Step], k: int) -> ContactHistory:
-    rows = [_contact_at(model, step.equilibrium, k) for step in steps]
+    rows = [_contact_at(step.equilibrium, k) for step in steps]
     force, arc, gap = np.array(rows).reshape(-1, 3).T
-    friction = _friction(model, steps, k) if model.pairs[k].rubs else None
+    friction = _friction(steps, k) if model.pairs[k].rubs else None
     return ContactHistory(force=force, arc_position=arc, gap=gap, friction=friction)
 
 
-def _contact_at(model: Model, equilibrium: Equilibrium, k: int) -> tuple[float, float, float]:
-    pair, state = model.pairs[k], equilibrium.state
+def _contact_at(equilibrium: Equilibrium, k: int) -> tuple[float, float, float]:
+    model, state = equilibrium.model, equilibrium.state
+    pair = model.pairs[k]
     touch = state.touches[k]
     if touch is not None:
         left = equilibrium.system.residual[model.equations :][pair.slots][:2]
-        return normal_force(model, equilibrium, k), pair.arc_position(touch), float(np.hypot.reduce(left))
+        return normal_force(equilibrium, k), pair.arc_position(touch), float(np.hypot.reduce(left))
     seen = model.project(pair, state)
     over = state.armed[k] and seen.overshoot <= 0
     return 0.0, np.nan, seen.gap if over else np.nan
 
 
-def _friction(model: Model, steps: list[Step], k: int) -> FrictionHistory:
+def _friction(steps: list[Step], k: int) -> FrictionHistory:
     rows = []
     for step in steps:
         grip = grips(step.equilibrium.state).get(k)
-        here = traction(model, step.equilibrium, k) if grip else None
+        here = traction(step.equilibrium, k) if grip else None
         force = (here.tangential, here.normal) if here else (0.0, 0.0)
         rows.append((*force, grip.slip if grip else 0, step.spent[1 + k] if len(step.spent) else np.nan))
     tangential, normal, slip, dissipated = np.array(rows).reshape(-1, 4).T

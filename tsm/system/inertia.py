@@ -19,6 +19,8 @@ _WEAK = 1e-13
 _SOFT = 1e5
 """Largest dimensionless flexibility of a structure without its contacts. A larger one shows a nearly singular band, whose Schur complement
 has too few digits."""
+WIDE = 64
+"""Largest border that is treated as dense columns, whose cost grows with its square; a wider one is sparse as a whole."""
 _DENSE = 1500
 """Largest number of unknowns of a dense matrix."""
 
@@ -36,6 +38,8 @@ class Symmetric(NamedTuple):
 def negatives(symmetric: Symmetric) -> int | None:
     """Number of negative eigenvalues, None where one of them is zero or not a number."""
     band, right, corner, units, _ = symmetric
+    if len(corner) > WIDE and (counted := _negatives_sparse(symmetric)) is not None:
+        return counted
     factor, info = lapack().dpbtrf(band, lower=1)
     if info == 0 and (factor[0] ** 2 > _WEAK * band[0]).all():
         if not len(corner):
@@ -81,8 +85,7 @@ def _negatives_sparse(symmetric: Symmetric) -> int | None:
 
 def _equilibrating(largest: Array) -> Array:
     """Scale factors that bring the largest entry of every row near one. Scaling keeps the number of negative eigenvalues (Sylvester)."""
-    with np.errstate(all="ignore"):
-        factor = 1 / np.sqrt(largest)
+    factor = 1 / np.sqrt(largest)
     return np.where(np.isfinite(factor), factor, 1.0)
 
 

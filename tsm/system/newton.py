@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from tsm.elements.properties import Array
-from tsm.model.contact import chord_owner, handed_over
+from tsm.model.contact import owned
 from tsm.model.groups import Change
 from tsm.model.model import Model
 from tsm.model.scales import ROUND_OFF, SHARP, TURN, WAY, largest, units_of
 from tsm.model.state import State
 from tsm.statement.settings import Settings
 from tsm.statement.status import Status
+from tsm.system.equilibrium import Equilibrium
 from tsm.system.system import Assembler, Drag, Linearisation
 
 MAX_ITERATIONS = 25
@@ -34,22 +35,6 @@ _PAST = 0.05
 elements differ there, and between them neither has an equilibrium within its ends."""
 _CRITICAL = 1e-6
 """Largest round-off of the residual at which an equilibrium is accepted. A stiffer contact is in the critical area."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Equilibrium:
-    """A configuration with its residual, and the iterations that led to it."""
-
-    state: State
-    status: Status  # CONVERGED or the reason why not
-    iterations: int  # linear systems solved
-    residuals: tuple[float, ...]  # scaled norm before the first and after every iteration
-    system: Linearisation  # residual and tangent at the configuration
-
-    @property
-    def converged(self) -> bool:
-        """Whether it is one."""
-        return self.status is Status.CONVERGED
 
 
 def _scales(model: Model) -> tuple[Array, Array, float]:
@@ -124,10 +109,6 @@ class Newton:
         inside = max(forces.inside for forces in system.groups)
         return max(largest(system.residual, self.scale), inside / SHARP)
 
-    def at(self, equilibrium: Equilibrium, state: State) -> Equilibrium:
-        """The equilibrium in a state with other contacts."""
-        return replace(equilibrium, state=state, system=self.assembler.linearise(state))
-
     def solve(self, start: State, drag: Drag | None = None, *, across: Array | None = None) -> Equilibrium:
         """Iterate from a start to equilibrium, or to the last iterate with its status.
 
@@ -160,6 +141,7 @@ class Newton:
                     self._step(system, across) if status is None else self._closer(system, residuals, status)
                 )
                 here = Equilibrium(
+                    newton=self,
                     state=state,
                     status=status or Status.SINGULAR_TANGENT,
                     iterations=iteration,
@@ -275,23 +257,13 @@ class Newton:
         if rods:
             change = Change(dofs, dz, float(residual), factor, end - begin)
             profile = rods.changed(state, system.tangent.groups[rods.number], change)
-        moved = State(
-            load_parameter=state.load_parameter,
-            q=q,
-            touches=state.touches,
-            armed=state.armed,
-            profile=profile,
-        )
-        if not state.touches:
-            return moved
-        dz_taken = (factor * dz).tolist()
-        touches = (
-            None if touch is None
-            else chord_owner(model, pair, moved, touch) if pair.slot < 0
-            else pair.moved(touch, dz_taken[pair.slots])
+        taken = (factor * dz).tolist()
+        touches = tuple(
+            touch and (pair.moved(touch, taken[pair.slots]) if pair.slot >= 0 else touch)
             for pair, touch in zip(model.pairs, state.touches, strict=True)
-        )  # fmt: skip
-        return handed_over(model, moved, tuple(touches), past)
+        )
+        moved = State(load_parameter=end, q=q, touches=touches, armed=state.armed, profile=profile)
+        return owned(model, moved, past)
 
 
 def _alternates(owners: list[tuple[int, ...]]) -> bool:

@@ -55,8 +55,7 @@ def index(assembler: Assembler, system: Linearisation) -> int:
     for forces in system.groups:
         if isinstance(forces, RodBalance) and (hidden := modes_at_least(forces)):
             return hidden
-    with np.errstate(all="ignore"):
-        symmetric = _symmetric(assembler, system, 2 * len(there))
+    symmetric = _symmetric(assembler, system, 2 * len(there))
     symmetric = _freed(symmetric, [slot + 2 for slot, touch in there if touch.grip is not None])
     counted = negatives(symmetric)
     if counted is None:
@@ -153,13 +152,15 @@ def _with_variation(
     rods, balance = tangent.groups[group.number], system.groups[group.number]
     assert isinstance(balance, RodBalance), "the forces of exact elements"
     second = variation(group, state, balance, rods.transfer)
-    slots = [np.array(part.slots, dtype=int) for part in second.bordered]
-    kinds = [
-        np.arange((own < 0).sum(), 0, -1) <= part.moments
-        for own, part in zip(slots, second.bordered, strict=True)
-    ]
-    spare = border + np.cumsum([0, *map(len, kinds)])
-    right, corner = np.zeros((model.equations + 1, spare[-1])), np.eye(spare[-1])
+    kinds: list[bool] = []
+    places = []
+    for part in second.bordered:
+        first = border + len(kinds)
+        own_count = len(part.matrix) - OWN - len(part.slots)
+        kinds += [n >= own_count - part.moments for n in range(own_count)]
+        places.append([*(slot + aside for slot in part.slots), *range(first, border + len(kinds))])
+    size = border + len(kinds)
+    right, corner = np.zeros((model.equations + 1, size)), np.eye(size)
     right[:, :border], corner[:border, :border] = tangent.right, tangent.corner
     values = second.tangent.reshape(len(second.tangent), -1).T
     others = [part.tangent.ravel() for part in tangent.groups[: group.number]]
@@ -169,11 +170,10 @@ def _with_variation(
         there = assembler.scatter_right[before : before + values.size]
         added = np.bincount(there, (values - rods.tangent).ravel(), assembler.size + 1)[:-1]
         right[:, :border] += added.reshape(-1, border)
-    for slot, part, first in zip(slots, second.bordered, spare, strict=False):
-        own = np.where(slot < 0, first + np.cumsum(slot < 0) - 1, slot + aside)
+    for own, part in zip(places, second.bordered, strict=True):
         right[:, own] = corner[own] = corner[:, own] = 0.0
-        right[model.equation[group.dofs[:, part.element], None], own] = part.matrix[:OWN, OWN:]
-        corner[own[:, None], own] = part.matrix[OWN:, OWN:]
+        right[np.ix_(model.equation[group.dofs[:, part.element]], own)] = part.matrix[:OWN, OWN:]
+        corner[np.ix_(own, own)] = part.matrix[OWN:, OWN:]
     for _, pair, _ in closed(model, state):
         if pair.node >= 0 and pair.cuts:
             for i in range(2):
@@ -181,4 +181,4 @@ def _with_variation(
     if aside:
         corner[:aside] = right[model.banded : model.equations]
         corner[:, :aside] = corner[:aside].T
-    return band, right, corner, np.concatenate([*kinds, np.zeros(0, bool)])
+    return band, right, corner, np.array(kinds, dtype=bool)

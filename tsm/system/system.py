@@ -25,6 +25,7 @@ from tsm.model.model import Model
 from tsm.model.state import State
 from tsm.statement.beam import Point
 from tsm.statement.stages import stage_of
+from tsm.system.inertia import WIDE
 from tsm.system.lapack import lapack
 
 _EPS = float(np.finfo(float).eps)
@@ -235,9 +236,11 @@ class Assembler:
         model = self.model
         banded, border, count = model.banded, model.border, 1 + len(more)
         tangent = system.tangent
-        sides = np.stack([-(system.residual + tangent.condensed_residual), *more], axis=1)
+        sides = np.array([-(system.residual + tangent.condensed_residual), *more]).T
         if self.units:
             tangent, sides = self.units.without(tangent, sides)
+        if border > WIDE:
+            return self._solve_whole(tangent, sides)
         rhs = np.concatenate([sides[:banded], tangent.right[:banded]], axis=1)
         lu, _, X, info = lapack().dgbsv(self.k, self.k, tangent.band.T, rhs)
         if border and (

@@ -79,11 +79,9 @@ class ElementGroup(ABC):
     ``pairs``: contact pairs on the elements, with their numbers.
     ``internal``: whether an element has a force and a moment as degrees of freedom, and further unknowns
         inside, which are eliminated.
-    ``past_node``: part of an element's length by which a contact may lie past its end.
     """
 
     internal: ClassVar[bool]
-    past_node: ClassVar[float]
 
     def __init__(self, model: Numbering, number: int, elements: Array) -> None:
         self.model, self.number, self.elements = model, number, elements

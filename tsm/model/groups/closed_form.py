@@ -19,7 +19,7 @@ from tsm.model.contact_block import ContactBlock
 from tsm.model.groups.base import ElementGroup, GroupForces, GroupTangent, Stations
 from tsm.model.mesh import BeamModel
 from tsm.model.pairs import PairModel
-from tsm.model.projection import AT_NODE, Projection, nearest_chord
+from tsm.model.projection import Projection, nearest_chord
 from tsm.model.state import State, Touch
 
 _POINTS = 10
@@ -37,7 +37,6 @@ class ClosedFormGroup(ElementGroup):
     """Elements in closed form; their contacts follow the contact law of their element type."""
 
     internal = False
-    past_node = AT_NODE
 
     def forces(self, state: State, contacts: ContactBlock) -> ClosedFormForces:
         """Forces and tangents of elements and contacts."""

@@ -66,7 +66,6 @@ class Rods(ElementGroup):
     """Equations of the exact elements of a model, r of them. ``dofs`` (9, r) are node i, force and moment, node j."""
 
     internal = True
-    past_node = 0.0
 
     def __init__(self, model: Numbering, number: int, elements: Array) -> None:
         super().__init__(model, number, elements)

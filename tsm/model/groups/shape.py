@@ -51,9 +51,22 @@ class RodShape(NamedTuple):
     def at(self, element: int, arc: Array) -> Station:
         """Stations of an element, counted over the exact ones, at arc positions (m,) within it."""
         first, last = int(self.place.first[element]), int(self.place.last[element])
-        segment = first + np.searchsorted(self.arc[first + 1 : last + 1], arc, side="right")
+        return self.on(first + np.searchsorted(self.arc[first + 1 : last + 1], arc, side="right"), arc)
+
+    def on(self, segment: Array, arc: Array) -> Station:
+        """Stations on segments (m,) at arc positions (m,) within their elements."""
         length = self.length[segment]
         return self.within(segment, (arc - self.arc[segment]) / np.where(length, length, 1.0))
+
+    def angles(self, place: Layout, arc: Array) -> Array:
+        """Angles at arc positions (s, p) in other segments of the same elements."""
+        own = np.empty(arc.shape, dtype=int)
+        own[:] = self.place.first[place.owner, None]
+        for cut in np.flatnonzero(np.diff(self.place.owner) == 0) + 1:
+            element = self.place.owner[cut]
+            there = slice(place.first[element], place.last[element] + 1)
+            own[there] += arc[there] >= self.arc[cut]
+        return self.on(own.ravel(), arc.ravel()).angle.reshape(arc.shape)
 
     def within(self, segment: Any, sigma: Array) -> Station:
         """Stations at parts sigma (m,) of segments (m,), or of one segment."""
@@ -110,22 +123,28 @@ def pieces(group: Rods, shape: RodShape, element: int, count: int) -> Stations:
 
 
 def _profile(
-    group: Rods, state: State, cuts: Cuts, order: int, angle_at: Callable[[int, Array], Array]
+    group: Rods, state: State, cuts: Cuts, order: int, angles: Callable[[Layout, Array], Array]
 ) -> State:
-    """State whose angles inside are those of a function of element and arc positions."""
-    place, nodes, inside = layout(len(group.length), cuts), collocation(order).c, dict(cuts)
-    angle = np.empty((len(place.owner), order))
-    for element, (first, last) in enumerate(zip(place.first, place.last, strict=True)):
-        arcs = [touch_of(state, k).xi * group.length[element] for k in inside.get(element, ())]
-        ends = np.array([0.0, *arcs, group.length[element]])
-        at = ends[:-1, None] + np.diff(ends)[:, None] * nodes
-        angle[first : last + 1] = angle_at(element, at.ravel()).reshape(at.shape)
-    return replace(state, profile=Profile(cuts=cuts, angle=angle))
+    """State whose angles inside are those of a function of the segments and arc positions (s, p) within their elements."""
+    place = layout(len(group.length), cuts)
+    begin, end = np.zeros(len(place.owner)), group.length[place.owner]
+    for element, pairs in cuts:
+        for s, k in enumerate(pairs, int(place.first[element])):
+            end[s] = begin[s + 1] = touch_of(state, k).xi * group.length[element]
+    at = begin[:, None] + (end - begin)[:, None] * collocation(order).c
+    return replace(state, profile=Profile(cuts=cuts, angle=angles(place, at)))
 
 
 def undeformed(group: Rods, state: State) -> State:
     """State with the angles of the undeformed elements."""
-    return _profile(group, state, _cuts(group, state), group.nodes or START_ORDER, group.undeformed_angle)
+    order = group.nodes or START_ORDER
+    return _profile(
+        group,
+        state,
+        _cuts(group, state),
+        order,
+        lambda place, arc: group.undeformed_angle(place.owner[:, None], arc),
+    )
 
 
 def _cuts(group: Rods, state: State) -> Cuts:
@@ -157,7 +176,7 @@ def recut(group: Rods, state: State, after: State) -> State:
                     np.sign(touch.element - old.element) * np.array(touch.force)[:, None]
                 )
     cut = replace(after, q=q, touches=tuple(touches))
-    return _sampled(group, shape, cut, cuts, profile_of(state).angle.shape[1])
+    return _profile(group, cut, cuts, profile_of(state).angle.shape[1], shape.angles)
 
 
 def resampled(group: Rods, state: State, order: int) -> State:
@@ -165,12 +184,7 @@ def resampled(group: Rods, state: State, order: int) -> State:
     profile = profile_of(state)
     if profile.angle.shape[1] == order:
         return state
-    return _sampled(group, plain_shape(group, state), state, profile.cuts, order)
-
-
-def _sampled(group: Rods, shape: RodShape, state: State, cuts: Cuts, order: int) -> State:
-    """State whose angles inside are taken from a shape."""
-    return _profile(group, state, cuts, order, lambda element, arc: shape.at(element, arc).angle)
+    return _profile(group, state, profile.cuts, order, plain_shape(group, state).angles)
 
 
 def truncation(group: Rods, entry: Entry) -> float:

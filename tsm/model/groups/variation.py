@@ -51,10 +51,10 @@ class Bordered(NamedTuple):
     # tangent over the element's degrees of freedom, then over the element's unknowns in the border; shape
     # (9 + b, 9 + b)
     matrix: Array
-    # positions of the latter among the contacts' unknowns, -1 for the angles and moments that are the
-    # element's own
-    slots: list[int]
-    moments: int  # how many of the latter are moments; they are the last
+    slots: list[
+        int
+    ]  # positions of the first of the latter among the contacts' unknowns; the others are its own
+    moments: int  # how many of these are moments, the last; the others are angles
 
 
 class Variation(NamedTuple):
@@ -107,12 +107,11 @@ def variation(group: Rods, state: State, balance: RodBalance, transfer: Array | 
     """Second variation at a state in equilibrium, from the transfer of the segments where it is known."""
     pieces = _pieces(group, state, balance, transfer)
     place, pairs = balance.entry.place, dict(profile_of(state).cuts)
-    begin = np.cumsum(pieces.counts) - pieces.counts
     divided = {int(place.owner[s]) for s in np.flatnonzero(pieces.counts > 1)} if pieces.divided else set()
     many = sorted(divided.union(pairs))
     tangent = np.empty((len(place.first), OWN, OWN))
     if len(many) < len(tangent):
-        tangent[:] = _PULL
+        tangent[:], begin = _PULL, np.cumsum(pieces.counts) - pieces.counts
         tangent[:, COLUMNS[:, None], COLUMNS] += pieces.hessian[begin[place.first], :5, :5]
         tangent = _without_force(tangent)
     bordered = tuple(_bordered(group, balance, pieces, e, pairs.get(e, ())) for e in many)
@@ -132,7 +131,7 @@ def _without_force(tangent: Array) -> Array:
     of_force[..., 3:5] = 0.0
     tangent = tangent - np.swapaxes(of_force, -1, -2) @ (adjoint @ of_force)
     tangent[..., 3:5, :] = tangent[..., :, 3:5] = 0.0
-    tangent[..., [3, 4], [3, 4]] = 1.0
+    tangent[..., 3, 3] = tangent[..., 4, 4] = 1.0
     return tangent
 
 
@@ -203,11 +202,10 @@ def _hessians(
     r'``.
     """
     course, by = segments.course, transfer[:, :, [0, 1, 2, 3, 4, 5, *([rod.ARC] if segments.course else [])]]
-    with np.errstate(all="ignore"):
-        given = by[:, 0] / -by[:, 0, eliminated, None]
-        if not eliminated:
-            given[:, 0] = 0.0
-        arriving = by[:, 1:] + by[:, 1:, eliminated, None] * given[:, None, :]
+    given = by[:, 0] / -by[:, 0, eliminated, None]
+    if not eliminated:
+        given[:, 0] = 0.0
+    arriving = by[:, 1:] + by[:, 1:, eliminated, None] * given[:, None, :]
     hessian = np.zeros((len(by), by.shape[2], by.shape[2]))
     hessian[:, 1 - eliminated] = -given if eliminated else given
     hessian[:, 2], hessian[:, 3:5] = arriving[:, 0], -arriving[:, 1:]
@@ -251,7 +249,6 @@ def _bordered(
         if model.pairs[k].reach:
             matrix += _surface(balance.entry.cuts[k], directions[n])
     slots = [slot for k in pairs for slot in range(model.pairs[k].slot, model.pairs[k].slot + CUT)]
-    slots += [-1] * (len(matrix) - OWN - len(slots))
     return Bordered(element, _without_force(matrix), slots, sum(short))
 
 
