@@ -13,6 +13,7 @@ from sphinx.locale import _
 from sphinx.util.logging import getLogger
 from sphinx.util.math import get_node_equation_number
 
+from docs.extensions import gallery
 from docs.extensions.generated import write_pages
 
 ROOT = Path(__file__).parents[2]
@@ -75,8 +76,9 @@ def notebook(page: str) -> str:
 
 
 def _write(app: Sphinx) -> None:
-    """Write the pages made from the code, and the notebooks."""
+    """Write the pages made from the code, the gallery, and the notebooks."""
     write_pages(Path(app.srcdir) / "_generated")
+    gallery.write(Path(app.srcdir) / "_generated")
     target = Path(app.srcdir) / "_generated" / "notebooks"
     target.mkdir(parents=True, exist_ok=True)
     for page in (Path(app.srcdir) / "notebooks").glob("*.md"):

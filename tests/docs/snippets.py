@@ -24,8 +24,9 @@ def pages() -> dict[str, str]:
 
 
 def blocks(markdown: str) -> list[tuple[str, str]]:
-    """Return language and text of every fenced block."""
-    return re.findall(r"^```(\w*)\n(.*?)^```$", markdown, re.DOTALL | re.MULTILINE)
+    """Return language and text of every fenced block that is no directive."""
+    fences = re.findall(r"^```(\S*)[^\n]*\n(.*?)^```$", markdown, re.DOTALL | re.MULTILINE)
+    return [(kind, text) for kind, text in fences if not kind.startswith("{")]
 
 
 def run_line(line: str) -> str:

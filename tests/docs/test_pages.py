@@ -24,7 +24,7 @@ RUN = {
 }
 """Pages that are run as a whole."""
 LONG = {name for name, text in RUN.items() if any(f"\n{command}" in text for command in SLOW)}
-LENGTHY = r"/(?:accuracy|cards|ci-gate|element|material|paraview|program|python|scene|study|tutorial)\.md"
+LENGTHY = r"/(?:accuracy|beam-element|cards|ci-gate|element|index|material|paraview|program|python|scene|specimens|study|tutorial)\.md"
 SECONDS = {name for name in RUN if re.search(LENGTHY, name)}
 """Pages that take more than a second without the commands of `SLOW`."""
 
@@ -98,6 +98,32 @@ def test_commands_run_and_print_what_they_are_for(line, in_folder, capsys):
 
 def test_every_command_is_shown():
     assert {line.split()[1] for line in LINES} == {key for key in SAID if "_" not in key}
+
+
+SEARCHED = (
+    "spring rate",
+    "force-displacement",
+    "PDF",
+    "stress",
+    "buckling",
+    "buckles",
+    "friction",
+    "reaction",
+    "units",
+    "install",
+)
+"""Words that people search for."""
+
+
+def test_what_people_search_for_is_found():
+    text = " ".join(" ".join(text.split()) for page, text in TEXTS.items() if page.startswith("docs/"))
+    assert [words for words in SEARCHED if words not in text] == []
+
+
+def test_the_menu_has_three_doors_of_at_most_twelve_entries():
+    doors = re.findall(r":caption: (.*)\n\n((?:\S+\n)+)```", TEXTS["docs/index.md"])
+    assert [name for name, _ in doors] == ["Use it", "Trust it", "Extend it"]
+    assert all(len(entries.split()) <= 12 for _, entries in doors)
 
 
 def test_make_targets_links_and_pictures_are_there():
