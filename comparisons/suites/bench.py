@@ -2,11 +2,10 @@
 
 import hashlib
 import json
+import math
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
-from itertools import pairwise
-from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,6 @@ import numpy as np
 
 from comparisons.answer import ContactEvent, Response
 from comparisons.answer.table import table
-from comparisons.files import writable_folder, write_text
 from comparisons.models import find, solve
 from comparisons.models.model import ModelError, Options
 from comparisons.models.shared import joints, line_loads
@@ -25,6 +23,8 @@ Query = dict[str, Any]
 SET = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 """Name, version, conventions and scenes of the set."""
 HEAD = {"benchmark": SET["name"], "version": SET["version"]}
+KEYS = ("scene", "of", "what", "at", "number")
+"""What a query has."""
 EVENTS = ("touch", "release", "slip-off", "slip", "stick")
 
 
@@ -141,7 +141,7 @@ def _queries(scene: Scene, at: Sequence[int], right: Response) -> Iterator[Query
             yield from (
                 {"scene": scene.name, "of": of, "what": what, "at": k}
                 for k, value in enumerate(values)
-                if isfinite(value)
+                if math.isfinite(value)
             )
     last, numbers = scene.times[at[-1]], dict[tuple[str, str], int]()
     jumps = {event.load_parameter for event in right.events or () if event.kind == "slip-off"}
@@ -180,15 +180,16 @@ def told(query: Query, response: Response, columns: Mapping[str, Any]) -> float 
     if "at" in query:
         column = columns.get(f"{query['of']}.{query['what']}", ())
         k = at[query["at"]]
-        return float(column[k]) if k < len(column) and isfinite(column[k]) else None
+        return float(column[k]) if k < len(column) and math.isfinite(column[k]) else None
     found = event(query, response)
     return None if found is None else float(found.load_parameter)
 
 
 def event(query: Query, response: Response) -> ContactEvent | None:
-    """Return the event that is asked for; None where a response states none."""
+    """Return the event that is asked for; None where none is, or a response states none."""
+    number = query.get("number", math.inf)
     same = [one for one in response.events or () if (one.pair, one.kind) == (query["of"], query["what"])]
-    return same[query["number"] - 1] if query["number"] <= len(same) else None
+    return same[number - 1] if number <= len(same) else None
 
 
 def lines(key: str, rows: Sequence[Mapping[str, Any]], **head: Any) -> str:
