@@ -11,7 +11,6 @@ import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from comparisons.answer import ContactEvent, Response
 from comparisons.models import solve
@@ -23,8 +22,6 @@ from comparisons.referee.path import corners, reach
 from comparisons.scene import Scene
 from comparisons.suites import bench
 
-MOST = 12
-"""Most digits that are stated."""
 EXACT = Options(element="exact", integration_tolerance=1e-13)
 HOW = "two programs without common code: exact beam elements (tsm), energy elements (referee)"
 
@@ -63,12 +60,10 @@ def values(found: Mapping[str, Response]) -> Iterator[tuple[bench.Query, float, 
         first, second = (bench.told(query, found[scene.name], one) for one in columns[scene.name])
         if event is not None:
             second = located(scene, found[scene.name], event)
-        assert first is not None
-        assert second is not None
         yield query, first, second
 
 
-def answers(found: Mapping[str, Response], old: Mapping[str, Any]) -> Iterator[bench.Query]:
+def answers(found: Mapping[str, Response], old: Mapping[str, bench.Query]) -> Iterator[bench.Query]:
     """Yield the queries with value, digits and scale, and whether they are of the state or of the history."""
     rows = [*values(found)]
     for query, *both in rows:
@@ -78,7 +73,7 @@ def answers(found: Mapping[str, Response], old: Mapping[str, Any]) -> Iterator[b
         if kind == "arc_position":
             scale = scene.beam(query["of"].rpartition(">")[2]).length
         apart = abs(both[0] - both[1]) / scale
-        digits = MOST if apart < 10.0**-MOST else math.floor(-math.log10(apart))
+        digits = 12 if apart < 1e-12 else math.floor(-math.log10(apart))
         value = round(math.fsum(both) / 2.0, digits + 1 - math.floor(math.log10(scale)))
         kept = old.get(json.dumps(query), {"value": math.nan, "digits": 0})
         same = all(abs(one - kept["value"]) <= 10.0 ** -kept["digits"] * scale for one in both)
@@ -89,22 +84,22 @@ def answers(found: Mapping[str, Response], old: Mapping[str, Any]) -> Iterator[b
         yield {**query, **how}
 
 
-def texts(old: str) -> dict[str, str]:
-    """Return the texts of the files of the set; `old` is that of answers.json as it is."""
-    kept = {
-        json.dumps({name: row[name] for name in bench.KEYS if name in row}): row
-        for row in json.loads(old)["answers"]
-    }
+def texts(folder: Path) -> dict[str, str]:
+    """Return the texts of the files of the set; the folder may have an answers.json, whose numbers are kept."""
+    known = folder / "answers.json"
+    old = json.loads(known.read_text(encoding="utf-8"))["answers"] if known.exists() else []
     found = {name: solve(scene, "tsm", EXACT) for name, (scene, _) in bench.scenes().items()}
-    stated, asked, name = bench.set_texts(found)
-    right = bench.lines("answers", [*answers(found, kept)], **bench.HEAD, set=name, obtained=HOW)
-    return {"scenes.json": stated, "queries.json": asked, "answers.json": right}
+    stated, asked = bench.set_texts(found)
+    head = {**bench.HEAD, "set": json.loads(asked)["set"], "obtained": HOW}
+    right = answers(found, {json.dumps(bench.query_of(row)): row for row in old})
+    return {
+        "scenes.json": stated,
+        "queries.json": asked,
+        "answers.json": bench.lines("answers", [*right], **head),
+    }
 
 
 if __name__ == "__main__":
-    folder = Path(*sys.argv[1:]) if sys.argv[1:] else Path(__file__).parent
-    known = folder / "answers.json"
-    for file, text in texts(
-        known.read_text(encoding="utf-8") if known.exists() else '{"answers": []}'
-    ).items():
-        (folder / file).write_text(text, encoding="utf-8")
+    place = Path(*sys.argv[1:]) if sys.argv[1:] else Path(__file__).parent
+    for file, text in texts(place).items():
+        (place / file).write_text(text, encoding="utf-8")

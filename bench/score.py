@@ -59,8 +59,8 @@ def judged(text, right, digits):
     """Program, and verdict, error and digits by query; a `ValueError` if the file cannot be scored."""
     given = json.loads(text)
     given = given if isinstance(given, dict) else {}
-    if not given.get("answers", True):
-        raise ValueError("has no list of answers")
+    if not isinstance(given.get("answers"), list):
+        raise ValueError("must have a list of answers")  # noqa: TRY004 - a file of the user
     if given.get("set") != right["set"]:
         raise ValueError(f"stale: it answers the set {given.get('set')!r}, this is {right['set']!r}")
     exact, rows, found = {key(row): row for row in right["answers"]}, {}, {}
@@ -80,7 +80,7 @@ def judged(text, right, digits):
             verdict = "missing"
         elif isinstance(value, bool) or not isinstance(value, (int, float)):
             verdict = f"not a number: {json.dumps(value)[:40]}"
-        elif not math.isfinite(value):
+        elif not abs(value) < 1e300:
             verdict = "not a finite number"
         else:
             error = abs(value - true["value"]) / true["scale"]

@@ -7,17 +7,19 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from shutil import rmtree
 
-from comparisons.cli.options import refuse, workers
+from comparisons.cli.options import MODEL, chosen, refuse, workers
 from comparisons.cli.screen import DONE, STOPPED, WRONG, files_named, report, teller
 from comparisons.files import writable_folder
+from comparisons.models import TSM
+from comparisons.models.model import Options
 from comparisons.output import tabulated, write_rows
 from comparisons.scene import InputError, load_scene
 from comparisons.suite.progress import running
 from comparisons.suite.run import UNSETTLED
 from comparisons.suite.study import read_study, result_rows, result_table
+from comparisons.suites.bench import write_bench
 from comparisons.suites.extremes.run import counts, extremes
 from comparisons.suites.manual import problems, write_manual
-from comparisons.suites.manual.cards import write_cards
 from comparisons.suites.names import FIGURES, QUESTIONS
 from comparisons.suites.paper.reproduce import reproduce
 from comparisons.suites.solid_accuracy import STUDIES
@@ -33,7 +35,8 @@ def run(given: Namespace) -> int:
     if suite is None:
         raise InputError(name, f"must be a study file, NAME.toml, or one of {', '.join(SUITES)}")
     options, suite_run = suite
-    foreign = (option for option in ("of", "quick", "workers") if option not in options.split())
+    every = ("of", "quick", "workers", "others", *MODEL)
+    foreign = (option for option in every if option not in options.split())
     refuse(given, foreign, f"is no option of {name}")
     return suite_run(given)
 
@@ -59,11 +62,9 @@ def _figures(given: Namespace) -> int:
     return _ended(*reproduce(figure, folder, quick=given.quick, report=report))
 
 
-def _cards(given: Namespace) -> int:
-    folder = given.out or Path("out") / given.suite
-    count = write_cards(folder, teller(quiet=given.quiet), problems(given.of or None))
-    print(f"{count} cards and their schema in {folder}")
-    return DONE
+def _bench(given: Namespace) -> int:
+    models = [(given.model or TSM.name, chosen(given)), *((name, Options()) for name in given.others)]
+    return _ended(write_bench(_out(given), models, teller(quiet=given.quiet)))
 
 
 def _manual(given: Namespace) -> int:
@@ -126,7 +127,7 @@ def _study(given: Namespace) -> int:
 SUITES: dict[str, tuple[str, Callable[[Namespace], int]]] = {
     **dict.fromkeys(("paper", *FIGURES), ("quick", _figures)),
     "manual": ("of", _manual),
-    "cards": ("of", _cards),
+    "bench": (f"others {' '.join(MODEL)}", _bench),
     "extremes": ("quick workers", _extremes),
     "trade": ("of quick workers", _trade),
     **dict.fromkeys(QUESTIONS, ("", _question)),

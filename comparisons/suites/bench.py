@@ -13,9 +13,12 @@ import numpy as np
 
 from comparisons.answer import ContactEvent, Response
 from comparisons.answer.table import table
-from comparisons.models import find, solve
+from comparisons.files import writable_folder, write_text
+from comparisons.models import Model, solve
 from comparisons.models.model import ModelError, Options
+from comparisons.models.registry import fitting
 from comparisons.models.shared import joints, line_loads
+from comparisons.output import Report
 from comparisons.referee.rod import face_of
 from comparisons.scene import BeamSpec, PinSpec, Scene, load_scene
 
@@ -26,6 +29,11 @@ HEAD = {"benchmark": SET["name"], "version": SET["version"]}
 KEYS = ("scene", "of", "what", "at", "number")
 """What a query has."""
 EVENTS = ("touch", "release", "slip-off", "slip", "stick")
+
+
+def query_of(row: Query) -> Query:
+    """Return what an answer answers."""
+    return {key: row[key] for key in KEYS if key in row}
 
 
 @cache
@@ -198,27 +206,50 @@ def lines(key: str, rows: Sequence[Mapping[str, Any]], **head: Any) -> str:
     return f"{{\n{first} {json.dumps(key)}: [\n  " + ",\n  ".join(map(json.dumps, rows)) + "\n ]\n}\n"
 
 
-def set_texts(found: Mapping[str, Response]) -> tuple[str, str, str]:
-    """Return the texts of ``scenes.json`` and ``queries.json``, and the name of the set, which is a digest of both."""
+def set_texts(found: Mapping[str, Response]) -> tuple[str, str]:
+    """Return the texts of ``scenes.json`` and ``queries.json``, which has the name of the set, a digest of both."""
     rows = [_tidy(resolved(row["about"], *scenes()[row["name"]])) for row in SET["scene"]]
     stated, asked = lines("scenes", rows, **HEAD, conventions=SET["conventions"]), queries(found)
     name = hashlib.sha256((stated + json.dumps(asked)).encode()).hexdigest()[:16]
-    return stated, lines("queries", asked, **HEAD, set=name), name
+    return stated, lines("queries", asked, **HEAD, set=name)
 
 
-def answers(model: str, options: Options, given: Mapping[str, Any]) -> str:
-    """Return the answers of a model to the queries of a set, as JSON text."""
-    rows, refused = list[Query](), dict[str, str]()
-    for name, (scene, _) in scenes().items():
+def answers(model: Model, options: Options, given: Mapping[str, Any], report: Report) -> str:
+    """Return the answers of a model to the queries of a set, as JSON text; `report` takes a line for each scene."""
+    rows, refused, name = list[Query](), dict[str, str](), " ".join([model.label, *settings(options)])
+    for scene, _ in scenes().values():
         try:
-            response = solve(scene, model, options)
+            response = solve(scene, model.name, options)
         except ModelError as error:
-            refused[name] = str(error)
+            refused[scene.name] = str(error)
             continue
         columns = histories(scene, response) if len(response.load_parameter) else {}
-        why = f"{response.status}: {response.message}" if not response.completed else "not stated"
-        for query in (query for query in given["queries"] if query["scene"] == name):
+        why = "is not stated" if response.completed else f"{response.status}: {response.message}"
+        for query in (query for query in given["queries"] if query["scene"] == scene.name):
             value = told(query, response, columns)
             rows.append(query | ({"refused": why} if value is None else {"value": value}))
-    program = f"{find(model).label} {' '.join(str(v) for v in vars(options).values() if v)}".rstrip()
-    return lines("answers", rows, **HEAD, set=given["set"], program=program, refused=refused)
+        report(f"{name}: {scene.name}: {response.status}")
+    return lines("answers", rows, **HEAD, set=given["set"], program=name, refused=refused)
+
+
+def settings(options: Options) -> list[str]:
+    """Return the options that are given, as words."""
+    given = (getattr(options, name) for name in ("element", "elements", "mesh"))
+    return ["x".join(map(str, one)) if isinstance(one, tuple) else str(one) for one in given if one]
+
+
+def write_bench(folder: Path, models: Sequence[tuple[str, Options]], report: Report) -> list[Path]:
+    """Write the scenes and the queries, and the answers of models; return the files.
+
+    A `ModelError` names an unknown model, or an option that does not belong to a model.
+    """
+    found = [(fitting(name, options), options) for name, options in models]
+    names = ["-".join([model.name, *settings(options)]) for model, options in found]
+    files = [writable_folder(folder) / f"{name}.json" for name in ("scenes", "queries", *names)]
+    exact = {name: solve(scene, "tsm", Options(element="exact")) for name, (scene, _) in scenes().items()}
+    texts = set_texts(exact)
+    for file, text in zip(files, texts, strict=False):
+        write_text(file, text)
+    for file, (model, options) in zip(files[2:], found, strict=True):
+        write_text(file, answers(model, options, json.loads(texts[1]), report))
+    return files

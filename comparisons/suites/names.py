@@ -19,7 +19,7 @@ SUITES = {
     "paper": "all figures of the paper, and its claims",
     **FIGURES,
     "manual": "the verification manual, problems with exact answers, put to every model that can state them",
-    "cards": "the problems of the manual as JSON files, with scene, values and source",
+    "bench": "the answers of a model to the benchmark set, for its scorer",
     "extremes": "where the models hold and where they stop, over units, slenderness, shear, meshes, contact positions, load steps, "
     "penalty, Poisson's ratio, depth and time",
     "trade": "what accuracy costs on SCENE, error against seconds, iterations and unknowns of many settings",

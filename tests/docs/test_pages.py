@@ -24,7 +24,7 @@ RUN = {
 }
 """Pages that are run as a whole."""
 LONG = {name for name, text in RUN.items() if any(f"\n{command}" in text for command in SLOW)}
-LENGTHY = r"/(?:accuracy|cards|ci-gate|element|material|paraview|program|python|scene|study|tutorial)\.md"
+LENGTHY = r"/(?:accuracy|bench|ci-gate|element|material|paraview|program|python|scene|study|tutorial)\.md"
 SECONDS = {name for name in RUN if re.search(LENGTHY, name)}
 """Pages that take more than a second without the commands of `SLOW`."""
 
