@@ -140,7 +140,7 @@ def results(programs, right):
     yield f"# Results of {right['benchmark']} {right['version']}\n"
     yield "Digits of the median and of the worst answer to a scene, over its largest force, moment or"
     yield "displacement, or the beam's length, and not more than are certain. [n] queries of the scene are"
-    yield "not answered; a scene that is refused has none. Made by `score.py --results`.\n"
+    yield "not answered; - is a scene that is refused, or stopped. Made by `score.py --results`.\n"
     yield "| " + " | ".join(["scene", *(program for program, _ in programs)]) + " |"
     yield "| --- " * (len(programs) + 1) + "|"
     parts = [scenes(found) for _, found in programs]

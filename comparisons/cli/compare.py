@@ -4,7 +4,7 @@ import argparse
 from functools import partial
 from pathlib import Path
 
-from comparisons.cli.options import MODEL, chosen, outputs, refuse, workers
+from comparisons.cli.options import chosen, outputs, refuse, workers
 from comparisons.cli.screen import (
     DONE,
     STOPPED,
@@ -27,6 +27,8 @@ from comparisons.suites.compare import ROD, Run, compare, run_of
 from comparisons.suites.gate import gate
 from comparisons.suites.league import FILES, measure_league, summary, write_league
 
+MODEL = ("model", "element", "elements", "mesh")
+"""The options that say which model is meant."""
 FOREIGN = {
     "a single scene": ("against", "quick", "workers"),
     "--max-error": ("others", "quick", "workers"),

@@ -122,8 +122,6 @@ def workers(given: argparse.Namespace, number: int | None = None) -> "Workers":
     return cluster(given.workers) if isinstance(given.workers, str) else local(given.workers or number)
 
 
-MODEL = ("model", "element", "elements", "mesh")
-"""The options that say which model is meant."""
 STANDARD = Path("-")
 """Standard output, as a file to write JSON to."""
 

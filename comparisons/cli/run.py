@@ -7,11 +7,10 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from shutil import rmtree
 
-from comparisons.cli.options import MODEL, chosen, refuse, workers
+from comparisons.cli.options import refuse, workers
 from comparisons.cli.screen import DONE, STOPPED, WRONG, files_named, report, teller
 from comparisons.files import writable_folder
 from comparisons.models import TSM
-from comparisons.models.model import Options
 from comparisons.output import tabulated, write_rows
 from comparisons.scene import InputError, load_scene
 from comparisons.suite.progress import running
@@ -35,8 +34,7 @@ def run(given: Namespace) -> int:
     if suite is None:
         raise InputError(name, f"must be a study file, NAME.toml, or one of {', '.join(SUITES)}")
     options, suite_run = suite
-    every = ("of", "quick", "workers", "others", *MODEL)
-    foreign = (option for option in every if option not in options.split())
+    foreign = (option for option in ("of", "quick", "workers") if option not in options.split())
     refuse(given, foreign, f"is no option of {name}")
     return suite_run(given)
 
@@ -63,8 +61,8 @@ def _figures(given: Namespace) -> int:
 
 
 def _bench(given: Namespace) -> int:
-    models = [(given.model or TSM.name, chosen(given)), *((name, Options()) for name in given.others)]
-    return _ended(write_bench(_out(given), models, teller(quiet=given.quiet)))
+    folder = given.out or Path("out") / given.suite
+    return _ended(write_bench(folder, given.of or [TSM.name], teller(quiet=given.quiet)))
 
 
 def _manual(given: Namespace) -> int:
@@ -127,7 +125,7 @@ def _study(given: Namespace) -> int:
 SUITES: dict[str, tuple[str, Callable[[Namespace], int]]] = {
     **dict.fromkeys(("paper", *FIGURES), ("quick", _figures)),
     "manual": ("of", _manual),
-    "bench": (f"others {' '.join(MODEL)}", _bench),
+    "bench": ("of", _bench),
     "extremes": ("quick workers", _extremes),
     "trade": ("of quick workers", _trade),
     **dict.fromkeys(QUESTIONS, ("", _question)),

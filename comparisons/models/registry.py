@@ -51,8 +51,10 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
     from comparisons.answer.record import not_kept
     from comparisons.models.verify import verified
 
-    given = options or Options()
-    chosen = fitting(model, given)
+    chosen, given = find(model), options or Options()
+    for option, value in vars(given).items():
+        if value is not None and option not in chosen.options:
+            raise ModelError(f"{chosen.name}: {option} = {value}: not an option of this model")
     unknown = chosen.unstated(scene)
     if unknown is not None:
         raise ModelError(unknown)
@@ -72,15 +74,6 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
         return verified(response, scene)
     except ValueError as error:
         raise ModelError(f"{chosen.name}: {error}") from error
-
-
-def fitting(name: str, options: Options) -> Model:
-    """Return the model of a name; a `ModelError` names an option that does not belong to it."""
-    model = find(name)
-    for option, value in vars(options).items():
-        if value is not None and option not in model.options:
-            raise ModelError(f"{model.name}: {option} = {value}: not an option of this model")
-    return model
 
 
 def _kind(response: Response, model: Model | None) -> dict[str, Any]:

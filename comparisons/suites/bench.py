@@ -14,9 +14,8 @@ import numpy as np
 from comparisons.answer import ContactEvent, Response
 from comparisons.answer.table import table
 from comparisons.files import writable_folder, write_text
-from comparisons.models import Model, solve
+from comparisons.models import TSM, find, solve
 from comparisons.models.model import ModelError, Options
-from comparisons.models.registry import fitting
 from comparisons.models.shared import joints, line_loads
 from comparisons.output import Report
 from comparisons.referee.rod import face_of
@@ -214,12 +213,17 @@ def set_texts(found: Mapping[str, Response]) -> tuple[str, str]:
     return stated, lines("queries", asked, **HEAD, set=name)
 
 
-def answers(model: Model, options: Options, given: Mapping[str, Any], report: Report) -> str:
-    """Return the answers of a model to the queries of a set, as JSON text; `report` takes a line for each scene."""
-    rows, refused, name = list[Query](), dict[str, str](), " ".join([model.label, *settings(options)])
+def answers(words: str, given: Mapping[str, Any], report: Report) -> str:
+    """Return the answers of a model with its setting to the queries of a set, as JSON text; `report` takes a line for each scene.
+
+    What is not stated has the reason. A model that refuses all scenes is a `ModelError`.
+    """
+    model, *setting = words.split(" ")
+    options = Options(**dict(map(_option, setting)))
+    rows, refused, name = list[Query](), dict[str, str](), " ".join([find(model).label, *setting])
     for scene, _ in scenes().values():
         try:
-            response = solve(scene, model.name, options)
+            response = solve(scene, model, options)
         except ModelError as error:
             refused[scene.name] = str(error)
             continue
@@ -229,27 +233,26 @@ def answers(model: Model, options: Options, given: Mapping[str, Any], report: Re
             value = told(query, response, columns)
             rows.append(query | ({"refused": why} if value is None else {"value": value}))
         report(f"{name}: {scene.name}: {response.status}")
+    if len(refused) == len(scenes()):
+        raise ModelError(refused[scene.name])
     return lines("answers", rows, **HEAD, set=given["set"], program=name, refused=refused)
 
 
-def settings(options: Options) -> list[str]:
-    """Return the options that are given, as words."""
-    given = (getattr(options, name) for name in ("element", "elements", "mesh"))
-    return ["x".join(map(str, one)) if isinstance(one, tuple) else str(one) for one in given if one]
+def _option(word: str) -> tuple[str, Any]:
+    """Return the option that a word of a setting is: elements, a mesh, or an element."""
+    numbers = word.split("x")
+    if not all(map(str.isdecimal, numbers)):
+        return "element", word
+    return ("mesh", tuple(map(int, numbers))) if len(numbers) > 1 else ("elements", int(word))
 
 
-def write_bench(folder: Path, models: Sequence[tuple[str, Options]], report: Report) -> list[Path]:
-    """Write the scenes and the queries, and the answers of models; return the files.
-
-    A `ModelError` names an unknown model, or an option that does not belong to a model.
-    """
-    found = [(fitting(name, options), options) for name, options in models]
-    names = ["-".join([model.name, *settings(options)]) for model, options in found]
-    files = [writable_folder(folder) / f"{name}.json" for name in ("scenes", "queries", *names)]
-    exact = {name: solve(scene, "tsm", Options(element="exact")) for name, (scene, _) in scenes().items()}
-    texts = set_texts(exact)
-    for file, text in zip(files, texts, strict=False):
+def write_bench(folder: Path, models: Sequence[str], report: Report) -> list[Path]:
+    """Write the scenes and the queries, and the answers of models with their settings, as ``tsm mixed 20``; return the files."""
+    found = {one: "-".join([find(one.split(" ")[0]).name, *one.split(" ")[1:]]) for one in models}
+    files = [writable_folder(folder) / f"{name}.json" for name in ("scenes", "queries", *found.values())]
+    exact = {name: solve(scene, TSM.name, TSM.reference) for name, (scene, _) in scenes().items()}
+    texts = list(set_texts(exact))
+    texts += (answers(one, json.loads(texts[1]), report) for one in found)
+    for file, text in zip(files, texts, strict=True):
         write_text(file, text)
-    for file, (model, options) in zip(files[2:], found, strict=True):
-        write_text(file, answers(model, options, json.loads(texts[1]), report))
     return files

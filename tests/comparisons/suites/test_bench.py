@@ -59,6 +59,14 @@ def scored(folder, *given, options=()):
     return done.returncode, done.stdout + done.stderr
 
 
+def few(monkeypatch, *names):
+    """Let the set have some scenes only."""
+    monkeypatch.setattr(bench, "scenes", lambda: {name: ALL[name] for name in names})
+    stated = [row for row in bench.SET["scene"] if row["name"] in names]
+    monkeypatch.setattr(bench, "SET", bench.SET | {"scene": stated})
+    return names
+
+
 def row_of(given, query):
     return next(row for row in given["answers"] if query.items() <= row.items())
 
@@ -92,18 +100,14 @@ def test_the_set_is_what_its_page_says():
 
 def test_scenes_are_made_anew_byte_for_byte(make, monkeypatch):
     """A part of the set; `test_the_set_is_made_anew_byte_for_byte` has all."""
-    few = ("touch-again", "tapered-spring", "straightened-arc")
-    monkeypatch.setattr(bench, "scenes", lambda: {name: ALL[name] for name in few})
-    monkeypatch.setattr(
-        bench, "SET", bench.SET | {"scene": [row for row in bench.SET["scene"] if row["name"] in few]}
-    )
+    names = few(monkeypatch, "touch-again", "tapered-spring", "straightened-arc")
     made = make.texts(BENCH)
     for file, text in made.items():
         rows = [line.rstrip(",") for line in text.splitlines() if line.startswith("  {")]
         old = [
             line.rstrip(",")
             for line in (BENCH / file).read_text().splitlines()
-            if re.search(rf'^  .*"({"|".join(few)})"', line)
+            if re.search(rf'^  .*"({"|".join(names)})"', line)
         ]
         assert rows == old
 
@@ -243,26 +247,21 @@ def test_a_client_is_right_on_what_it_answers(name, tmp_path):
     assert re.search(rf"^all +961 +{least} +{961 - least} +0 ", out, re.M)
 
 
-def test_the_command_answers_for_a_model(in_folder, monkeypatch):
-    """With its options, and beside programs of others; what a model cannot state is refused, what it does not reach has the reason."""
-    few = ("straightened-arc", "clamped-column", "ks-friction")
-    monkeypatch.setattr(bench, "scenes", lambda: {name: ALL[name] for name in few})
-    monkeypatch.setattr(
-        bench, "SET", bench.SET | {"scene": [row for row in bench.SET["scene"] if row["name"] in few]}
+def test_the_command_answers_for_models(in_folder, monkeypatch, capsys):
+    """With their settings; what a model cannot state is refused, what it does not reach has the reason, and one that states nothing ends it."""
+    few(monkeypatch, "straightened-arc", "clamped-column", "ks-friction")
+    words = ("tsm mixed 3", "tsm timoshenko", "rod")
+    assert crossval("run", "bench", *words, "--out", "o") == 0
+    coarse, paper, exact = (
+        json.loads(Path(f"o/{name.replace(' ', '-')}.json").read_text()) for name in words
     )
-    assert (
-        crossval("run", "bench", "--element", "mixed", "--elements", "3", "--with", "rod", "--out", "o") == 0
-    )
-    coarse, exact = (json.loads(Path(f"o/{name}.json").read_text()) for name in ("tsm-mixed-3", "rod"))
-    assert (coarse["program"], list(exact["refused"])) == ("TSM mixed 3", [])
+    assert (coarse["program"], coarse["refused"], exact["refused"]) == ("TSM mixed 3", {}, {})
+    assert paper["refused"].keys() == {"straightened-arc", "ks-friction"}
     wanted = json.loads(Path("o/queries.json").read_text())["queries"]
-    assert [bench.query_of(row) for row in coarse["answers"]] == wanted
-    for row in exact["answers"]:
-        if "refused" not in row:
-            kept = row_of(RIGHT, bench.query_of(row))
-            assert row["value"] == pytest.approx(kept["value"], abs=1e-9 * kept["scale"])
-    assert crossval("run", "bench", "--element", "timoshenko", "--out", "p") == 0
-    assert set(json.loads(Path("p/tsm-timoshenko.json").read_text())["refused"]) == {
-        "straightened-arc",
-        "ks-friction",
-    }
+    assert list(map(bench.query_of, coarse["answers"])) == wanted
+    for row in (row for row in exact["answers"] if "refused" not in row):
+        kept = row_of(RIGHT, bench.query_of(row))
+        assert row["value"] == pytest.approx(kept["value"], abs=1e-9 * kept["scale"])
+    capsys.readouterr()
+    assert crossval("run", "bench", "tsm 25x2", "--out", "p") == 2
+    assert capsys.readouterr().err == "crossval: tsm: mesh = (25, 2): not an option of this model\n"
