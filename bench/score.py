@@ -58,8 +58,9 @@ def lie(query, value, true, allowed, exact):
 def judged(text, right, digits):
     """Program, and verdict, error and digits by query; a `ValueError` if the file cannot be scored."""
     given = json.loads(text)
-    if not (isinstance(given, dict) and isinstance(given.get("answers"), list)):
-        raise ValueError("must be a table with a list of answers")
+    given = given if isinstance(given, dict) else {}
+    if not isinstance(given.get("answers"), list):
+        raise ValueError("must have a list of answers")  # noqa: TRY004 - a file of the user
     if given.get("set") != right["set"]:
         raise ValueError(f"stale: it answers the set {given.get('set')!r}, this is {right['set']!r}")
     exact, rows, found = {key(row): row for row in right["answers"]}, {}, {}
@@ -79,7 +80,7 @@ def judged(text, right, digits):
             verdict = "missing"
         elif isinstance(value, bool) or not isinstance(value, (int, float)):
             verdict = f"not a number: {json.dumps(value)[:40]}"
-        elif not math.isfinite(value):
+        elif not abs(value) < 1e300:
             verdict = "not a finite number"
         else:
             error = abs(value - true["value"]) / true["scale"]
@@ -139,7 +140,7 @@ def results(programs, right):
     yield f"# Results of {right['benchmark']} {right['version']}\n"
     yield "Digits of the median and of the worst answer to a scene, over its largest force, moment or"
     yield "displacement, or the beam's length, and not more than are certain. [n] queries of the scene are"
-    yield "not answered; a scene that is refused has none. Made by `score.py --results`.\n"
+    yield "not answered; - is a scene that is refused, or stopped. Made by `score.py --results`.\n"
     yield "| " + " | ".join(["scene", *(program for program, _ in programs)]) + " |"
     yield "| --- " * (len(programs) + 1) + "|"
     parts = [scenes(found) for _, found in programs]

@@ -20,10 +20,9 @@ def built(scene):
     ops.pattern("Plain", 1, 1)
     places, ends, beams = {}, {}, {}
     for number, beam in enumerate(scene["beams"], 1):
-        (x, y), (v, w), EA = beam["start"], beam["end"], beam["EA"]
-        parts = [k / ELEMENTS for k in range(ELEMENTS + 1)]
-        points = [beam["start"], *([x + u * (v - x), y + u * (w - y)] for u in parts[1:-1]), beam["end"]]
-        nodes = beams[beam["name"]] = [places.setdefault(tuple(p), len(places) + 1) for p in points]
+        (x, y), (v, w), EA, parts = beam["start"], beam["end"], beam["EA"], range(ELEMENTS + 1)
+        points = [(x + (v - x) * k / ELEMENTS, y + (w - y) * k / ELEMENTS) for k in parts]
+        nodes = beams[beam["name"]] = [places.setdefault(p, len(places) + 1) for p in points]
         for node, point in zip(nodes, points):
             if node not in ops.getNodeTags():
                 ops.node(node, *point)
@@ -49,17 +48,16 @@ def built(scene):
 
 def answered(scene):
     """Answers by end, what, and place of the load parameter."""
-    ends, last = built(scene), 0.0
-    for name, kind in (("constraints", "Transformation"), ("numberer", "RCM"), ("system", "BandGeneral")):
-        getattr(ops, name)(kind)
+    ends = built(scene)
+    ops.constraints("Transformation")
+    ops.system("BandGeneral")
     ops.test("NormDispIncr", 1e-10 * scene["beams"][0]["length"], 50)
     ops.algorithm("Newton")
     for k, t in enumerate(scene["load_parameters"]):
-        ops.integrator("LoadControl", (t - last) / STEPS)
+        ops.integrator("LoadControl", (t - ops.getTime()) / STEPS)
         ops.analysis("Static", "-noWarnings")
         if ops.analyze(STEPS):
             return
-        last = t
         ops.reactions()
         for end, node in ends.items():
             found = dict(zip(("displacement_x", "displacement_y"), ops.nodeDisp(node)))

@@ -10,14 +10,15 @@ from shutil import rmtree
 from comparisons.cli.options import refuse, workers
 from comparisons.cli.screen import DONE, STOPPED, WRONG, files_named, report, teller
 from comparisons.files import writable_folder
+from comparisons.models import TSM
 from comparisons.output import tabulated, write_rows
 from comparisons.scene import InputError, load_scene
 from comparisons.suite.progress import running
 from comparisons.suite.run import UNSETTLED
 from comparisons.suite.study import read_study, result_rows, result_table
+from comparisons.suites.bench import write_bench
 from comparisons.suites.extremes.run import counts, extremes
 from comparisons.suites.manual import problems, write_manual
-from comparisons.suites.manual.cards import write_cards
 from comparisons.suites.names import FIGURES, QUESTIONS
 from comparisons.suites.paper.reproduce import reproduce
 from comparisons.suites.solid_accuracy import STUDIES
@@ -59,11 +60,9 @@ def _figures(given: Namespace) -> int:
     return _ended(*reproduce(figure, folder, quick=given.quick, report=report))
 
 
-def _cards(given: Namespace) -> int:
+def _bench(given: Namespace) -> int:
     folder = given.out or Path("out") / given.suite
-    count = write_cards(folder, teller(quiet=given.quiet), problems(given.of or None))
-    print(f"{count} cards and their schema in {folder}")
-    return DONE
+    return _ended(write_bench(folder, given.of or [TSM.name], teller(quiet=given.quiet)))
 
 
 def _manual(given: Namespace) -> int:
@@ -126,7 +125,7 @@ def _study(given: Namespace) -> int:
 SUITES: dict[str, tuple[str, Callable[[Namespace], int]]] = {
     **dict.fromkeys(("paper", *FIGURES), ("quick", _figures)),
     "manual": ("of", _manual),
-    "cards": ("of", _cards),
+    "bench": ("of", _bench),
     "extremes": ("quick workers", _extremes),
     "trade": ("of quick workers", _trade),
     **dict.fromkeys(QUESTIONS, ("", _question)),

@@ -2,11 +2,10 @@
 
 import hashlib
 import json
+import math
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
-from itertools import pairwise
-from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +14,10 @@ import numpy as np
 from comparisons.answer import ContactEvent, Response
 from comparisons.answer.table import table
 from comparisons.files import writable_folder, write_text
-from comparisons.models import find, solve
+from comparisons.models import TSM, find, solve
 from comparisons.models.model import ModelError, Options
 from comparisons.models.shared import joints, line_loads
+from comparisons.output import Report
 from comparisons.referee.rod import face_of
 from comparisons.scene import BeamSpec, PinSpec, Scene, load_scene
 
@@ -25,7 +25,14 @@ Query = dict[str, Any]
 SET = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 """Name, version, conventions and scenes of the set."""
 HEAD = {"benchmark": SET["name"], "version": SET["version"]}
+KEYS = ("scene", "of", "what", "at", "number")
+"""What a query has."""
 EVENTS = ("touch", "release", "slip-off", "slip", "stick")
+
+
+def query_of(row: Query) -> Query:
+    """Return what an answer answers."""
+    return {key: row[key] for key in KEYS if key in row}
 
 
 @cache
@@ -141,7 +148,7 @@ def _queries(scene: Scene, at: Sequence[int], right: Response) -> Iterator[Query
             yield from (
                 {"scene": scene.name, "of": of, "what": what, "at": k}
                 for k, value in enumerate(values)
-                if isfinite(value)
+                if math.isfinite(value)
             )
     last, numbers = scene.times[at[-1]], dict[tuple[str, str], int]()
     jumps = {event.load_parameter for event in right.events or () if event.kind == "slip-off"}
@@ -180,15 +187,16 @@ def told(query: Query, response: Response, columns: Mapping[str, Any]) -> float 
     if "at" in query:
         column = columns.get(f"{query['of']}.{query['what']}", ())
         k = at[query["at"]]
-        return float(column[k]) if k < len(column) and isfinite(column[k]) else None
+        return float(column[k]) if k < len(column) and math.isfinite(column[k]) else None
     found = event(query, response)
     return None if found is None else float(found.load_parameter)
 
 
 def event(query: Query, response: Response) -> ContactEvent | None:
-    """Return the event that is asked for; None where a response states none."""
+    """Return the event that is asked for; None where none is, or a response states none."""
+    number = query.get("number", math.inf)
     same = [one for one in response.events or () if (one.pair, one.kind) == (query["of"], query["what"])]
-    return same[query["number"] - 1] if query["number"] <= len(same) else None
+    return same[number - 1] if number <= len(same) else None
 
 
 def lines(key: str, rows: Sequence[Mapping[str, Any]], **head: Any) -> str:
@@ -197,27 +205,54 @@ def lines(key: str, rows: Sequence[Mapping[str, Any]], **head: Any) -> str:
     return f"{{\n{first} {json.dumps(key)}: [\n  " + ",\n  ".join(map(json.dumps, rows)) + "\n ]\n}\n"
 
 
-def set_texts(found: Mapping[str, Response]) -> tuple[str, str, str]:
-    """Return the texts of ``scenes.json`` and ``queries.json``, and the name of the set, which is a digest of both."""
+def set_texts(found: Mapping[str, Response]) -> tuple[str, str]:
+    """Return the texts of ``scenes.json`` and ``queries.json``, which has the name of the set, a digest of both."""
     rows = [_tidy(resolved(row["about"], *scenes()[row["name"]])) for row in SET["scene"]]
     stated, asked = lines("scenes", rows, **HEAD, conventions=SET["conventions"]), queries(found)
     name = hashlib.sha256((stated + json.dumps(asked)).encode()).hexdigest()[:16]
-    return stated, lines("queries", asked, **HEAD, set=name), name
+    return stated, lines("queries", asked, **HEAD, set=name)
 
 
-def answers(model: str, options: Options, given: Mapping[str, Any]) -> str:
-    """Return the answers of a model to the queries of a set, as JSON text."""
-    rows, refused = list[Query](), dict[str, str]()
-    for name, (scene, _) in scenes().items():
+def answers(words: str, given: Mapping[str, Any], report: Report) -> str:
+    """Return the answers of a model with its setting to the queries of a set, as JSON text; `report` takes a line for each scene.
+
+    What is not stated has the reason. A model that refuses all scenes is a `ModelError`.
+    """
+    model, *setting = words.split(" ")
+    options = Options(**dict(map(_option, setting)))
+    rows, refused, name = list[Query](), dict[str, str](), " ".join([find(model).label, *setting])
+    for scene, _ in scenes().values():
         try:
             response = solve(scene, model, options)
         except ModelError as error:
-            refused[name] = str(error)
+            refused[scene.name] = str(error)
             continue
         columns = histories(scene, response) if len(response.load_parameter) else {}
-        why = f"{response.status}: {response.message}" if not response.completed else "not stated"
-        for query in (query for query in given["queries"] if query["scene"] == name):
+        why = "is not stated" if response.completed else f"{response.status}: {response.message}"
+        for query in (query for query in given["queries"] if query["scene"] == scene.name):
             value = told(query, response, columns)
             rows.append(query | ({"refused": why} if value is None else {"value": value}))
-    program = f"{find(model).label} {' '.join(str(v) for v in vars(options).values() if v)}".rstrip()
-    return lines("answers", rows, **HEAD, set=given["set"], program=program, refused=refused)
+        report(f"{name}: {scene.name}: {response.status}")
+    if len(refused) == len(scenes()):
+        raise ModelError(refused[scene.name])
+    return lines("answers", rows, **HEAD, set=given["set"], program=name, refused=refused)
+
+
+def _option(word: str) -> tuple[str, Any]:
+    """Return the option that a word of a setting is: elements, a mesh, or an element."""
+    numbers = word.split("x")
+    if not all(map(str.isdecimal, numbers)):
+        return "element", word
+    return ("mesh", tuple(map(int, numbers))) if len(numbers) > 1 else ("elements", int(word))
+
+
+def write_bench(folder: Path, models: Sequence[str], report: Report) -> list[Path]:
+    """Write the scenes and the queries, and the answers of models with their settings, as ``tsm mixed 20``; return the files."""
+    found = {one: "-".join([find(one.split(" ")[0]).name, *one.split(" ")[1:]]) for one in models}
+    files = [writable_folder(folder) / f"{name}.json" for name in ("scenes", "queries", *found.values())]
+    exact = {name: solve(scene, TSM.name, TSM.reference) for name, (scene, _) in scenes().items()}
+    texts = list(set_texts(exact))
+    texts += (answers(one, json.loads(texts[1]), report) for one in found)
+    for file, text in zip(files, texts, strict=True):
+        write_text(file, text)
+    return files

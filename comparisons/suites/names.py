@@ -19,7 +19,7 @@ SUITES = {
     "paper": "all figures of the paper, and its claims",
     **FIGURES,
     "manual": "the verification manual: problems with exact answers, every model",
-    "cards": "the manual's problems as JSON files, with scene, values, source",
+    "bench": "the answers of a model to the benchmark set, for its scorer",
     "extremes": "where models hold and stop: units, slenderness, meshes, time, ...",
     "trade": "what accuracy costs on SCENE: error over time, for many settings",
     **QUESTIONS,

@@ -105,7 +105,7 @@ INTO_A_FOLDER = {
     "run extremes --quick --out": ("extremes.csv",),
     "run locking --out": ("locking.csv",),
     "run manual roll-up --quiet --out": ("index.md", "roll-up.svg", "junit.xml"),
-    "run cards roll-up --out": ("roll-up.json", "card.schema.json"),
+    "run bench --quiet --out": ("scenes.json", "tsm.json"),
 }
 
 
