@@ -5,6 +5,7 @@ import pytest
 
 from tests.laws.scenes import answer, cases, scene, stated, within
 from tests.laws.transform import Change, apart
+from tests.stated import ROOT
 
 
 @pytest.mark.parametrize(("model", "name"), cases())
@@ -22,6 +23,13 @@ def test_a_contact_that_turns_a_beam_without_bending_it_slips_in_all_units() -> 
         found = answer(change.scene(scene("friction-12")), "mixed")
         assert found.completed
         assert [item.kind for item in found.events or () if item.kind != "pass-through"] == ["release"]
+
+
+def test_the_round_off_of_a_stiff_hinge_has_a_unit() -> None:
+    """Newton's method ends at it: with that of another unit it goes on for ever."""
+    for length in (1e-4, 1e4):
+        own = scene(str(ROOT / "tests" / "comparisons" / "findings" / "stopped" / "stiff-hinge.toml"))
+        assert answer(Change(length=length).scene(own), "exact").completed
 
 
 @pytest.mark.parametrize("name", ["ks-cantilever", "special-37"])

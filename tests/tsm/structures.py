@@ -102,17 +102,17 @@ def pushed(elements=1, **pair):
 
 
 def leaning():
-    """A straight beam's tip on a curved one, one load on each."""
+    """A straight beam's tip, the first node of all, on a curved beam; one load on each."""
     lower = replace(hook().beams[0], name="low")
     x, y = lower.point(0.6)
-    upper = beam("up", (x - 0.6, y + 0.5), (x, y), section=THIN)
+    upper = beam("up", (x, y), (x - 0.6, y + 0.5), section=THIN)
     loads = (
         tsm.LineLoad(beam="low", force=((0.0, -0.5), (0.2, 0.3))),
         tsm.LineLoad(beam="up", force=((0.3, -3.0),)),
     )
-    supports = (tsm.Support(beam="low", end="start"), tsm.Support(beam="up", end="start", uy=-0.05))
-    contact = tsm.ContactPair(node="up.end", beam="low", side="left")
-    return tsm.Structure(beams=(lower, upper), supports=supports, line_loads=loads, contacts=(contact,))
+    supports = (tsm.Support(beam="low", end="start"), tsm.Support(beam="up", end="end", uy=-0.05))
+    contact = tsm.ContactPair(node="up.start", beam="low", side="left")
+    return tsm.Structure(beams=(upper, lower), supports=supports, line_loads=loads, contacts=(contact,))
 
 
 def as_mixed(structure):

@@ -38,7 +38,7 @@ def pair(**changes):
 
 BY_THE_PAPER = "such elements are straight and uniform, without loads along them; use mixed"
 STRAIGHT = beam("b", (0.0, 0.0), (1.0, 0.2), element="mixed", elements=4)
-BOTH = replace(leaning(), beams=(as_mixed(leaning()).beams[0], leaning().beams[1]))
+BOTH = replace(leaning(), beams=(leaning().beams[0], as_mixed(leaning()).beams[1]))
 FREE_JOINT = replace(ONE, pins=(), contacts=(), hinges=(tsm.Hinge(beam="b", end="end"),))
 PARTED = tsm.Structure(
     beams=(beam("a", (0.0, 0.0), (1.0, 0.0)), beam("c", (1.0, 0.0), (2.0, 0.0))),
