@@ -24,6 +24,21 @@ def test_the_main_scene_takes_two_iterations_a_load_parameter():
     assert result.newton_iterations.sum() <= 105
 
 
+def test_many_beams_have_the_answers_of_one():
+    """The border of 22 contacts is wider than what is solved as dense columns."""
+    alone = [cantilever(((0.9, 0.0), (0.7, 0.3)))] * 22
+    many = tsm.Structure(
+        beams=tuple(replace(s.beams[0], name=f"b{k}", start=(0, k), end=(1, k)) for k, s in enumerate(alone)),
+        supports=tuple(replace(s.supports[0], beam=f"b{k}") for k, s in enumerate(alone)),
+        pins=tuple(tsm.Pin(name=f"p{k}", path=((0.9, k), (0.7, k + 0.3))) for k in range(len(alone))),
+        contacts=tuple(replace(s.contacts[0], node=f"p{k}", beam=f"b{k}") for k, s in enumerate(alone)),
+    )
+    single, result = (tsm.solve(structure, steps(4)) for structure in (alone[0], many))
+    for contact in result.contacts.values():
+        np.testing.assert_allclose(contact.force, single.contacts["p0->b"].force, rtol=1e-9)
+    assert (result.index == single.index).all()
+
+
 def column(load, *paths, element="exact", elements=1):
     push = tsm.Load(beam="b", end="end", force=(-load, 0.0))
     return cantilever(*paths, section=SECTION, element=element, elements=elements, load=push)

@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from tsm.contact.events import ROUND_OFF, EventKind, over, touch_at
+from tsm.contact.events import ROUND_OFF, EventKind, over
 from tsm.model.contact import closed, owned, with_touches
 from tsm.model.groups.shape import undeformed
 from tsm.model.model import Model
 from tsm.model.pairs import PairModel
 from tsm.model.projection import Projection
-from tsm.model.state import UNDECIDED, State, Touch
+from tsm.model.state import UNDECIDED, State, Touch, touch_of
 from tsm.statement.status import Status, StopError
 
 
@@ -75,7 +75,7 @@ def opened(model: Model, state: State, k: int, kind: EventKind, *, alone: bool) 
     Raises StopError where the path ends because the contact may not open.
     """
     pair, slips = model.pairs[k], kind is EventKind.SLIP_OFF
-    end, held, _ = end_beside(model, pair, touch_at(state, k))
+    end, held, _ = end_beside(model, pair, touch_of(state, k))
     if slips and held:
         raise StopError(Status.FOLDED)
     if pair.pair.keep:

@@ -26,7 +26,7 @@ from enum import Enum
 
 from tsm.model.model import Model
 from tsm.model.projection import Projection, arc_position
-from tsm.model.state import State, Touch, Traction
+from tsm.model.state import Traction, touch_of
 from tsm.system.equilibrium import Equilibrium
 
 ROUND_OFF = 1e-10
@@ -84,13 +84,6 @@ class Event:
     stage: int = 1
 
 
-def touch_at(state: State, k: int) -> Touch:
-    """Contact of closed pair k."""
-    touch = state.touches[k]
-    assert touch is not None, "a closed pair has a touch"
-    return touch
-
-
 def over(model: Model, seen: Projection) -> bool:
     """Whether a node lies over its beam, not past an end."""
     return seen.overshoot <= ROUND_OFF * model.length
@@ -106,7 +99,7 @@ def traction(point: Equilibrium, k: int) -> Traction:
 def normal_force(point: Equilibrium, k: int) -> float:
     """Contact force of closed pair k, friction included, positive where it pushes the beam away from the node's side."""
     fx, fy = point.system.forces[k]
-    pair, state, touch = point.model.pairs[k], point.state, touch_at(point.state, k)
+    pair, state, touch = point.model.pairs[k], point.state, touch_of(point.state, k)
     if touch.grip is not None:
         return math.copysign(math.hypot(fx, fy), traction(point, k).normal)
     dx, dy = point.model.direction(pair, touch, state)

@@ -13,9 +13,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import islice, product
 
-from tsm.contact.events import touch_at, traction
+from tsm.contact.events import traction
 from tsm.model.model import Model
-from tsm.model.state import UNDECIDED, Grip, State, Traction
+from tsm.model.state import UNDECIDED, Grip, State, Traction, touch_of
 from tsm.statement.status import Status, StopError
 from tsm.system.equilibrium import Equilibrium, Rates
 from tsm.system.system import Drive
@@ -101,7 +101,7 @@ def with_grips(state: State, grips: Grips) -> State:
     """State whose contacts slip or stick otherwise."""
     touches = list(state.touches)
     for k, grip in grips.items():
-        touches[k] = replace(touch_at(state, k), grip=grip)
+        touches[k] = replace(touch_of(state, k), grip=grip)
     return replace(state, touches=tuple(touches))
 
 

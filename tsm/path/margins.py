@@ -17,11 +17,11 @@ import numpy as np
 
 from tsm.contact.contact_set import changed, closed_at, opened
 from tsm.contact.ends import clearance
-from tsm.contact.events import ROUND_OFF, EventKind, normal_force, over, touch_at
+from tsm.contact.events import ROUND_OFF, EventKind, normal_force, over
 from tsm.contact.root import find_root
 from tsm.elements.properties import Array
 from tsm.model import scales
-from tsm.model.state import UNDECIDED, Grip, State
+from tsm.model.state import UNDECIDED, Grip, State, touch_of
 from tsm.path.friction import cone, slip_rate, turned, with_grips
 from tsm.statement.status import RefusedError, Status, StopError
 from tsm.system.equilibrium import Equilibrium
@@ -79,7 +79,7 @@ def _grip(point: Equilibrium, k: int) -> Grip:
 
 def _inside(point: Equilibrium, k: int, _drive: Drive) -> float:
     pair = point.model.pairs[k]
-    arc = pair.arc_position(touch_at(point.state, k))
+    arc = pair.arc_position(touch_of(point.state, k))
     return min(arc, pair.target.beam.length - arc) / point.model.length
 
 
@@ -95,7 +95,7 @@ def _slip_rate(point: Equilibrium, k: int, drive: Drive) -> float:
 
 def _roundness(point: Equilibrium, k: int, _drive: Drive) -> float:
     """Curvature ``theta'/(1 + e)``, ``theta' = m/EI``, by which the beam may still bend round the node, over 1/d."""
-    pair, touch, system = point.model.pairs[k], touch_at(point.state, k), point.system
+    pair, touch, system = point.model.pairs[k], touch_of(point.state, k), point.system
     group = point.model.group_of(pair.target)
     forces, push = system.groups[group.number], system.forces[k]
     curvature = -pair.side * group.curvature(k, touch, point.state, forces, push)

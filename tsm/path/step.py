@@ -8,10 +8,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from tsm.contact.ends import clearance
-from tsm.contact.events import Event, EventKind, normal_force, touch_at
+from tsm.contact.events import Event, EventKind, normal_force
 from tsm.elements.properties import Array
 from tsm.model.model import Model
-from tsm.model.state import State
+from tsm.model.state import State, touch_of
 from tsm.path.critical import CriticalPoint
 from tsm.path.margins import Margin, applied
 from tsm.statement.status import Status
@@ -60,7 +60,7 @@ class Step:
 
     def note(self, kind: EventKind, point: Equilibrium, state: State, k: int) -> None:
         """Record an event of a contact that is closed in a state, with its force at a point."""
-        pair, touch = point.model.pairs[k], touch_at(state, k)
+        pair, touch = point.model.pairs[k], touch_of(state, k)
         pushes = kind is not EventKind.TOUCH and point.state.touches[k] is not None
         self.events.append(
             Event(

@@ -1,7 +1,7 @@
 """Number of negative eigenvalues of a symmetric matrix that is a band with a border.
 
 For a band A, border columns B and a corner D, ``negatives(K) = negatives(A) + negatives(D - B^T A^-1 B)`` (Haynsworth 1968).
-Most bands are positive definite, which Cholesky's factorisation shows. If A is not positive definite, the whole matrix is factorised.
+Most bands are positive definite, which Cholesky's factorisation shows. If A is not positive definite, or the border is wide, the whole matrix is factorised.
 """
 
 from __future__ import annotations

@@ -73,8 +73,6 @@ class Newton:
         self.integration_tolerance = settings.integration_tolerance
         self.tolerance = settings.tolerance
         self.scale, self.per_step, self.noise = _scales(model)
-        kind = model.kind
-        self.per_unknown = self.per_step + np.where((kind > 2) & (kind < 6), 1 / model.units, 0.0)
         if model.springs is not None:
             self.noise = max(self.noise, model.springs.noise(model.extent, model.least_force))
         self.longest = _LONGEST_WHOLE if model.whole else _LONGEST

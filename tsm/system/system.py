@@ -6,7 +6,7 @@
     [ C  D ] [ dz ] = - [ s ]
 
 A is the banded tangent of the beams, factorised by LAPACK's ``gbsv``. The border B, C, D holds the unknowns of the closed contacts. Its
-Schur complement is small and dense. The cost is linear in the number of elements.
+Schur complement is small and dense; with a wide border, the whole matrix is sparse. The cost is linear in the numbers of elements and beams.
 """
 
 from __future__ import annotations

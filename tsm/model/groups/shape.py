@@ -48,25 +48,13 @@ class RodShape(NamedTuple):
     # shape (4, s, p + 1) or (6, s, p + 1)
     values: Array
 
-    def at(self, element: int, arc: Array) -> Station:
-        """Stations of an element, counted over the exact ones, at arc positions (m,) within it."""
-        first, last = int(self.place.first[element]), int(self.place.last[element])
-        return self.on(first + np.searchsorted(self.arc[first + 1 : last + 1], arc, side="right"), arc)
-
-    def on(self, segment: Array, arc: Array) -> Station:
-        """Stations on segments (m,) at arc positions (m,) within their elements."""
+    def at(self, element: Any, arc: Array) -> Station:
+        """Stations of one element or of elements (m,), counted over the exact ones, at arc positions (m,) within them."""
+        segment, owner = self.place.first[element] + np.zeros(len(arc), int), self.place.owner
+        for cut in np.flatnonzero(owner[1:] == owner[:-1]) + 1:
+            segment += (element == owner[cut]) & (arc >= self.arc[cut])
         length = self.length[segment]
         return self.within(segment, (arc - self.arc[segment]) / np.where(length, length, 1.0))
-
-    def angles(self, place: Layout, arc: Array) -> Array:
-        """Angles at arc positions (s, p) in other segments of the same elements."""
-        own = np.empty(arc.shape, dtype=int)
-        own[:] = self.place.first[place.owner, None]
-        for cut in np.flatnonzero(np.diff(self.place.owner) == 0) + 1:
-            element = self.place.owner[cut]
-            there = slice(place.first[element], place.last[element] + 1)
-            own[there] += arc[there] >= self.arc[cut]
-        return self.on(own.ravel(), arc.ravel()).angle.reshape(arc.shape)
 
     def within(self, segment: Any, sigma: Array) -> Station:
         """Stations at parts sigma (m,) of segments (m,), or of one segment."""
@@ -123,28 +111,22 @@ def pieces(group: Rods, shape: RodShape, element: int, count: int) -> Stations:
 
 
 def _profile(
-    group: Rods, state: State, cuts: Cuts, order: int, angles: Callable[[Layout, Array], Array]
+    group: Rods, state: State, cuts: Cuts, order: int, angle_at: Callable[[Any, Array], Array]
 ) -> State:
-    """State whose angles inside are those of a function of the segments and arc positions (s, p) within their elements."""
+    """State whose angles inside are those of a function of elements (m,) and arc positions (m,) within them."""
     place = layout(len(group.length), cuts)
     begin, end = np.zeros(len(place.owner)), group.length[place.owner]
     for element, pairs in cuts:
         for s, k in enumerate(pairs, int(place.first[element])):
             end[s] = begin[s + 1] = touch_of(state, k).xi * group.length[element]
     at = begin[:, None] + (end - begin)[:, None] * collocation(order).c
-    return replace(state, profile=Profile(cuts=cuts, angle=angles(place, at)))
+    angle = angle_at(np.repeat(place.owner, order), at.ravel()).reshape(at.shape)
+    return replace(state, profile=Profile(cuts=cuts, angle=angle))
 
 
 def undeformed(group: Rods, state: State) -> State:
     """State with the angles of the undeformed elements."""
-    order = group.nodes or START_ORDER
-    return _profile(
-        group,
-        state,
-        _cuts(group, state),
-        order,
-        lambda place, arc: group.undeformed_angle(place.owner[:, None], arc),
-    )
+    return _profile(group, state, _cuts(group, state), group.nodes or START_ORDER, group.undeformed_angle)
 
 
 def _cuts(group: Rods, state: State) -> Cuts:
@@ -176,7 +158,7 @@ def recut(group: Rods, state: State, after: State) -> State:
                     np.sign(touch.element - old.element) * np.array(touch.force)[:, None]
                 )
     cut = replace(after, q=q, touches=tuple(touches))
-    return _profile(group, cut, cuts, profile_of(state).angle.shape[1], shape.angles)
+    return _profile(group, cut, cuts, profile_of(state).angle.shape[1], lambda e, arc: shape.at(e, arc).angle)
 
 
 def resampled(group: Rods, state: State, order: int) -> State:
@@ -184,7 +166,8 @@ def resampled(group: Rods, state: State, order: int) -> State:
     profile = profile_of(state)
     if profile.angle.shape[1] == order:
         return state
-    return _profile(group, state, profile.cuts, order, plain_shape(group, state).angles)
+    shape = plain_shape(group, state)
+    return _profile(group, state, profile.cuts, order, lambda e, arc: shape.at(e, arc).angle)
 
 
 def truncation(group: Rods, entry: Entry) -> float:
