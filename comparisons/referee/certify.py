@@ -70,7 +70,9 @@ def certify(
     unsound = [*_unsound(response, scene, allowed, contradictions)] or [
         *unpaid(response, scene, found, allowed)
     ]
-    path = [] if unsound else [*_path(response, scene, found, allowed)]
+    passed = [] if unsound or not steps else [*passages(response, scene, history, found)]
+    path = [str(item) for item in passed if item.certain]
+    path += [] if unsound else _path(response, scene, found, allowed)
     if history is not None:
         from comparisons.referee.friction import rubs_wrongly_on_the_way
 
@@ -81,6 +83,8 @@ def certify(
         verdict, reason = _sound(response, scene, numbers, states)
     gone = next(departures(response, found), "") if verdict is Verdict.CERTIFIED else ""
     verdict, reason = (Verdict.UNSTABLE, gone) if gone else (verdict, reason)
+    if verdict is Verdict.CERTIFIED and passed:
+        verdict, reason = Verdict.NOT_JUDGED, str(passed[0])
     if history is not None and history.taken:
         reason = f"{reason}; {history.taken}"
     return Certificate(
@@ -190,7 +194,6 @@ def _path(
     """Yield violations between load parameters."""
     if not len(response.load_parameter):
         return
-    yield from passages(response, scene)
     yield from changes(response, scene)
     yield from misstated(response, scene, found, allowed)
     for spec in scene.contacts:
