@@ -3,8 +3,7 @@
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from functools import cache
-from types import MappingProxyType
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -67,14 +66,19 @@ class _Moment(NamedTuple):
     node: Array
 
 
-def passages(
-    response: Response,
-    scene: Scene,
-    history: "History | None" = None,
-    found: Mapping[int, Equilibrium] = MappingProxyType({}),
-) -> Iterator[Passage]:
-    """Yield every open pair whose node passed through the beam, or may have; `found` are exact equilibria by number."""
-    follow = cache(lambda k: _followed(response, scene, k, history, found))
+@lru_cache(maxsize=1)
+def history_of(response: Response, scene: Scene) -> "History | None":
+    """Return how friction holds the contacts of an answer; None in a scene without friction, for which nothing of it is loaded."""
+    if not any(spec.friction for spec in scene.contacts):
+        return None
+    from comparisons.referee.friction import History
+
+    return History(response, scene)
+
+
+def passages(response: Response, scene: Scene) -> Iterator[Passage]:
+    """Yield every open pair whose node passed through the beam, or may have."""
+    follow = cache(lambda k: _followed(response, scene, k))
     for spec in scene.contacts:
         through = _Pair(response, scene, spec, follow).passed_through()
         if through is not None:
@@ -213,28 +217,21 @@ class _Pair:
         return np.asarray(self.face.reach(np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))))
 
 
-def _followed(
-    response: Response, scene: Scene, k: int, history: "History | None", found: Mapping[int, Equilibrium]
-) -> list[Equilibrium]:
+def _followed(response: Response, scene: Scene, k: int) -> list[Equilibrium]:
     """Return equilibria on the path to load parameter number k from the one before; none if it jumps, or leads elsewhere."""
-    if history is None and any(spec.friction for spec in scene.contacts):
-        from comparisons.referee.friction import History
+    history = history_of(response, scene)
 
-        history = History(response, scene)
+    def at(n: int) -> Equilibrium:
+        if n < 0:
+            return at_rest(scene)
+        grips = history.grips(n) if history else {}
+        return equilibrium(scene, replace(answer_state(response, scene, n), grips=grips))
+
     try:
-        begin, end = (
-            found.get(n)
-            or equilibrium(
-                scene,
-                replace(answer_state(response, scene, n), grips=history.grips(n) if history else {}),
-            )
-            if n >= 0
-            else at_rest(scene)
-            for n in (k - 1, k)
-        )
-        if not (begin.found and end.found):
-            return []
-        way = way_to(response, begin, end.load_parameter, history.around if history else None, _STEPS)
+        begin, end = at(k - 1), at(k)
+        held = history.around if history else None
+        found = begin.found and end.found
+        way = way_to(response, begin, end.load_parameter, held, _STEPS) if found else []
     except UnknownFrictionError:
         return []
     return way if way and same(way[-1], end, _SAME) else []

@@ -19,6 +19,8 @@ from comparisons.referee.state import Change, Equilibrium, located
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
+Held = Callable[[float], Mapping[str, Grip]]
+"""How friction holds the contacts at a load parameter."""
 
 _ITERATIONS = 12
 """Largest number of Newton iterations of a step."""
@@ -105,61 +107,53 @@ def departures(response: Response, states: Mapping[int, Equilibrium]) -> Iterato
     for k, there in states.items():
         now = now or at_rest(there.scene)
         if now.found:
-            events = events_between(response, now.load_parameter, there.load_parameter)
+            t = there.load_parameter
+            events = _events_between(response, now.load_parameter, t)
             same = all(closed[i] == now.closed.keys() for i in range(max(begin, 0), k + 1))
-            ways = [now] if same and not events else on_the_way(now, events)
+            ways = [now] if same and not events else _on_the_way(now, events, (), t, None)
             for way in (item for item in ways[-1:] if _alike(item, there)):
                 # beyond an event that is stated within an allowance only, a path that is not found tells nothing
-                if way is now or not _followed(way, there.load_parameter, there)[1]:
+                if way is now or not _followed(way, t, there)[1]:
                     yield from filter(None, [departs(way, there)])
         now, begin = there, k
 
 
-def events_between(response: Response, after: float, until: float) -> list[ContactEvent]:
+def _events_between(response: Response, after: float, until: float) -> list[ContactEvent]:
     """Events at which contacts open, close, stick or slip."""
     return [event for event in changes_of(response) if after <= event.load_parameter <= until]
 
 
-def on_the_way(
-    now: Equilibrium,
-    events: Sequence[ContactEvent],
-    stops: Sequence[float] = (),
-    held: Callable[[float], Mapping[str, Grip]] | None = None,
+def way_to(
+    response: Response, begin: Equilibrium, end: float, held: Held | None = None, steps: int = 1
 ) -> list[Equilibrium]:
-    """Follow the path through events to the equilibria at stops and behind the events; none where a contact jumps, or no path leads on.
+    """Follow the path from rest, or an equilibrium that an answer states, through its events: see `_on_the_way`."""
+    start = begin.load_parameter
+    events = [*(_from_the_start(response) if start == 0.0 else ()), *_events_between(response, start, end)]
+    return _on_the_way(begin, events, np.linspace(start, end, steps + 1)[1:].tolist(), end, held)
+
+
+def _on_the_way(
+    now: Equilibrium, events: Sequence[ContactEvent], stops: Sequence[float], end: float, held: Held | None
+) -> list[Equilibrium]:
+    """Return the equilibria at stops and behind events up to a load parameter; none where a contact jumps, or no path leads on.
 
     `held` says how friction holds the contacts between two events; without it the path is not followed where contacts rub.
     """
-    if (now.layout.grips and not held) or any(
-        event.kind not in ((*_SWITCHED, *_STAYS) if held else _SWITCHED) for event in events
-    ):
+    kinds = (*_SWITCHED, *_STAYS) if held else _SWITCHED
+    if (now.layout.grips and not held) or any(event.kind not in kinds for event in events):
         return []
     found: list[Equilibrium] = []
-    marks = sorted(
-        [*((t, None) for t in stops), *((event.load_parameter, event) for event in events)], key=itemgetter(0)
-    )
-    for n, (t, event) in enumerate(marks):
+    marks: list[tuple[float, ContactEvent | None]] = [(t, None) for t in stops]
+    marks = sorted([*marks, *((event.load_parameter, event) for event in events)], key=itemgetter(0))
+    for t, event in marks:
         now, stopped = _followed(now, t)
         if event and not stopped:
-            after = next((later for later, _ in marks[n:] if later > t), t)
+            after = next((later for later, _ in marks if later > t), end)
             now = _changed(now, event, held((t + after) / 2.0) if held else {}, t + _LEAVING * (after - t))
         if stopped or not now.found:
             return []
         found.append(now)
     return found
-
-
-def way_to(
-    response: Response,
-    begin: Equilibrium,
-    end: float,
-    held: Callable[[float], Mapping[str, Grip]] | None = None,
-    steps: int = 1,
-) -> list[Equilibrium]:
-    """Follow the path through the events of an answer, from rest or an equilibrium that it states; see `on_the_way`."""
-    start = begin.load_parameter
-    events = [*(_from_the_start(response) if start == 0.0 else ()), *events_between(response, start, end)]
-    return on_the_way(begin, events, np.linspace(start, end, steps + 1)[1:].tolist(), held)
 
 
 def _from_the_start(response: Response) -> Iterator[ContactEvent]:
@@ -169,14 +163,8 @@ def _from_the_start(response: Response) -> Iterator[ContactEvent]:
         if own[0].kind != "touch" if own else contact.force[0] != 0.0:
             arc = own[0].arc_position if own else float(contact.arc_position[0])
             yield ContactEvent(
-                kind="touch",
-                load_parameter=0.0,
-                pair=pair,
-                element=0,
-                arc_position=arc,
-                force=0.0,
-                released=0.0,
-            )
+                kind="touch", load_parameter=0.0, pair=pair, element=0, arc_position=arc, force=0.0, released=0.0
+            )  # fmt: skip
 
 
 def _changed(now: Equilibrium, event: ContactEvent, grips: Mapping[str, Grip], after: float) -> Equilibrium:
