@@ -27,13 +27,15 @@ class Section(NamedTuple):
     """A part of a page: its heading, which no other section has, and the markup below it.
 
     The `data` are what a script shows, JSON's types, arrays or records; the script finds them as
-    ``DATA[ident]``. What there is `more` is folded in a page's first section.
+    ``DATA[ident]``. Of a page's first section, `beside` stands below
+    the answer, and what there is `more` below all.
     """
 
     title: str
     html: str
     data: Any = None
     more: str = ""
+    beside: str = ""
 
     @property
     def ident(self) -> str:

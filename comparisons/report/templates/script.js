@@ -300,5 +300,21 @@ for (const place of document.querySelectorAll("[data-moving]")) {
   moving(section, DATA[section.id]);
 }
 
+// A table that is too wide becomes a list: each number behind the name of its column.
+const tables = [...document.querySelectorAll(".scroll, .sheet")];
+for (const table of tables.flatMap((one) => [...one.querySelectorAll("table")])) {
+  const names = [...table.querySelectorAll("thead th")].map((one) => one.textContent);
+  for (const row of table.querySelectorAll("tbody tr")) {
+    [...row.children].forEach((cell, n) => (cell.dataset.name = names[n] ?? ""));
+  }
+}
+function fit() {
+  for (const one of tables) one.classList.remove("stacked");
+  for (const one of tables.filter((one) => one.scrollWidth > one.clientWidth + 1)) one.classList.add("stacked");
+}
+for (const one of document.querySelectorAll("details")) one.addEventListener("toggle", fit);
+addEventListener("resize", fit);
+fit();
+
 // A print has no switch to open what is folded.
 addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((one) => (one.open = true)));
