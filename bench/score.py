@@ -112,7 +112,8 @@ def table(found):
         verdicts, errors, reached = zip(*rows)
         right, refused, errors = verdicts.count(RIGHT), verdicts.count(REFUSED), numbers(errors)
         ends = f"{median(errors):.1e}", f"{max(errors):.1e}", summary(reached)
-        yield line.format(scene, len(rows), right, refused, len(rows) - right - refused, *ends)
+        counts = len(rows), right, refused, len(rows) - right - refused
+        yield line.format(scene, *counts, *ends).replace("nan", "  -")
 
 
 def summary(reached):

@@ -143,8 +143,9 @@ def _queries(scene: Scene, at: Sequence[int], right: Response) -> Iterator[Query
     ]
     for of, what in wanted:
         values = columns[f"{of}.{what}"][list(at)]
-        scale = max(abs(v).max() for key, v in columns.items() if key.partition(".")[2][-6:] == what[-6:])
-        if np.nanmax(np.abs(values), initial=0.0) > 1e-9 * scale:
+        alike = (v for key, v in columns.items() if key.rpartition(".")[2].rstrip("xy") == what.rstrip("xy"))
+        largest, scale = (max(np.nanmax(np.abs(v), initial=0.0) for v in one) for one in ([values], alike))
+        if largest > 1e-9 * scale:
             yield from (
                 {"scene": scene.name, "of": of, "what": what, "at": k}
                 for k, value in enumerate(values)
