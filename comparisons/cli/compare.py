@@ -65,7 +65,7 @@ def _compare(scene: Scene, given: argparse.Namespace) -> int:
     watch, stage = partial(watching, quiet=given.quiet), partial(staging, quiet=given.quiet)
     found = compare(scene, given.out or Path("out") / scene.name, tell, watch, stage, more)
     say(found.brief)
-    print("", *filled(caption(ROD.label)), "", tabulated([line(row) for row in found.rows]), sep="\n")
+    print(*filled(caption(ROD.label)), "", tabulated([line(row) for row in found.rows]), sep="\n")
     if found.other_events:
         print("", *found.other_events, sep="\n")
     print()

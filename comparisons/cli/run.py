@@ -46,7 +46,6 @@ def _out(given: Namespace, *names: str) -> Path:
 
 def _ended(files: Iterable[Path], reasons: Iterable[str] = (), status: int = STOPPED) -> int:
     """Name the files, and what is wrong; return the exit status."""
-    print()
     files_named(*files)
     ended = DONE
     for reason in reasons:
@@ -101,7 +100,7 @@ def _trade(given: Namespace) -> int:
         return STOPPED
     files = write_trade(trade, folder)
     say(brief(trade))
-    print("", summary(trade), sep="\n")
+    print(summary(trade), end="\n\n")
     return _ended(files)
 
 

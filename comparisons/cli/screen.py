@@ -37,7 +37,7 @@ def files_named(*files: object) -> None:
 
 def say(brief: "Brief") -> None:
     """Print what is found, its sentence in bold on a terminal that may have it."""
-    print(brief.text(bold=sys.stdout.isatty() and not os.environ.get("NO_COLOR")))
+    print(brief.text(bold=sys.stdout.isatty() and not os.environ.get("NO_COLOR")), end="\n\n")
 
 
 def exit_status(scene: "Scene", responses: "Iterable[tuple[str, Response]]") -> int:

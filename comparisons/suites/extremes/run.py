@@ -38,12 +38,12 @@ def extremes(
     html, rows = folder / "extremes.html", [item.row for item in judgements]
     numbers = {"quick": quick, "verdicts": counts(judgements), "cells": rows}
     tables = (write_rows(folder / "extremes.csv", rows), write_numbers(folder / "extremes.json", numbers))
-    found = brief(judgements)
+    found = brief(judgements, quick=quick)
     write_page(folder, "Where it holds, where it stops", found, _sections(judgements), (), tables, html.name)
     return found, judgements, (html, *tables)
 
 
-def brief(judgements: Sequence[Judgement]) -> Brief:
+def brief(judgements: Sequence[Judgement], *, quick: bool) -> Brief:
     """Return how many cells have each verdict, and why cells stop and are wrong."""
     rows = [row for _, row in judgements]
     number, needless = Counter(row["verdict"] for row in rows), sum(row["needless"] for row in rows)
@@ -60,7 +60,12 @@ def brief(judgements: Sequence[Judgement]) -> Brief:
     ] * bool(needless)
     answer = [{"axis": axis, **of} for axis, of in counts(judgements).items()]
     withdrawn = f", {number['withdrawn']} are withdrawn by their own checks" if number["withdrawn"] else ""
-    return Brief(f"{said}{withdrawn}, {wrong}.", points, answer, "The cells of each axis:")
+    return Brief(
+        f"{said}{withdrawn}, {wrong}.",
+        points,
+        answer,
+        f"The cells of each axis{', a part of them (quick)' * quick}:",
+    )
 
 
 def _cost(case: Case) -> int:

@@ -221,7 +221,7 @@ def brief(trade: Trade) -> Brief:
         "target": "error",
         TSM.name: "beams",
         f"{TSM.name}_seconds": "seconds",
-        SOLID.name: "solid",
+        SOLID.name: SOLID.label,
         f"{SOLID.name}_seconds": "seconds ",
         "ratio": "ratio",
     }
