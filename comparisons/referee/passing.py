@@ -147,7 +147,7 @@ class _Pair:
             line = exact.shape(self.spec.beam, arcs).position
             end = _Moment(exact.load_parameter, line, exact.place(self.spec.node))
             gap, inside = self.place(end)
-            through = through or self.depth(begin, end, before) > (_NEARLY if inside < 0.0 else 0.0)
+            through = through or self.depth(begin, end, before) >= (_NEARLY if inside < 0.0 else 0.0)
             begin, before = end, gap >= -self.near
             through = through and not before
         return through
