@@ -21,7 +21,7 @@ COMMANDS = {
     "compare ks-cantilever --out ks --quiet": {f"ks/{name}.png": f"ks-{name}.png" for name in COMPARED},
     "run fig9 --out paper": {"paper/fig9.png": "double-beam.png"},
     "run fig7b --out paper": {"paper/fig7b-floor.png": "critical-area-floor.png"},
-    "run trade ks-cantilever --out trade": {"trade/end-seconds.png": "ks-trade.png"},
+    "run trade ks-cantilever --out trade": {"trade/path-seconds.png": "ks-trade.png"},
 }
 """What each command draws, and the names in the repository."""
 
