@@ -123,7 +123,7 @@ def _causes(others: Sequence[Row], scene: Scene, *, explained: bool) -> str:
         cause = "" if agrees or (explained and rows[0].response.continuum) else rows[0].cause
         falls = "" if agrees else _falling(rows, scene)
         if cause or falls:
-            said.append(f"{family}, {' '.join(filter(None, (cause, falls)))}")
+            said.append(f"{family}, {cause or 'discretisation'} {falls}".rstrip())
     return f"Why models are off: {'; '.join(said)}." if said else ""
 
 

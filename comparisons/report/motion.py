@@ -171,10 +171,11 @@ def _line_style(label: str, number: int) -> dict[str, Any]:
 
 def _lines(scene: Scene, response: Response, decimals: int) -> list[list[Array]]:
     """Return the deformed axes (POINTS, 2) of all beams at every load parameter, rounded to what a screen can show."""
+    from scipy.interpolate import CubicSpline  # straight pieces would show where differences are enlarged
 
     def thinned(arc: Array, line: Array) -> Array:
         at = np.linspace(arc[0], arc[-1], POINTS)
-        return np.asarray(np.round([np.interp(at, arc, line[:, i]) for i in (0, 1)], decimals).T)
+        return np.asarray(np.round(CubicSpline(arc, line)(at), decimals))
 
     steps = range(len(response.load_parameter))
     return [[thinned(*response.axis_line(beam.name, k)) for beam in scene.beams] for k in steps]

@@ -23,7 +23,7 @@ COMMANDS = {
     "run fig9 --out paper": {"paper/fig9.png": "double-beam.png"},
     "run fig7b --out paper": {"paper/fig7b-floor.png": "critical-area-floor.png"},
     **{f"solve {name}.toml --out {name}.png": {f"{name}.png": f"{name}-solve.png"} for name in SPECIMENS},
-    "run trade ks-cantilever --out trade": {"trade/end-seconds.png": "ks-trade.png"},
+    "run trade ks-cantilever --out trade": {"trade/path-seconds.png": "ks-trade.png"},
 }
 """What each command draws, and the names in the repository."""
 

@@ -27,8 +27,6 @@ SHOWN = "force"
 SCOPE = "path"
 """The scope of the diagram."""
 SECONDS = "processor seconds of one thread, from the scene to the checked answer"
-MOST = 3
-"""Steps of the front that a brief states."""
 APART = 0.045
 """Least distance of two labels, over the height of the diagram."""
 
@@ -202,17 +200,12 @@ def brief(trade: Trade) -> Brief:
         between = " to ".join(dict.fromkeys(f"{ratio:.2g}" for ratio in (min(ratios), max(ratios))))
         dear = f"At equal error the solid takes {between} times the seconds of beams"
     steps = front(trade, TSM.name, SCOPE, SHOWN, COSTS[0])
-    buys = [
-        f"{b['setting']} for {a['setting']}: {b['spent'] / a['spent'] - 1.0:.0%} more time, error {a['own_error']:.0e} to {b['own_error']:.0e}"
-        for a, b in pairwise(steps)
-    ]
     best = max(pairwise(steps), key=lambda ab: _gain(*ab), default=None)
     more = ""
     if best is not None:
         a, b = best
         more = f"; {b['spent'] / a['spent'] - 1.0:.0%} more time buys an error of {b['own_error']:.0e} instead of {a['own_error']:.0e} ({b['setting']})"
     points = [f"{name[0].upper()}{name[1:]}: {what}." for name, what in _references(trade).items()]
-    points += [f"What more time buys: {'; '.join(buys[-MOST:])}."] * bool(buys)
     reasons = stopped(trade)
     points.append(
         f"{len(trade.rows)} settings, {len(reasons)} without a solution; [n]: n load steps; -: no setting does it."
