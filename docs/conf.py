@@ -9,8 +9,7 @@ from sphinx.application import Sphinx
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-for _name in ("skfem", "traitlets"):  # they tell of every mesh and every notebook
-    logging.getLogger(_name).setLevel(logging.WARNING)
+logging.getLogger("skfem").setLevel(logging.WARNING)  # it tells of every mesh
 
 project = "tsm-crossval"
 author = "The tsm-crossval authors"
@@ -18,7 +17,7 @@ copyright = author  # noqa: A001 - Sphinx's own name
 release = version = metadata.version("tsm-crossval")
 
 extensions = [
-    "myst_nb",
+    "myst_parser",
     "sphinx.ext.autodoc",
     "numpydoc",
     "sphinx_argparse_cli",
@@ -28,14 +27,10 @@ exclude_patterns = [
     "extensions",
     "static",
     "_generated/*.md",  # included by other pages
-    "_generated/notebooks",  # files to download
 ]
 
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 3
-nb_execution_mode = "force"
-nb_execution_raise_on_error = True
-nb_execution_timeout = 600  # seconds of the clock, which a busy machine stretches
 
 html_theme = "furo"
 html_title = "tsm-crossval"

@@ -1,13 +1,11 @@
-"""What the site has besides Sphinx: equations as MathML, the role ``test``, the manual, and the notebooks as files for Jupyter."""
+"""What the site has besides Sphinx: equations as MathML, the role ``test``, and the manual."""
 
 import re
 from pathlib import Path
 from typing import Any
 
-import nbformat
 from docutils import nodes
 from latex2mathml.converter import convert
-from myst_nb.core.read import read_myst_markdown_notebook
 from sphinx.application import Sphinx
 from sphinx.locale import _
 from sphinx.util.logging import getLogger
@@ -56,34 +54,10 @@ def _proof(_role: str, _raw: str, text: str, *_: object) -> tuple[list[Any], lis
     return [nodes.raw("", f'<code class="literal" title="{path}">{name}</code>', format="html")], []
 
 
-def notebook(page: str) -> str:
-    r"""Return a page with code cells as an .ipynb without outputs: without its link to this file, and with its roles as plain code.
-
-    Examples
-    --------
-    >>> import json
-    >>> page = "The {test}`proof`.\n\n{download}`a.ipynb`\n\n```{code-cell} ipython3\n1 + 1\n```\n"
-    >>> [cell["source"] for cell in json.loads(notebook(page))["cells"]]
-    [['The `proof`.'], ['1 + 1']]
-    """
-    text = re.sub(r"^.*\{download\}.*\n+", "", page, flags=re.MULTILINE)
-    found = read_myst_markdown_notebook(re.sub(r"\{\w+\}(?=`\S)", "", text))
-    for number, cell in enumerate(found.cells):
-        cell["id"] = f"cell-{number}"
-    found.metadata = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
-    nbformat.validate(found)
-    return nbformat.writes(found) + "\n"
-
-
 def _write(app: Sphinx) -> None:
-    """Write the pages made from the code, the gallery, and the notebooks."""
+    """Write the pages made from the code, and the gallery."""
     write_pages(Path(app.srcdir) / "_generated")
     gallery.write(Path(app.srcdir) / "_generated")
-    target = Path(app.srcdir) / "_generated" / "notebooks"
-    target.mkdir(parents=True, exist_ok=True)
-    for page in (Path(app.srcdir) / "notebooks").glob("*.md"):
-        text = notebook(page.read_text(encoding="utf-8"))
-        (target / f"{page.stem}.ipynb").write_text(text, encoding="utf-8")
 
 
 def _write_manual(app: Sphinx) -> None:
