@@ -24,7 +24,7 @@ RUN = {
 }
 """Pages that are run as a whole."""
 LONG = {name for name, text in RUN.items() if any(f"\n{command}" in text for command in SLOW)}
-LENGTHY = r"/(?:accuracy|beam-element|bench|ci-gate|element|index|material|paraview|program|python|scene|specimens|study|tutorial)\.md"
+LENGTHY = r"/(?:accuracy|beam-element|bench|compare|element|material|paraview|program|python|scene|specimens|study|tutorial)\.md"
 SECONDS = {name for name in RUN if re.search(LENGTHY, name)}
 """Pages that take more than a second without the commands of `SLOW`."""
 
