@@ -15,7 +15,7 @@ PAGES = pages()
 THEORY = {Path(page).stem: text for page, text in PAGES.items() if page.startswith("docs/theory/")}
 EQUATION = re.compile(r"^```\{math\}\n:label: ([\w-]+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 HEADING = re.compile(r"^##+ (.*)$", re.MULTILINE)
-TEST = re.compile(r"\{abbr\}`(\w+) \(([^)]+)\)`")
+TEST = re.compile(r"\{abbr\}`[^`]+ \((tests/[^)]+)\)`")
 
 
 def test_every_page_of_the_theory_names_its_proofs():
@@ -37,7 +37,7 @@ def test_every_equation_names_its_proof_and_becomes_mathml(page):
 
 
 def test_every_test_named_exists():
-    named = {f"{path}::{name}" for text in PAGES.values() for name, path in TEST.findall(text)}
+    named = {test for text in PAGES.values() for test in TEST.findall(text)}
     named |= {test for rows in PROOFS.values() for tests in rows.values() for test in tests}
     assert len(named) > 80
     files = {path: (ROOT / path).read_text() for path in {test.partition("::")[0] for test in named}}
