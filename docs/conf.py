@@ -1,41 +1,24 @@
 """Settings of the documentation: `make docs` builds it strictly into out/docs/."""
 
-import logging
 import sys
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 from sphinx.application import Sphinx
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-
-for _name in ("skfem", "traitlets"):  # they tell of every mesh and every notebook
-    logging.getLogger(_name).setLevel(logging.WARNING)
 
 project = "tsm-crossval"
 author = "The tsm-crossval authors"
 copyright = author  # noqa: A001 - Sphinx's own name
 release = version = metadata.version("tsm-crossval")
 
-extensions = [
-    "myst_nb",
-    "sphinx.ext.autodoc",
-    "numpydoc",
-    "sphinx_argparse_cli",
-    "docs.extensions.site",
-]
-exclude_patterns = [
-    "extensions",
-    "static",
-    "_generated/*.md",  # included by other pages
-    "_generated/notebooks",  # files to download
-]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc", "sphinx_argparse_cli", "docs.extensions.site"]
+exclude_patterns = ["extensions", "static", "_generated/*.md"]  # the last ones are included by other pages
 
-myst_enable_extensions = ["dollarmath", "deflist"]
+myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
-nb_execution_mode = "force"
-nb_execution_raise_on_error = True
-nb_execution_timeout = 600  # seconds of the clock, which a busy machine stretches
 
 html_theme = "furo"
 html_title = "tsm-crossval"
@@ -57,11 +40,9 @@ toc_object_entries = False
 nitpick_ignore_regex = [("py:class", r"collections\.abc\.(Mapping|Callable)|numpy\.(ndarray|dtype|float64)")]
 
 
-def _list_keys(
-    _app: Sphinx, kind: str, _name: str, value: object, _options: object, lines: list[str]
-) -> None:
+def _list_keys(_app: Sphinx, kind: str, _name: str, value: object, *said: Any) -> None:
     if kind == "data" and isinstance(value, dict):
-        lines += ["", "Keys: " + ", ".join(f"``{key}``" for key in value) + "."]
+        said[1][:] += ["", "Keys: " + ", ".join(f"``{key}``" for key in value) + "."]
 
 
 def setup(app: Sphinx) -> None:

@@ -41,11 +41,6 @@ SCHEMAS: dict[str, dict[str, Any]] = {
     "resolved-scene": json.loads((REFERENCE / "resolved-scene.schema.json").read_text(encoding="utf-8")),
 }
 
-PROOFS: dict[str, dict[str, list[str]]] = tomllib.loads(
-    (REFERENCE.parent / "theory" / "proofs.toml").read_text(encoding="utf-8")
-)
-"""The tests of the theory: by page, and by the label of an equation or the heading of a section."""
-
 
 def line(docstring: str) -> str:
     r"""Return one line of Markdown for a docstring's text: code marks and what Markdown would read as its own.
@@ -78,24 +73,13 @@ def scene_file() -> str:
 
 def _record(header: str, kind: type[Record], leave: Collection[str] = ()) -> str:
     said = (kind.__doc__ or "").partition("\n\nParameters\n")[0].split("\n\n")
-    rows = [
-        (
-            f"`{item.name}`",
-            line(rule_of(item).accepts),
-            _default(item.default),
-            line(item.metadata["meaning"]),
-        )
-        for item in fields(kind)
-        if item.name not in leave
-    ]
+    rows = []
+    for item in (one for one in fields(kind) if one.name not in leave):
+        has = {MISSING: "required", None: ""}
+        default = has[item.default] if item.default in has else f"`{toml_value(item.default)}`"
+        rows.append((f"`{item.name}`", line(rule_of(item).accepts), default, line(item.metadata["meaning"])))
     parts = [f"## `{header}`", *map(line, said), table(("key", "value", "default", "meaning"), rows)]
     return "\n\n".join(parts)
-
-
-def _default(value: Any) -> str:
-    if value is MISSING:
-        return "required"
-    return "" if value is None else f"`{toml_value(value)}`"
 
 
 def messages() -> str:
@@ -138,18 +122,15 @@ def scope() -> str:
     """Return one table for every kind of question with the models that answer it, and the table of what is not modelled."""
     head, parts = ("you want", "you write", *MODELS, "limits"), []
     for title, group in questions().items():
-        rows = [(one.wish, one.keys, *_answers(one.scene), one.limits) for one in group]
+        rows = []
+        for one in group:
+            said = (model.unstated(one.scene) or model.refusal(one.scene) for model in MODELS.values())
+            rows.append((one.wish, one.keys, *("yes" if why is None else "no" for why in said), one.limits))
         parts.append(f"## {title}\n\n{table(head, rows)}")
     rows = [
         (one.title, line(one.answer), ", ".join(f"`{word}`" for word in one.words)) for one in NOT_MODELLED
     ]
     return "\n\n".join([*parts, "## What is not modelled\n\n" + table(("topic", "answer", "words"), rows)])
-
-
-def _answers(scene: Scene) -> Iterator[str]:
-    """Yield for every model whether it states the scene."""
-    for model in MODELS.values():
-        yield "yes" if (model.unstated(scene) or model.refusal(scene)) is None else "no"
 
 
 def statuses() -> str:
@@ -159,21 +140,6 @@ def statuses() -> str:
         + table(("status", "meaning"), [(f"`{one}`", line(why)) for one, why in rows.items()])
         for title, rows in STATUSES.items()
     )
-
-
-def proofs() -> str:
-    """Return a table for every page of the theory: its equations and sections, with their tests of ``docs/theory/proofs.toml``."""
-    parts = []
-    for page, rows in PROOFS.items():
-        shown = [
-            (
-                line(key) if " " in key or key[0].isupper() else f"{key} {{eq}}`{key}`",
-                ", ".join(f"{{test}}`{test}`" for test in tests),
-            )
-            for key, tests in rows.items()
-        ]
-        parts.append(f"## [](../theory/{page}.md)\n\n" + table(("equation or section", "tests"), shown))
-    return "\n\n".join(parts)
 
 
 def keys(name: str) -> str:
@@ -195,8 +161,7 @@ def _keys(schema: dict[str, Any], inside: dict[str, Any], prefix: str) -> Iterat
 
 
 def _resolved(schema: dict[str, Any], item: dict[str, Any]) -> dict[str, Any]:
-    found: dict[str, Any] = schema["$defs"][item["$ref"].rpartition("/")[2]] if "$ref" in item else item
-    return found
+    return dict(schema["$defs"][item["$ref"].rpartition("/")[2]]) if "$ref" in item else item
 
 
 def _sort(item: dict[str, Any]) -> str:
@@ -215,7 +180,6 @@ PAGES: dict[str, Callable[[], str]] = {
     "messages.md": messages,
     "scope.md": scope,
     "statuses.md": statuses,
-    "proofs.md": proofs,
     "response.md": lambda: keys("response"),
     "resolved-scene.md": lambda: keys("resolved-scene"),
     "quantities.md": lambda: table(

@@ -1,19 +1,18 @@
-"""What the site has besides Sphinx: equations as MathML, the role ``test``, the manual, and the notebooks as files for Jupyter."""
+"""What the site has besides Sphinx: equations as MathML, and pages that are made from the code."""
 
 import re
 from pathlib import Path
 from typing import Any
 
-import nbformat
 from docutils import nodes
 from latex2mathml.converter import convert
-from myst_nb.core.read import read_myst_markdown_notebook
 from sphinx.application import Sphinx
 from sphinx.locale import _
 from sphinx.util.logging import getLogger
 from sphinx.util.math import get_node_equation_number
 
-from docs.extensions import gallery
+from comparisons.suites.manual import problems, write_manual
+from docs.extensions.gallery import gallery, stale
 from docs.extensions.generated import write_pages
 
 ROOT = Path(__file__).parents[2]
@@ -50,65 +49,26 @@ def _block(writer: Any, node: nodes.math_block) -> None:
     raise nodes.SkipNode
 
 
-def _proof(_role: str, _raw: str, text: str, *_: object) -> tuple[list[Any], list[Any]]:
-    """Return the node of ``{test}`tests/FILE.py::NAME```: NAME, and the file where the mouse rests on it."""
-    path, _, name = text.partition("::")
-    return [nodes.raw("", f'<code class="literal" title="{path}">{name}</code>', format="html")], []
-
-
-def notebook(page: str) -> str:
-    r"""Return a page with code cells as an .ipynb without outputs: without its link to this file, and with its roles as plain code.
-
-    Examples
-    --------
-    >>> import json
-    >>> page = "The {test}`proof`.\n\n{download}`a.ipynb`\n\n```{code-cell} ipython3\n1 + 1\n```\n"
-    >>> [cell["source"] for cell in json.loads(notebook(page))["cells"]]
-    [['The `proof`.'], ['1 + 1']]
-    """
-    text = re.sub(r"^.*\{download\}.*\n+", "", page, flags=re.MULTILINE)
-    found = read_myst_markdown_notebook(re.sub(r"\{\w+\}(?=`\S)", "", text))
-    for number, cell in enumerate(found.cells):
-        cell["id"] = f"cell-{number}"
-    found.metadata = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
-    nbformat.validate(found)
-    return nbformat.writes(found) + "\n"
-
-
 def _write(app: Sphinx) -> None:
-    """Write the pages made from the code, the gallery, and the notebooks."""
-    write_pages(Path(app.srcdir) / "_generated")
-    gallery.write(Path(app.srcdir) / "_generated")
-    target = Path(app.srcdir) / "_generated" / "notebooks"
-    target.mkdir(parents=True, exist_ok=True)
-    for page in (Path(app.srcdir) / "notebooks").glob("*.md"):
-        text = notebook(page.read_text(encoding="utf-8"))
-        (target / f"{page.stem}.ipynb").write_text(text, encoding="utf-8")
-
-
-def _write_manual(app: Sphinx) -> None:
-    """Solve the manual anew where a module is younger than its page; Sphinx has targets in place of anchors, under names of their own."""
-    from comparisons.suites.manual import problems, write_manual
-
-    page = Path(app.srcdir) / "_generated" / "manual" / "index.md"
-    modules = (
-        path for name in ("tsm", "fem_reference", "comparisons") for path in (ROOT / name).rglob("*.*")
-    )
-    if page.is_file() and page.stat().st_mtime > max(path.stat().st_mtime for path in modules):
+    """Write what is made from the code: pages, and pictures and the manual where something is younger than they are."""
+    folder, log = Path(app.srcdir) / "_generated", getLogger(__name__)
+    write_pages(folder)
+    (folder / "gallery.md").write_text(gallery(folder / "scenes"), encoding="utf-8")
+    page = folder / "manual" / "index.md"
+    packages = (ROOT / name for name in ("tsm", "fem_reference", "comparisons"))
+    if not stale(page, (path for package in packages for path in package.rglob("*.*"))):
         return
-    log = getLogger(__name__)
     page.unlink(missing_ok=True)  # it was changed after it was written, and a changed file is not replaced
-    answers, _ = write_manual(page.parent, lambda line: log.info("manual: %s", line), problems())
+    answers, _ = write_manual(page.parent, log.info, problems())
     if not all(answer.passed for answer in answers):
         log.warning("manual: an answer lies beyond its tolerance")
+    # Sphinx has targets in place of anchors, under names of their own
     text = re.sub(r'<a id="([\w-]+)"></a>', r"(manual-\1)=", page.read_text(encoding="utf-8"))
     page.write_text(text.replace("](#", "](#manual-"), encoding="utf-8")
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Register the renderer of equations and the role, and write what is made from the code when a build starts."""
+    """Register the renderer of equations, and write what is made from the code when a build starts."""
     app.add_html_math_renderer("mathml", (_inline, None), (_block, None))
-    app.add_role("test", _proof)
     app.connect("builder-inited", _write)
-    app.connect("builder-inited", _write_manual)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,4 +1,4 @@
-"""The site is built without a warning, shows its notebooks' figures, and loads nothing from elsewhere."""
+"""The site is built without a warning, and loads nothing from elsewhere."""
 
 import os
 import re
@@ -45,13 +45,6 @@ def test_the_site_is_built_strictly_and_is_whole(site):
     manual = pages["_generated/manual/index.html"]
     assert "Lee's frame" in manual.replace("\u2019", "'")
     assert manual.count(".svg") >= 20
-    notebooks = {name: text for name, text in pages.items() if name.startswith("notebooks/")}
-    assert len(notebooks) == len([*site.glob("_downloads/*/*.ipynb")]) == 3
-    for name, text in notebooks.items():
-        assert "cell_output" in text
-        pictures = re.findall(r'<img [^>]*src="\.\./(_images/[^"]+\.png)"', text)
-        assert pictures, name
-        assert all((site / picture).stat().st_size > 5000 for picture in pictures)
     for package in (tsm, fem_reference):
         api = pages[f"api/{package.__name__}.html"]
         assert [name for name in package.__all__ if f'id="{package.__name__}.{name}"' not in api] == []

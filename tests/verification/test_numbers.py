@@ -16,7 +16,6 @@ from tests.comparisons.models.outside.test_adapters import in_steps
 COLUMNS = ("force", "arc", "moment", "tip")
 ROWS = {
     "timoshenko-10": PAPER[0],
-    "timoshenko-20": PAPER[1],
     "timoshenko-50": PAPER[2],
     "mixed-10": RUNS[3],
     "mixed-20": MIXED,
