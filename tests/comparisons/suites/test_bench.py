@@ -86,6 +86,11 @@ def test_the_set_is_what_its_page_says():
         schema = json.loads((BENCH / f"schemas/{name}.schema.json").read_text())
         Draft202012Validator(schema).validate(data)
     assert "elements" not in json.dumps(SCENES["scenes"])
+    # what a resolved scene could not say
+    for scene in (load_scene(row["name"]) for row in SCENES["scenes"]):
+        assert not any(load.at is not None for load in scene.loads)
+        assert not any(stage.load or stage.support or any(stage.gravity) for stage in scene.stages)
+        assert not any(hinge.stiffness for hinge in scene.hinges)
     assert {path.name for path in (BENCH / "clients").iterdir()} == set(CLIENTS)
     lines = {
         path: len(path.read_text().splitlines())
