@@ -48,7 +48,7 @@ def located(scene: Scene, response: Response, event: ContactEvent) -> float:
 
 def values(found: Mapping[str, Response]) -> Iterator[tuple[bench.Query, float, float]]:
     """Yield every query with both programs' values."""
-    other = {name: solve_rods("referee", scene, unwatched) for name, (scene, _) in bench.scenes().items()}
+    other = {name: solve_rods(scene, unwatched) for name, (scene, _) in bench.scenes().items()}
     stopped = [name for name, response in other.items() if not response.completed]
     assert not stopped, f"the referee does not certify {stopped}"
     columns = {

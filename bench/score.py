@@ -37,7 +37,7 @@ def lie(query, value, true, allowed, exact):
     (scene, of, what, at, number), scale, true = query, true["scale"], true["value"]
 
     def like(other):
-        return abs(value - other) <= allowed * scale < abs(true - other) / 10.0
+        return abs(value - other) <= min(allowed, 1e-3) * scale < abs(true - other) / 10.0
 
     turned = exact.get((scene, of, what[:-1] + {"x": "y", "y": "x"}.get(what[-1], ""), at, number))
     others = {q: row["value"] for q, row in exact.items() if q[:3] == query[:3] and q != query}
@@ -112,7 +112,8 @@ def table(found):
         verdicts, errors, reached = zip(*rows)
         right, refused, errors = verdicts.count(RIGHT), verdicts.count(REFUSED), numbers(errors)
         ends = f"{median(errors):.1e}", f"{max(errors):.1e}", summary(reached)
-        yield line.format(scene, len(rows), right, refused, len(rows) - right - refused, *ends)
+        counts = len(rows), right, refused, len(rows) - right - refused
+        yield line.format(scene, *counts, *ends).replace("nan", "  -")
 
 
 def summary(reached):

@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
+from shutil import get_terminal_size
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,10 @@ Row = dict[str, Any]
 """One line of a study's table."""
 Report = Callable[[str], None]
 """Receives one line about the progress."""
+
+
+NO_VALUE = "no value"
+"""In place of an infinite error: one of the two that are compared has no value."""
 
 
 def csv_text(rows: Sequence[Mapping[str, Any]], columns: Iterable[str] = ()) -> str:
@@ -36,14 +41,27 @@ def write_rows(path: Path, rows: Sequence[Mapping[str, Any]]) -> Path:
 
 
 def tabulated(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Return rows of equal keys as aligned text: numbers with three digits, a dash for a missing value."""
-    return "\n".join(aligned([list(rows[0]), *(list(map(cell, row.values())) for row in rows)]))
+    """Return rows of equal keys as aligned text, numbers to the right; columns beyond the width of the terminal follow below, after the first one."""
+    cells = [list(rows[0]), *([cell(value) for value in row.values()] for row in rows)]
+    columns = list(zip(*cells, strict=True))
+    right = [all(one == NO_VALUE or one[:1] in "-0123456789" for one in column[1:]) for column in columns]
+    room = get_terminal_size().columns
+    parts, used = [[0]], 0
+    for k in range(1, len(columns)):
+        wide = 2 + max(map(len, columns[k]))
+        used += wide
+        if len(parts[-1]) > 1 and max(map(len, columns[0])) + used > room:
+            parts.append([0])
+            used = wide
+        parts[-1].append(k)
+    tables = (aligned([[row[k] for k in ks] for row in cells], [right[k] for k in ks]) for ks in parts)
+    return "\n\n".join(map("\n".join, tables))
 
 
-def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool] = ()) -> list[str]:
+def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool]) -> list[str]:
     """Return rows of cells as lines with columns of equal width, to the left or to the `right`."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    sides = [str.rjust if one else str.ljust for one in right or (False,) * len(widths)]
+    sides = [str.rjust if one else str.ljust for one in right]
     lines = (zip(sides, row, widths, strict=True) for row in rows)
     return ["  ".join(side(text, width) for side, text, width in line).rstrip() for line in lines]
 
@@ -58,6 +76,8 @@ def cell(value: Any) -> str:
     """Return a value as text: a number in three digits, what is not there as a dash."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return "-"
+    if isinstance(value, float) and math.isinf(value):
+        return NO_VALUE
     return f"{value:.3g}" if isinstance(value, float) else str(value)
 
 

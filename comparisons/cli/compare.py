@@ -12,6 +12,7 @@ from comparisons.cli.screen import (
     exit_status,
     files_named,
     report,
+    say,
     staging,
     teller,
     watching,
@@ -20,12 +21,13 @@ from comparisons.files import writable_folder, write_text
 from comparisons.models import TSM, find
 from comparisons.models.model import ModelError
 from comparisons.output import tabulated
-from comparisons.report.table import table_text
+from comparisons.report.brief import filled
+from comparisons.report.table import caption, line
 from comparisons.scene import Scene, built_in_scenes, load_scene
 from comparisons.suite.progress import running
 from comparisons.suites.compare import ROD, Run, compare, run_of
 from comparisons.suites.gate import gate
-from comparisons.suites.league import FILES, measure_league, summary, write_league
+from comparisons.suites.league import FILES, brief, measure_league, write_league
 
 MODEL = ("model", "element", "elements", "mesh")
 """The options that say which model is meant."""
@@ -62,7 +64,8 @@ def _compare(scene: Scene, given: argparse.Namespace) -> int:
         more.append(Run(label=label, model=model.name, options=options))
     watch, stage = partial(watching, quiet=given.quiet), partial(staging, quiet=given.quiet)
     found = compare(scene, given.out or Path("out") / scene.name, tell, watch, stage, more)
-    print(table_text(found.rows, ROD.label))
+    say(found.brief)
+    print(*filled(caption(ROD.label)), "", tabulated([line(row) for row in found.rows]), sep="\n")
     if found.other_events:
         print("", *found.other_events, sep="\n")
     print()
@@ -96,7 +99,7 @@ def _league(scenes: list[Scene], given: argparse.Namespace) -> int:
     folder = writable_folder(given.out or Path("out/league"), *FILES)
     with running(folder / "results", workers(given, 1), quiet=given.quiet, process=True) as run_cases:
         league = measure_league(scenes, given.others, run_cases, quick=given.quick)
-    print(tabulated(summary(league)))
+    say(brief(league))
     for name, program, reason in league.left_out:
         print(f"{name}: {program}: left out, {reason}")
     print()

@@ -8,7 +8,7 @@ from pathlib import Path
 from shutil import rmtree
 
 from comparisons.cli.options import refuse, workers
-from comparisons.cli.screen import DONE, STOPPED, WRONG, files_named, report, teller
+from comparisons.cli.screen import DONE, STOPPED, WRONG, files_named, report, say, teller
 from comparisons.files import writable_folder
 from comparisons.models import TSM
 from comparisons.output import tabulated, write_rows
@@ -17,13 +17,13 @@ from comparisons.suite.progress import running
 from comparisons.suite.run import UNSETTLED
 from comparisons.suite.study import read_study, result_rows, result_table
 from comparisons.suites.bench import write_bench
-from comparisons.suites.extremes.run import counts, extremes
+from comparisons.suites.extremes.run import extremes
 from comparisons.suites.manual import problems, write_manual
 from comparisons.suites.names import FIGURES, QUESTIONS
 from comparisons.suites.paper.reproduce import reproduce
 from comparisons.suites.solid_accuracy import STUDIES
 from comparisons.suites.trade.reference import NoReferenceError
-from comparisons.suites.trade.report import summary, write_trade
+from comparisons.suites.trade.report import brief, summary, write_trade
 from comparisons.suites.trade.trade import measure_trade
 
 
@@ -57,7 +57,9 @@ def _ended(files: Iterable[Path], reasons: Iterable[str] = (), status: int = STO
 def _figures(given: Namespace) -> int:
     folder = _out(given, "report.html")
     figure = "all" if given.suite == "paper" else given.suite
-    return _ended(*reproduce(figure, folder, quick=given.quick, report=report))
+    found, files, stopped = reproduce(figure, folder, quick=given.quick, report=report)
+    say(found)
+    return _ended(files, stopped)
 
 
 def _bench(given: Namespace) -> int:
@@ -78,9 +80,9 @@ def _extremes(given: Namespace) -> int:
     folder = _out(given, "extremes.html", "extremes.csv", "extremes.json")
     kept = folder / ".extremes"  # until the command has come to its end
     with running(kept, workers(given), quiet=given.quiet, repeats=0) as run_cases:
-        judgements, files = extremes(folder, run_cases, quick=given.quick)
+        found, judgements, files = extremes(folder, run_cases, quick=given.quick)
     rmtree(kept)
-    print(tabulated([{"axis": axis, **number} for axis, number in counts(judgements).items()]))
+    say(found)
     return _ended(files, (item.sentence for item in judgements if item.row["verdict"] == "wrong"), WRONG)
 
 
@@ -97,6 +99,7 @@ def _trade(given: Namespace) -> int:
         report(f"crossval: {error}")
         return STOPPED
     files = write_trade(trade, folder)
+    say(brief(trade))
     print(summary(trade), end="\n\n")
     return _ended(files)
 

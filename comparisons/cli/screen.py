@@ -1,5 +1,6 @@
 """What a command says: lines and bars on standard error, the solutions that stopped, and its exit status."""
 
+import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -11,6 +12,7 @@ from comparisons.models.model import REDRAW, Count, Reached, Watch, bar
 
 if TYPE_CHECKING:
     from comparisons.answer import Response
+    from comparisons.report.brief import Brief
     from comparisons.scene import Scene
 
 DONE, WRONG, BAD_INPUT, STOPPED, INTERRUPTED = 0, 1, 2, 3, 130
@@ -31,6 +33,11 @@ def teller(*, quiet: bool) -> Callable[[str], None]:
 def files_named(*files: object) -> None:
     """Print the names of the files that were written."""
     print("files:", *(f"  {path}" for path in files), sep="\n")
+
+
+def say(brief: "Brief") -> None:
+    """Print what is found, its sentence in bold on a terminal that may have it."""
+    print(brief.text(bold=sys.stdout.isatty() and not os.environ.get("NO_COLOR")), end="\n\n")
 
 
 def exit_status(scene: "Scene", responses: "Iterable[tuple[str, Response]]") -> int:

@@ -23,7 +23,7 @@ PICTURES = (".png", ".svg", ".pdf")
 def run(given: Namespace) -> int:
     """Solve, write what was asked for, and print the page."""
     scene = load_scene(given.scene)
-    files = outputs(given.out, ".json", ".csv", *PICTURES, "")
+    files = outputs(given.out, ".json", ".csv", ".html", *PICTURES, "")
     for folder in (path for kind, path in files if not kind):
         from comparisons.report.export import check_series
 
@@ -62,6 +62,10 @@ def _write(kind: str, path: Path, response: Response, scene: Scene, more: dict[s
         from comparisons.answer.table import csv_history
 
         write(path, csv_history(response, scene.units))
+    elif kind == ".html":
+        from comparisons.report.sheet import write_sheet
+
+        write_sheet(path, response, scene)
     elif not kind:
         from comparisons.report.export import write_series
 

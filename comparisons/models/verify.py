@@ -123,6 +123,10 @@ def _ajar(contact: ContactHistory, spec: ContactSpec, beam: BeamSpec, response: 
     return (contact.force > 0.0) & (gap > max(CLOSED, stated) * beam.length)
 
 
+def _passed(response: Response, scene: Scene) -> Iterator[str]:
+    return (str(item) for item in passages(response, scene) if item.certain)
+
+
 def _inside(response: Response, scene: Scene) -> Iterator[str]:
     for spec in scene.contacts:
         length, gap = scene.beam(spec.beam).length, np.nan_to_num(response.contacts[spec.pair].gap)
@@ -211,7 +215,7 @@ CHECKS: dict[str, Check] = {
     ),
     "round pins outside": _inside,
     "clear ends": _overlapping,
-    "sides of beams": passages,
+    "sides of beams": _passed,
     "balance": _unbalanced,
     "bend of elements": _deformed(
         "too few elements: one bends by {:.2g} rad, more than {:g}", lambda at: at.turn > at.bearable

@@ -14,7 +14,7 @@ from comparisons.answer.round_off import least_force
 from comparisons.referee.balance import BALANCE, balance_failures, unpaid
 from comparisons.referee.certificate import Certificate, Judgement, Verdict
 from comparisons.referee.judge import Trial, compared, impossible, judged
-from comparisons.referee.passing import changes, misstated, passages
+from comparisons.referee.passing import changes, history_of, misstated, passages
 from comparisons.referee.path import changes_of, departures
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import Scene
@@ -60,17 +60,15 @@ def certify(
         _chosen(response, scene) if at is None else sorted({k % steps for k in at if -steps <= k < steps})
     )
     contradictions = [sentence for k in range(steps) for sentence in impossible(response, scene, k)]
-    history = None
-    if any(spec.friction for spec in scene.contacts) and not contradictions:
-        from comparisons.referee.friction import History
-
-        history = History(response, scene)
+    history = None if contradictions else history_of(response, scene)
     states = _judged(Trial(response, scene, allowed, history), numbers)
     found = {k: item.exact for k, item in zip(numbers, states, strict=True) if item.exact is not None}
     unsound = [*_unsound(response, scene, allowed, contradictions)] or [
         *unpaid(response, scene, found, allowed)
     ]
-    path = [] if unsound else [*_path(response, scene, found, allowed)]
+    passed = [] if unsound or not steps else [*passages(response, scene)]
+    path = [str(item) for item in passed if item.certain]
+    path += [] if unsound else _path(response, scene, found, allowed)
     if history is not None:
         from comparisons.referee.friction import rubs_wrongly_on_the_way
 
@@ -81,6 +79,8 @@ def certify(
         verdict, reason = _sound(response, scene, numbers, states)
     gone = next(departures(response, found), "") if verdict is Verdict.CERTIFIED else ""
     verdict, reason = (Verdict.UNSTABLE, gone) if gone else (verdict, reason)
+    if verdict is Verdict.CERTIFIED and passed:
+        verdict, reason = Verdict.NOT_JUDGED, str(passed[0])
     if history is not None and history.taken:
         reason = f"{reason}; {history.taken}"
     return Certificate(
@@ -190,7 +190,6 @@ def _path(
     """Yield violations between load parameters."""
     if not len(response.load_parameter):
         return
-    yield from passages(response, scene)
     yield from changes(response, scene)
     yield from misstated(response, scene, found, allowed)
     for spec in scene.contacts:

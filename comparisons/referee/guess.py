@@ -95,20 +95,27 @@ def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotati
         z[touch.arc] = answer.arcs[touch.spec.pair] / layout.length
     for _ in range(2):  # the shear follows from the forces
         turns = _rotations(layout, answer, z)
-        for part, arcs in zip(layout.parts, layout.extents(z), strict=True):
-            axis, line = answer.axes[layout.scene.beams[part.beam].name]
-            for number, s in zip((part.first, part.last), arcs, strict=True):
-                station, theta = layout.stations[number], np.interp(s, *turns[part.beam])
-                seen = np.array([np.interp(s * layout.length, axis, way) for way in line.T])
-                moved = (seen - layout.scene.beams[0].start) / layout.length - station.reference
-                free = (station.numbers >= 0) & [station.touch is None, station.touch is None, True]
-                z[station.numbers[free]] = np.append(moved, theta)[free]
-                if station.touch is not None and station.touch.angle != NONE:
-                    z[station.touch.angle] = (
-                        part.piece.angle(s)[0] + theta + math.asin(station.touch.face.tilt)
-                    )
+
+        def seen(beam: int, s: float, turns: list[Rotations] = turns) -> tuple[Array, float]:
+            axis, line = answer.axes[layout.scene.beams[beam].name]
+            place = np.array([np.interp(s * layout.length, axis, way) for way in line.T])
+            return place, float(np.interp(s, *turns[beam]))
+
+        put(layout, z, seen)
         _balance(layout, answer, z)
     return z, turns
+
+
+def put(layout: Layout, z: Array, seen: Callable[[int, float], tuple[Array, float]]) -> None:
+    """Set the stations' motions, and the directions of contacts, from the position and the rotation seen at an arc position of a beam."""
+    for part, arcs in zip(layout.parts, layout.extents(z), strict=True):
+        for number, s in zip((part.first, part.last), arcs.tolist(), strict=True):
+            station, (place, theta) = layout.stations[number], seen(part.beam, s)
+            moved = (place - layout.scene.beams[0].start) / layout.length - station.reference
+            free = (station.numbers >= 0) & [station.touch is None, station.touch is None, True]
+            z[station.numbers[free]] = np.append(moved, theta)[free]
+            if station.touch is not None and station.touch.angle != NONE:
+                z[station.touch.angle] = part.piece.angle(s)[0] + theta + math.asin(station.touch.face.tilt)
 
 
 def _rotations(layout: Layout, answer: AnswerState, z: Array) -> list[Rotations]:

@@ -14,7 +14,7 @@ from comparisons.referee.distance import Distance, Scales, distance
 from comparisons.referee.grip import UnknownFrictionError
 from comparisons.referee.guess import answer_state, idle_at_an_end, pull_allowed
 from comparisons.referee.newton import equilibrium
-from comparisons.referee.path import reach
+from comparisons.referee.path import at_rest, reach, way_to
 from comparisons.referee.rod import angle, cross, face_of
 from comparisons.referee.state import Equilibrium, SearchStatus
 from comparisons.scene import ContactSpec, Scene
@@ -79,6 +79,10 @@ def judged(trial: Trial, k: int, before: Equilibrium | None) -> Judgement:
         if item and off and max(off.largest[1], off.sizes["place"]) <= min(allowed, CLOSE):
             return item
     exact = equilibrium(scene, answer)
+    if exact.status is SearchStatus.NO_EQUILIBRIUM:
+        # forces of the order of EA or GA lead a search from inaccurate rotations astray, and not the path
+        ways = way_to(response, before or at_rest(scene), t, None if history is None else history.around)
+        exact = next((way for way in ways[-1:] if way.closed.keys() == answer.arcs.keys()), exact)
     if exact.found:
         return compared(trial, k, exact)
     not_judged = exact.status in (SearchStatus.NOT_JUDGED, SearchStatus.NOT_RESOLVED)

@@ -1,5 +1,6 @@
 """The search for the exact equilibrium of a scene's rods near an answer, by Newton's method on elements that are halved."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -7,10 +8,11 @@ from numpy.typing import NDArray
 
 from comparisons.referee.elements import AMPLITUDE, DEGREE, GAUSS, VALUES, Mesh, mesh_of
 from comparisons.referee.equations import scales
-from comparisons.referee.guess import SHORTEST, AnswerState, first_guess
+from comparisons.referee.grip import Grip
+from comparisons.referee.guess import SHORTEST, AnswerState, first_guess, put
 from comparisons.referee.layout import Layout, lay_out
 from comparisons.referee.rod import largest
-from comparisons.referee.state import Change, Equilibrium, SearchStatus, located, tails
+from comparisons.referee.state import Change, Equilibrium, SearchStatus, Shape, located, tails
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
@@ -62,12 +64,7 @@ def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
     if reason:
         return replace(undeformed(layout, 1), z=z, status=SearchStatus.NOT_JUDGED, message=reason)
     mesh = mesh_of(layout, _first_grids(layout, z))
-    places = _places(mesh)
-    seen = [
-        np.interp(a + (b - a) * places[mesh.part == k], *turns[part.beam])
-        for k, (part, (a, b)) in enumerate(zip(layout.parts, layout.extents(z), strict=True))
-    ]
-    start = _fitted(layout, mesh, z, np.concatenate(seen), _FIT_LOW)
+    start = _seen(layout, mesh, z, lambda beam, s: np.interp(s, *turns[beam]), _FIT_LOW)
     best = correct(start, _ITERATIONS)
     # arc positions of contacts and forces of parts are more accurate in an answer than rotations
     for held in (layout.arcs, np.array(sorted({*layout.arcs, *layout.forces}), dtype=int)):
@@ -77,6 +74,33 @@ def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
         if best.status is SearchStatus.NO_EQUILIBRIUM or _is_near(z, other):
             best = other
     return best
+
+
+def switched(now: Equilibrium, arcs: Mapping[str, float], grips: Mapping[str, Grip]) -> Equilibrium:
+    """Return the equilibrium next to another one at its load parameter, with contacts at the arc positions `arcs`, held by `grips`."""
+    layout, before = lay_out(now.scene, now.load_parameter, arcs, grips), now.layout
+    z = np.zeros(layout.unknowns)
+    for touch in layout.touches:
+        z[touch.arc] = arcs[touch.spec.pair] / layout.length
+
+    def shape(beam: int, s: Array) -> Shape:
+        return now.shape(now.scene.beams[beam].name, s * layout.length)
+
+    def seen(beam: int, s: float) -> tuple[Array, float]:
+        there = shape(beam, np.array([s]))
+        return there.position[0], float(there.rotation[0])
+
+    put(layout, z, seen)
+    ends = before.extents(now.z)[:, 1]
+    for part, extent in zip(layout.parts, layout.extents(z), strict=True):
+        own = (
+            old
+            for old, end in zip(before.parts, ends, strict=True)
+            if old.beam == part.beam and end > extent.mean()
+        )
+        z[part.force : part.force + 2] = next(own).constant(now.z)[:, 0]
+    mesh = mesh_of(layout, _first_grids(layout, z))
+    return correct(_seen(layout, mesh, z, lambda beam, s: shape(beam, s).rotation, _FIT), _ITERATIONS)
 
 
 def undeformed(layout: Layout, elements: int) -> Equilibrium:
@@ -160,8 +184,18 @@ def _places(mesh: Mesh) -> Array:
     return np.asarray(mesh.start[:, None] + mesh.share[:, None] * _PLACES)
 
 
+def _seen(
+    layout: Layout, mesh: Mesh, z: Array, rotation: Callable[[int, Array], Array], fit: Array
+) -> Equilibrium:
+    """Return the guess with the rotations of the beams at arc positions; z are the unknowns without the rotations inside the parts."""
+    first, last = layout.extents(z)[mesh.part].T[..., None]
+    arcs = first + (last - first) * _places(mesh)
+    turns = [rotation(layout.parts[k].beam, s) for k, s in zip(mesh.part, arcs, strict=True)]
+    return _fitted(layout, mesh, z, np.array(turns), fit)
+
+
 def _fitted(layout: Layout, mesh: Mesh, z: Array, rotation: Array, fit: Array) -> Equilibrium:
-    """Return the guess with rotations at `_places`; z are the unknowns without the rotations inside the parts."""
+    """Return the guess with rotations at `_places`."""
     whole, at = np.append(z, np.zeros(mesh.unknowns - len(z))), mesh.local[:, 0]
     whole[at[at >= len(z)]] = rotation[at >= len(z), -2]
     bubbles: Array = (rotation[:, :-2] - rotation[:, -2:] @ VALUES[:, :2].T) @ fit.T

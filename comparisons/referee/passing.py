@@ -1,21 +1,26 @@
 """Checks between the load parameters of an answer: no node passes through a beam, contacts change at events only, and these are true."""
 
 import math
-from collections.abc import Iterator, Mapping
-from itertools import pairwise
-from typing import NamedTuple
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from functools import cache, lru_cache
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.answer import ContactEvent, Response
 from comparisons.referee.distance import gap_off, largest_force
+from comparisons.referee.grip import UnknownFrictionError
 from comparisons.referee.guess import answer_state, end_of
 from comparisons.referee.newton import equilibrium
-from comparisons.referee.path import PASSES, at_rest, changes_of, events_between, on_the_way, reach
+from comparisons.referee.path import PASSES, at_rest, changes_of, reach, same, way_to
 from comparisons.referee.rod import axis_at_rest, cross, face_of
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import ContactSpec, Scene
+
+if TYPE_CHECKING:
+    from comparisons.referee.friction import History
 
 Array = NDArray[np.float64]
 
@@ -30,10 +35,27 @@ SAMPLES = 101
 """Positions of a node between two load parameters at which its side of the beam is determined."""
 _CLOSED = ("pass-through", "slip", "stick")
 """Kinds of events at which a contact stays closed."""
-_STEPS, _SAME = 32, 1e-2
-"""Steps in which a path is followed where chords cross, and largest distance of its end from the answer, over the length."""
-_AROUND = 0.2
-"""Distance from touching an end, over the node's path, within which a node may have passed around the end."""
+_STEPS, _SAME = 32, 1e-6
+"""Steps in which a path is followed where a node gets behind a beam, and largest distance of its end from the equilibrium there."""
+_UNSURE, _NEARLY = 0.5, 0.1
+"""Distance of a crossing from the beam's end, over the node's path, within which chords do not tell whether the node passes around the end,
+and those of a followed path do not of a node that ends beyond it."""
+
+
+class Passage(NamedTuple):
+    """A node that gets behind a beam up to a load parameter: through it, if that is certain."""
+
+    pair: str
+    load_parameter: float
+    certain: bool
+
+    def __str__(self) -> str:
+        if self.certain:
+            return f"{self.pair} is open and its node goes through the beam up to load parameter {self.load_parameter:.6g}"
+        return (
+            f"the path up to load parameter {self.load_parameter:.6g} is not found, on which the node of {self.pair} "
+            "gets behind the beam, through it or past its end"
+        )
 
 
 class _Moment(NamedTuple):
@@ -44,12 +66,23 @@ class _Moment(NamedTuple):
     node: Array
 
 
-def passages(response: Response, scene: Scene) -> Iterator[str]:
-    """Yield a sentence for every open pair whose node passed through the beam."""
+@lru_cache(maxsize=1)
+def history_of(response: Response, scene: Scene) -> "History | None":
+    """Return how friction holds the contacts of an answer; None in a scene without friction, for which nothing of it is loaded."""
+    if not any(spec.friction for spec in scene.contacts):
+        return None
+    from comparisons.referee.friction import History
+
+    return History(response, scene)
+
+
+def passages(response: Response, scene: Scene) -> Iterator[Passage]:
+    """Yield every open pair whose node passed through the beam, or may have."""
+    follow = cache(lambda k: _followed(response, scene, k))
     for spec in scene.contacts:
-        through = _Pair(response, scene, spec).passed_through()
+        through = _Pair(response, scene, spec, follow).passed_through()
         if through is not None:
-            yield f"{spec.pair} is open and its node goes through the beam up to load parameter {through:.6g}"
+            yield through
 
 
 def changes(response: Response, scene: Scene) -> Iterator[str]:
@@ -70,74 +103,82 @@ def changes(response: Response, scene: Scene) -> Iterator[str]:
                 yield f"{spec.pair} {what} without an event up to load parameter {times[k + 1]:.6g}"
 
 
+class _Place(NamedTuple):
+    """Gap of a node from the curve of touching nodes, which goes on straight beyond the ends, and distance inside the nearer end."""
+
+    gap: float
+    inside: float
+
+
 class _Pair:
     """A node that may pass through the deflected axis of a beam."""
 
-    def __init__(self, response: Response, scene: Scene, spec: ContactSpec) -> None:
-        self.response, self.scene, self.spec = response, scene, spec
+    def __init__(
+        self, response: Response, scene: Scene, spec: ContactSpec, follow: Callable[[int], list[Equilibrium]]
+    ) -> None:
+        self.response, self.scene, self.spec, self.follow = response, scene, spec, follow
         self.near, self.face = 1e-6 * scene.beam(spec.beam).length, face_of(scene, spec)
 
-    def passed_through(self) -> float | None:
-        """Load parameter by which the open node has passed through; None if it has not, and after a slip-off."""
-        # axes and ends move in straight lines; where these cross, along the path that is followed
-        contact = self.response.contacts[self.spec.pair]
-        closed, where = contact.force > 0.0, self.whereabouts(self.moment(-1))
+    def passed_through(self) -> Passage | None:
+        """The first passage of the open node that is certain, or one that is not; None without one, and after a slip-off."""
+        # axes and ends move in straight lines; where a node gets behind the beam, along the path that is followed
+        contact, unsure, now = self.response.contacts[self.spec.pair], None, self.moment(-1)
+        closed, stated = np.append(False, contact.force > 0.0), self.response.events is not None
         for k, t in enumerate(map(float, self.response.load_parameter)):
             if t >= contact.slip_off:
-                return None
-            if closed[k]:
-                where = "before"
+                break
+            last, now = now, self.moment(k)
+            if closed[k + 1]:
                 continue
-            last, now = where, self.moment(k)
-            where = self.whereabouts(now)
-            if where == "before" or (k > 0 and closed[k - 1] and where != "behind"):
+            depth, before = self.depth(last, now, bool(closed[k])), self.place(now).inside
+            if depth < -_UNSURE or (closed[k] and not stated and before < 0.0):
                 continue
-            if self.goes_through(self.moment(k - 1), now, last):
-                way, through = self.followed(k), False
-                for first, after in pairwise(way):
-                    before, last = last, self.whereabouts(after)
-                    through = last != "before" and (through or self.goes_through(first, after, before))
-                if through or not way:
-                    return t
-        return None
+            way = self.follow(k)
+            if self.passes(last, way, bool(closed[k])) if way else depth > _UNSURE and not closed[k]:
+                return Passage(self.spec.pair, t, certain=True)
+            if not way:
+                unsure = unsure or Passage(self.spec.pair, t, certain=False)
+        return unsure
 
-    def followed(self, k: int) -> list[_Moment]:
-        """States on the path to load parameter k from the one before; none if it rubs, jumps, or leads elsewhere."""
-        begin, end, scene, beam = self.moment(k - 1), self.moment(k), self.scene, self.spec.beam
-        now = equilibrium(scene, answer_state(self.response, scene, k - 1)) if k else at_rest(scene)
-        if not now.found:
-            return []
-        way, arcs = [begin], self.response.axis_line(beam, k)[0]
-        stops = np.linspace(begin.t, end.t, _STEPS + 1)[1:].tolist()
-        for exact in on_the_way(now, events_between(self.response, begin.t, end.t), stops):
-            line = exact.shape(beam, arcs).position
-            way.append(_Moment(exact.load_parameter, line, exact.place(self.spec.node)))
-        apart = np.hypot(*(way[-1].line - end.line).T).max()
-        return way if len(way) > 1 and apart <= _SAME * scene.beam(beam).length else []
+    def passes(self, begin: _Moment, way: list[Equilibrium], before: bool) -> bool:
+        """Whether the node, first at the pair's side or closed, passes through the beam on a way, and does not return."""
+        arcs, through = self.response.axis_line(self.spec.beam, 0)[0], False
+        for exact in way:
+            line = exact.shape(self.spec.beam, arcs).position
+            end = _Moment(exact.load_parameter, line, exact.place(self.spec.node))
+            gap, inside = self.place(end)
+            through = through or self.depth(begin, end, before) >= (_NEARLY if inside < 0.0 else 0.0)
+            begin, before = end, gap >= -self.near
+            through = through and not before
+        return through
 
-    def goes_through(self, begin: _Moment, end: _Moment, where: str) -> bool:
-        """Whether the node, first at the side `where`, passes between two moments and does not return from a contact in between."""
+    def depth(self, begin: _Moment, end: _Moment, before: bool) -> float:
+        """How far inside the beam's ends the node gets from `before` the beam behind it, over its path; -inf if it does not."""
+        if self.place(end).gap >= -self.near:
+            return -math.inf
         parts, touched = np.linspace(0.0, 1.0, SAMPLES), np.concatenate([begin.line, end.line])
         nodes = (1.0 - parts)[:, None] * begin.node + parts[:, None] * end.node
         if "." not in self.spec.node:
             pin = self.scene.pin(self.spec.node)
             nodes = np.array([pin.position(float((1.0 - u) * begin.t + u * end.t)) for u in parts])
+        moved = (nodes[-1] - nodes[0]) - (end.line - begin.line)
+        way = np.hypot(*moved[[0, -1]].T).max() + self.near
         apart = np.maximum(nodes.min(axis=0) - touched.max(axis=0), touched.min(axis=0) - nodes.max(axis=0))
-        if apart.max() > self.reach(begin.line).max():
-            return False
-        leaves = self.whereabouts(end._replace(node=nodes[-1])) == "beyond"
-        way = np.hypot(*((nodes[-1] - nodes[0]) - (end.line - begin.line)[[0, -1]]).T)
-        through = False
-        for u, (start, node) in zip(parts[1:], pairwise(nodes), strict=True):
-            now = _Moment(u, (1.0 - u) * begin.line + u * end.line, node)
-            before, where = where, self.whereabouts(now)
-            if before == "before" and where != "before":
-                through = where == "behind" or self.cuts(now, start)
-                short = np.hypot(*(node - now.line[[0, -1]]).T) - self.reach(now.line).max()
-                # so near to an end that the node may have passed around the end
-                through = through and not (leaves and bool((short <= _AROUND * way).any()))
-            through = through and where != "before"
-        return through
+        gap = self.place(begin).gap
+        deep, before = -math.inf, before or gap >= -self.near
+        if apart.max() > self.reach(begin.line).max() + _UNSURE * way:
+            return deep
+        # a node whose nearest point becomes another one does not cross the beam
+        most = (
+            np.hypot(*np.diff(nodes, axis=0).T).max() + np.hypot(*(end.line - begin.line).T).max() / SAMPLES
+        )
+        for u, node in zip(parts[1:], nodes[1:], strict=True):
+            last, (gap, inside) = gap, self.place(_Moment(u, (1.0 - u) * begin.line + u * end.line, node))
+            behind = gap < -self.near
+            if before and behind and gap >= min(last, 0.0) - 2.0 * most:
+                deep = max(deep, inside / way)
+            before = not behind
+        return deep
 
     def moment(self, k: int) -> _Moment:
         """The beam and the node at load parameter k; undeformed for k = -1."""
@@ -157,36 +198,43 @@ class _Pair:
             node = self.response.tips[beam][k] if tip else end_of(self.spec.node, axis)
         return _Moment(t, axis(self.spec.beam)[1], np.asarray(node))
 
-    def cuts(self, now: _Moment, start: Array) -> bool:
-        """Whether the way of the node from `start` crosses the curve of touching nodes from the pair's side."""
-        line, way, left = now.line, now.node - start, self.face.left
-        pieces, offset = np.diff(line, axis=0), self.reach(line[:-1])
-        lengths = np.hypot(*pieces.T)
-        before, after = (
-            left * cross(pieces, node - line[:-1]) / lengths - offset for node in (start, now.node)
-        )
-        aside = (left * offset / lengths)[:, None] * np.column_stack([-pieces[:, 1], pieces[:, 0]])
-        first, last = (cross(way, ends + aside - start) > 0.0 for ends in (line[:-1], line[1:]))
-        return bool(((before > self.near) & (after < -self.near) & (first != last)).any())
-
-    def whereabouts(self, now: _Moment) -> str:
-        """Position of the node: "beyond" an end of the axis, "before" the axis on the pair's side, or "behind" the axis."""
-        line, near = now.line, self.near
+    def place(self, now: _Moment) -> "_Place":
+        """Where the node is."""
+        line = now.line
         nearest = int(np.argmin(np.hypot(*(line - now.node).T)))
         first, last = max(nearest - 1, 0), min(nearest + 1, len(line) - 1)
         tangent, away = line[last] - line[first], now.node - line[nearest]
         tangent = tangent / np.hypot(*tangent)
         along = float(tangent @ away)
-        if (nearest == 0 and along < -near) or (nearest == len(line) - 1 and along > near):
-            return "beyond"
         gap = self.face.left * cross(tangent, away) - self.reach(line)[nearest] - self.face.slope * along
-        return "behind" if gap < -near else "before"
+        arcs = np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))
+        return _Place(gap, min(arcs[nearest] + along, arcs[-1] - arcs[nearest] - along))
 
     def reach(self, line: Array) -> Array:
         """Distances (m,) at which the node touches at the points of an axis."""
         if not self.face.slope:
             return np.full(len(line), self.face.start)
         return np.asarray(self.face.reach(np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))))
+
+
+def _followed(response: Response, scene: Scene, k: int) -> list[Equilibrium]:
+    """Return equilibria on the path to load parameter number k from the one before; none if it jumps, or leads elsewhere."""
+    history = history_of(response, scene)
+
+    def at(n: int) -> Equilibrium:
+        if n < 0:
+            return at_rest(scene)
+        grips = history.grips(n) if history else {}
+        return equilibrium(scene, replace(answer_state(response, scene, n), grips=grips))
+
+    try:
+        begin, end = at(k - 1), at(k)
+        held = history.around if history else None
+        found = begin.found and end.found
+        way = way_to(response, begin, end.load_parameter, held, _STEPS) if found else []
+    except UnknownFrictionError:
+        return []
+    return way if way and same(way[-1], end, _SAME) else []
 
 
 def misstated(

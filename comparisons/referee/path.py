@@ -1,8 +1,9 @@
 """The path of equilibria: steps from one to another, and whether two are on one branch, by steps too short to jump to another branch."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
+from operator import itemgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,15 +11,16 @@ from numpy.typing import NDArray
 from comparisons.answer import ContactEvent, Response
 from comparisons.referee.elements import mesh_of
 from comparisons.referee.equations import orientation_of
-from comparisons.referee.grip import Grip
-from comparisons.referee.guess import AnswerState
+from comparisons.referee.grip import LOOSE, Grip
 from comparisons.referee.layout import lay_out
-from comparisons.referee.newton import correct, equilibrium, newton_step, undeformed
+from comparisons.referee.newton import correct, newton_step, switched, undeformed
 from comparisons.referee.rod import largest
 from comparisons.referee.state import Change, Equilibrium, located
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
+Held = Callable[[float], Mapping[str, Grip]]
+"""How friction holds the contacts at a load parameter."""
 
 _ITERATIONS = 12
 """Largest number of Newton iterations of a step."""
@@ -46,10 +48,10 @@ _MEET, _MEETING = 1e-4, 0.02
 """Largest distances in the load parameter, over the interval, and in place between the ends of two branches that meet there."""
 _PLACES = np.linspace(0.0, 1.0, 33)
 """Fractions of a part at which rotations are compared."""
-_SWITCHED = ("touch", "release")
-"""Kinds of events without a jump at which a contact closes or opens."""
-_POINTS = 201
-"""Points of an axis from which an equilibrium with other contacts is sought."""
+_SWITCHED, _STAYS = ("touch", "release"), ("slip", "stick")
+"""Kinds of events without a jump at which a contact closes or opens, and at which it stays closed."""
+_LEAVING = 1e-3
+"""Part of the way from a touch to the next change behind which the contact has a force."""
 
 PASSES = "pass-through"
 
@@ -105,54 +107,76 @@ def departures(response: Response, states: Mapping[int, Equilibrium]) -> Iterato
     for k, there in states.items():
         now = now or at_rest(there.scene)
         if now.found:
-            events = events_between(response, now.load_parameter, there.load_parameter)
+            t = there.load_parameter
+            events = _events_between(response, now.load_parameter, t)
             same = all(closed[i] == now.closed.keys() for i in range(max(begin, 0), k + 1))
-            ways = [now] if same and not events else on_the_way(now, events)
+            ways = [now] if same and not events else _on_the_way(now, events, (), t, None)
             for way in (item for item in ways[-1:] if _alike(item, there)):
                 # beyond an event that is stated within an allowance only, a path that is not found tells nothing
-                if way is now or not _followed(way, there.load_parameter, there)[1]:
+                if way is now or not _followed(way, t, there)[1]:
                     yield from filter(None, [departs(way, there)])
         now, begin = there, k
 
 
-def events_between(response: Response, after: float, until: float) -> list[ContactEvent]:
+def _events_between(response: Response, after: float, until: float) -> list[ContactEvent]:
     """Events at which contacts open, close, stick or slip."""
     return [event for event in changes_of(response) if after <= event.load_parameter <= until]
 
 
-def on_the_way(
-    now: Equilibrium, events: Sequence[ContactEvent], stops: Sequence[float] = ()
+def way_to(
+    response: Response, begin: Equilibrium, end: float, held: Held | None = None, steps: int = 1
 ) -> list[Equilibrium]:
-    """Follow the path through events to the equilibria at stops and behind the events; none where contacts rub or jump, or none leads on."""
-    if now.layout.grips or any(event.kind not in _SWITCHED for event in events):
+    """Follow the path from rest, or an equilibrium that an answer states, through its events: see `_on_the_way`."""
+    start = begin.load_parameter
+    events = [*(_from_the_start(response) if start == 0.0 else ()), *_events_between(response, start, end)]
+    return _on_the_way(begin, events, np.linspace(start, end, steps + 1)[1:].tolist(), end, held)
+
+
+def _on_the_way(
+    now: Equilibrium, events: Sequence[ContactEvent], stops: Sequence[float], end: float, held: Held | None
+) -> list[Equilibrium]:
+    """Return the equilibria at stops and behind events up to a load parameter; none where a contact jumps, or no path leads on.
+
+    `held` says how friction holds the contacts between two events; without it the path is not followed where contacts rub.
+    """
+    kinds = (*_SWITCHED, *_STAYS) if held else _SWITCHED
+    if (now.layout.grips and not held) or any(event.kind not in kinds for event in events):
         return []
     found: list[Equilibrium] = []
-    marks = [(t, None) for t in stops] + [(event.load_parameter, event) for event in events]
-    for t, event in sorted(marks, key=lambda mark: mark[0]):
+    marks: list[tuple[float, ContactEvent | None]] = [(t, None) for t in stops]
+    marks = sorted([*marks, *((event.load_parameter, event) for event in events)], key=itemgetter(0))
+    for t, event in marks:
         now, stopped = _followed(now, t)
         if event and not stopped:
-            now = _switched(now, event)
+            after = next((later for later, _ in marks if later > t), end)
+            now = _changed(now, event, held((t + after) / 2.0) if held else {}, t + _LEAVING * (after - t))
         if stopped or not now.found:
             return []
         found.append(now)
     return found
 
 
-def _switched(now: Equilibrium, event: ContactEvent) -> Equilibrium:
-    """Return the equilibrium with the contact of an event closed or open."""
-    arcs = {**now.closed}
-    arcs.pop(event.pair, None)
-    if event.kind == "touch":
-        arcs[event.pair] = event.arc_position
-    lines = {beam.name: np.linspace(0.0, beam.length, _POINTS) for beam in now.scene.beams}
-    answer = AnswerState(
-        load_parameter=now.load_parameter,
-        arcs=arcs,
-        forces={pair: now.contacts[pair].force if pair in now.contacts else np.zeros(2) for pair in arcs},
-        axes={name: (arc, now.shape(name, arc).position) for name, arc in lines.items()},
-        reactions=now.reactions,
-    )
-    return equilibrium(now.scene, answer)
+def _from_the_start(response: Response) -> Iterator[ContactEvent]:
+    """Yield the contacts that are closed from the start, as touches there."""
+    for pair, contact in response.contacts.items():
+        own = changes_of(response, pair)
+        if own[0].kind != "touch" if own else contact.force[0] != 0.0:
+            arc = own[0].arc_position if own else float(contact.arc_position[0])
+            yield ContactEvent(
+                kind="touch", load_parameter=0.0, pair=pair, element=0, arc_position=arc, force=0.0, released=0.0
+            )  # fmt: skip
+
+
+def _changed(now: Equilibrium, event: ContactEvent, grips: Mapping[str, Grip], after: float) -> Equilibrium:
+    """Return the equilibrium behind an event; behind a touch at the load parameter `after`."""
+    arcs = {pair: arc for pair, arc in now.closed.items() if pair != event.pair or event.kind in _STAYS}
+    if event.kind != "touch":
+        return switched(now, arcs, grips)
+    # where there is no force yet, the direction of a face is not stationary at one place only
+    loose = {**grips, event.pair: LOOSE}
+    now = switched(now, {**arcs, event.pair: event.arc_position}, loose)
+    now = reach(now, after, loose) if now.found else now
+    return correct(moved(now, after, grips), _ITERATIONS) if now.found else now
 
 
 def _alike(one: Equilibrium, other: Equilibrium) -> bool:
@@ -162,6 +186,11 @@ def _alike(one: Equilibrium, other: Equilibrium) -> bool:
     slips = [{pair: grip.slip for pair, grip in item.layout.grips.items()} for item in (one, other)]
     orders = [[(part.beam, part.first, part.last) for part in item.layout.parts] for item in (one, other)]
     return slips[0] == slips[1] and orders[0] == orders[1]
+
+
+def same(one: Equilibrium, other: Equilibrium, allowed: float) -> bool:
+    """Whether two equilibria are the same, with the same contacts."""
+    return _alike(one, other) and _apart(one, other) <= allowed
 
 
 def at_rest(scene: Scene) -> Equilibrium:

@@ -5,10 +5,12 @@ from typing import Any
 import numpy as np
 
 from comparisons.answer import Response
+from comparisons.answer.along import peak
 from comparisons.answer.quantities import forces, size
 from comparisons.answer.round_off import round_off
 from comparisons.answer.table import unit_names
 from comparisons.report import palette
+from comparisons.report.brief import at_largest, spring_rate, travel
 from comparisons.report.plot import WIDTH, figure
 from comparisons.report.sketch import ARROW, Sketch, axis
 from comparisons.report.symbols import LEFT
@@ -23,7 +25,7 @@ DIAGRAMS = (("N", "axial", "force"), ("V", "shear", "force"), ("M", "moment", "m
 
 
 def picture(response: Response, scene: Scene | None = None) -> Any:
-    """Return a matplotlib figure: deformed shape at the last load parameter at which a force acts, section forces along each beam, and the forces.
+    """Return a matplotlib figure: deformed shape at the load parameter with the largest force, section forces along each beam, and the forces.
 
     A response that was read from a file needs the `scene` that was solved; a `ValueError` says so.
     """
@@ -36,7 +38,7 @@ def picture(response: Response, scene: Scene | None = None) -> Any:
     heights = (HEIGHT, *(DIAGRAM for _ in diagrams), HISTORY)
     fig = figure(figsize=(WIDTH, sum(heights)))
     shape, *panels, history = fig.subplots(len(heights), 1, height_ratios=heights)
-    k = _loaded(response, scene)
+    k = at_largest(response)
     for axes, (name, words, kind) in zip(panels, diagrams, strict=True):
         _diagram(axes, response, scene, name, kind, k)
         axes.set_ylabel(f"{words} {name}\n[{unit_names(scene.units)[kind]}]", fontsize="small")
@@ -51,15 +53,6 @@ def picture(response: Response, scene: Scene | None = None) -> Any:
     fig.supxlabel(f"tsm-crossval {release()}", fontsize="xx-small", x=0.99, ha="right")
     _shape(shape, response, scene, k)
     return fig
-
-
-def _loaded(response: Response, scene: Scene) -> int:
-    """Return the number of the last load parameter at which a contact or support force acts; of the last one if none does."""
-    least = round_off(response, scene).force
-    held = [support.force for support in response.supports.values()]
-    acting = [size(values) > least for values in (*forces(response).values(), *held)]
-    numbers = np.flatnonzero(np.any(acting, axis=0))
-    return int(numbers[-1]) if len(numbers) else len(response.load_parameter) - 1
 
 
 def _shape(axes: Any, response: Response, scene: Scene, k: int) -> None:
@@ -109,19 +102,41 @@ def _diagram(axes: Any, response: Response, scene: Scene, name: str, kind: str, 
         values = np.where(np.abs(getattr(at, name)) > least, getattr(at, name), 0.0)
         axes.fill_between(at.arc, values, color=colour, alpha=0.25, linewidth=0.0)
         axes.plot(at.arc, values, color=colour, linewidth=1.2, label=beam.name)
+        if values.any():
+            value, place = peak(at.arc, values)
+            axes.plot(place, value, ".", color=colour, markersize=5)
+            near = {"textcoords": "offset points", "ha": "right" if place > beam.length / 2 else "left"}
+            axes.annotate(
+                f"{value:.4g}",
+                (place, value),
+                (-4 if place > beam.length / 2 else 4, 0),
+                va="center",
+                fontsize="x-small",
+                **near,
+            )
     axes.axhline(0.0, color="0.3", linewidth=0.6)
     axes.grid(visible=True, linewidth=0.3)
     axes.margins(x=0.01)
 
 
 def _history(axes: Any, response: Response, scene: Scene) -> None:
-    t, unit = response.load_parameter, unit_names(scene.units)["force"]
+    """Draw the forces over the travel of the one moving pin, with its spring rate, or over the load parameter."""
+    t, units = response.load_parameter, unit_names(scene.units)
+    way, rate = travel(scene, t), spring_rate(response, scene)
+    across, words = (t, "load parameter") if way is None else (way, f"travel of the pin [{units['length']}]")
     for number, (name, values) in enumerate(forces(response).items()):
         colour, whole = COLOURS[number % len(COLOURS)], np.append(0.0, size(values))
-        axes.plot(np.append(0.0, t), whole, label=name, color=colour, marker=".", markersize=3, linewidth=1.2)
+        axes.plot(
+            np.append(0.0, across), whole, label=name, color=colour, marker=".", markersize=3, linewidth=1.2
+        )
     what = "contact force" if response.contacts else "reaction"
-    axes.set_xlabel("load parameter")
-    axes.set_ylabel(f"{what}\n[{unit}]", fontsize="small")
+    axes.set_xlabel(words)
+    axes.set_ylabel(f"{what}\n[{units['force']}]", fontsize="small")
     axes.grid(visible=True, linewidth=0.3)
     axes.set_xlim(left=0.0)
-    axes.legend(loc="best", fontsize="x-small")
+    title = (
+        f"spring rate at first touch {rate:.4g} {units['force']}/{units['length']}"
+        if np.isfinite(rate)
+        else None
+    )
+    axes.legend(loc="best", fontsize="x-small", title=title, title_fontsize="x-small")

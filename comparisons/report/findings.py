@@ -1,14 +1,16 @@
-"""The findings of a comparison in sentences, each made from the data."""
+"""The findings of a comparison: a sentence, points and the answer in units, each made from the data."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 from math import inf, isfinite, log, nan
+from typing import Any
 
 import numpy as np
 
 from comparisons.answer.quantities import table_columns
 from comparisons.models import find
 from comparisons.referee import Verdict
+from comparisons.report.brief import Brief, at_largest, in_units
 from comparisons.scene import Scene
 from comparisons.suite import Row
 from comparisons.suite.budget import TIMES, Budget
@@ -17,6 +19,8 @@ BUDGET = "error budget"
 """Key of the error budget among what is left out."""
 AGREES = 1e-9
 """Error below which two answers agree."""
+ASKED = 0.01
+"""The error for which it is said which model is enough."""
 LEAST_PART = 0.05
 """Part of the difference of beams and solid, over the largest part, below which it is not named."""
 STATES = {
@@ -31,58 +35,96 @@ def findings(
     scene: Scene,
     rows: Sequence[Row],
     reference: str,
+    bodies: Row | None,
     budget: Budget | None,
     left_out: Mapping[str, str],
-) -> list[str]:
-    """Return what a comparison found; `left_out` has reasons by the family of a run, or by `BUDGET`."""
-    others = [row for row in rows if row.label != reference]
-    found = [_compared(scene, rows, others, reference)]
-    for family, own in groupby(others, key=lambda row: row.family):
-        found += _off(family, list(own), scene, budget, reference)
-    return [*found, *_stopped(rows), *_left_out(left_out), *_stability(rows), _certified(rows)]
+) -> Brief:
+    """Return what a comparison found.
 
-
-def _compared(scene: Scene, rows: Sequence[Row], others: Sequence[Row], reference: str) -> str:
-    models = dict.fromkeys(find(row.response.model).label for row in others)
-    last = max(float(row.response.load_parameter.max(initial=0.0)) for row in rows)
-    runs = "1 run of {} is" if len(others) == 1 else f"{len(others)} runs of {{}} are"
-    return (
-        f"{runs.format(_listed(models))} compared with the {reference} on {scene.name} at "
-        f"{len(scene.times)} load parameters, up to {last:.4g}. Errors of forces and moments are relative to the largest value, "
-        "errors of positions to the length."
+    `bodies` is the row of beams with their errors against the solid, if both answered. `left_out` has reasons by the family of a run, or
+    by `BUDGET`.
+    """
+    others = [row for row in rows if row.label != reference and isfinite(_worst(row, scene)[0])]
+    points = [
+        _enough(others, scene, reference),
+        "" if budget is None else _parts(budget),
+        _causes(others, scene, explained=budget is not None),
+        " ".join([*_stopped(rows), *_apart(others, reference), *_left_out(left_out)]),
+        " ".join([_certified(rows), *_stability(rows)]),
+    ]
+    exact = next(row for row in rows if row.label == reference)
+    answer, about = list[dict[str, Any]](), ""
+    if len(exact.response.load_parameter):
+        t = float(exact.response.load_parameter[at_largest(exact.response)])
+        finest = [bodies] if bodies else [row for row in others if find(row.response.model).meshed]
+        shown = {"beam": finest[-1].response} if finest else {}
+        shown |= {row.family: row.response for row in others if row.response.continuum}
+        answer = in_units(scene, {**shown, reference: exact.response}, t)
+        beam = f" (beam: {finest[-1].label})" if finest else ""
+        about = f"The answer at load parameter {t:.4g}, where the force is largest{beam}:"
+    return Brief(
+        _sentence(others, scene, reference, bodies, budget), list(filter(None, points)), answer, about
     )
 
 
-def _off(family: str, rows: list[Row], scene: Scene, budget: Budget | None, reference: str) -> Iterator[str]:
-    """Yield how far the runs of a family are off, and why."""
-    known = [row for row in rows if isfinite(_worst(row, scene)[0])]
-    if not known:
-        return
-    name = f"The {family}" if family[0].islower() else family
-    explained = budget is not None and find(known[0].response.model).continuum
-    if max(_worst(row, scene)[0] for row in known) < AGREES:
-        yield f"{name} agrees with the {reference} to {_stated(known, scene)}."
-    else:
-        cause = "" if explained else next((row.cause for row in known if row.cause), "")
-        because = f". Theory expects most of it from this cause: {cause}" if cause else ""
-        yield f"{name} is off by at most {_stated(known, scene)}{_falling(known, scene)}{because}."
-    if explained and budget is not None:
-        yield _parts(budget)
-    for row in known:
-        if inf in (row.errors or {})["path"].values():
-            yield f"{row.label} and the {reference} disagree on whether a contact is closed."
+def _sentence(
+    others: Sequence[Row], scene: Scene, reference: str, bodies: Row | None, budget: Budget | None
+) -> str:
+    """Return how far beams and solid are apart, why, and what is enough for `ASKED`."""
+    beams = [
+        row for row in _near(others, scene) if find(row.response.model).meshed and not row.response.continuum
+    ]
+    least = min(beams, key=lambda row: row.response.unknowns, default=None)
+    enough = f"for {_size(ASKED)} of the {reference} no beam here is enough"
+    if least is not None:
+        enough = f"for {_size(ASKED)} a beam is enough: {least.label} ({_size(_worst(least, scene)[0])} off the {reference})"
+    apart, quantity = (nan, "") if bodies is None else _worst(bodies, scene)
+    if not isfinite(apart):
+        return f"{enough[0].upper()}{enough[1:]}."
+    said = f"Beam and solid are {_size(apart)} apart in the {quantity}"
+    if budget is not None and apart > AGREES:
+        _, _, parts = _largest(budget)
+        said += f", most of it by the {max(parts, key=lambda name: abs(parts[name]))}"
+    return f"{said}; {enough if apart <= ASKED else f'for {_size(ASKED)} of the solid a beam is not enough'}."
 
 
-def _stated(rows: Sequence[Row], scene: Scene) -> str:
-    """Return the errors of runs that differ in resolution; a quantity is named where it changes."""
-    words, before = [], ""
-    for row in rows:
-        error, quantity = _worst(row, scene)
-        named = "" if quantity == before else f" ({quantity})"
-        elements = f" with {row.resolution:.0f} element{'' if row.resolution == 1 else 's'}"
-        words.append(f"{_size(error)}{named}{elements if isfinite(row.resolution) else ''}")
-        before = quantity
-    return _listed(words)
+def _near(rows: Iterable[Row], scene: Scene) -> list[Row]:
+    """Return the completed runs with errors up to `ASKED`."""
+    return [row for row in rows if row.response.completed and _worst(row, scene)[0] <= ASKED]
+
+
+def _enough(others: Sequence[Row], scene: Scene, reference: str) -> str:
+    """Return which runs are within `ASKED` of the reference, of each family the coarsest, and which families are not."""
+    good, beyond = list[str](), list[str]()
+    for family, own in groupby(others, key=lambda row: row.family):
+        rows = sorted(own, key=lambda row: row.resolution)
+        if within := _near(rows, scene):
+            count = within[0].resolution
+            elements = f" with {count:.0f} element{'' if count == 1 else 's'}" if isfinite(count) else ""
+            good.append(f"{family}{elements} ({_size(_worst(within[0], scene)[0])})")
+        else:
+            beyond.append(f"{family} ({_size(_worst(rows[-1], scene)[0])})")
+    said = f"Within {_size(ASKED)} of the {reference}: {', '.join(good) or 'none'}."
+    return f"{said} Beyond: {', '.join(beyond)}." if beyond else said
+
+
+def _apart(others: Sequence[Row], reference: str) -> Iterator[str]:
+    open_here = [row.label for row in others if inf in (row.errors or {})["path"].values()]
+    if open_here:
+        yield f"{_listed(open_here)} and the {reference} disagree on whether a contact is closed."
+
+
+def _causes(others: Sequence[Row], scene: Scene, *, explained: bool) -> str:
+    """Return why the families are off, and how fast their errors fall; of a continuum it is `explained` elsewhere."""
+    said = []
+    for family, own in groupby(others, key=lambda row: row.family):
+        rows = list(own)
+        agrees = max(_worst(row, scene)[0] for row in rows) < AGREES
+        cause = "" if agrees or (explained and rows[0].response.continuum) else rows[0].cause
+        falls = "" if agrees else _falling(rows, scene)
+        if cause or falls:
+            said.append(f"{family}, {cause or 'discretisation'} {falls}".rstrip())
+    return f"Why models are off: {'; '.join(said)}." if said else ""
 
 
 def _worst(row: Row, scene: Scene) -> tuple[float, str]:
@@ -100,27 +142,33 @@ def _falling(rows: list[Row], scene: Scene) -> str:
     if not last.resolution > first.resolution or fine < AGREES or coarse <= fine:
         return ""
     order = log(coarse / fine) / log(last.resolution / first.resolution)
-    return f"; the error falls with the power {order:.1f} of the length of the elements"
+    return f"(falls with the power {order:.1f} of the length of the elements)"
+
+
+def _largest(budget: Budget) -> tuple[str, int, dict[str, float]]:
+    """Return the quantity and the number of the load parameter of the largest difference, and its parts."""
+    names = list(budget.total)
+    sizes = np.nan_to_num([np.abs(budget.total[name]) for name in names])
+    number, k = np.unravel_index(np.argmax(sizes), sizes.shape)
+    return (
+        names[number],
+        int(k),
+        {name: float(values[k]) for name, values in budget.parts[names[number]].items()},
+    )
 
 
 def _parts(budget: Budget) -> str:
-    """Return what makes the largest difference between beams and solid, of a force where there is one."""
-    names = [name for name in budget.total if "force" in name] or list(budget.total)
-    sizes = np.nan_to_num([np.abs(budget.total[name]) for name in names])
-    number, k = np.unravel_index(np.argmax(sizes), sizes.shape)
-    quantity = names[number]
-    if sizes.max() < AGREES:
-        return f"In the error budget, beams and solid agree to {_size(float(sizes.max()))}."
-    parts = {name: float(values[k]) for name, values in budget.parts[quantity].items()}
+    """Return what makes the largest difference between beams and solid."""
+    quantity, k, parts = _largest(budget)
+    total = float(budget.total[quantity][k])
+    if not abs(total) >= AGREES:
+        return f"In the error budget, beams and solid agree to {_size(abs(total))}."
     greatest = max(map(abs, parts.values()))
     shown = sorted((n for n in parts if abs(parts[n]) > LEAST_PART * greatest), key=lambda n: -abs(parts[n]))
     words = _listed(f"{_size(parts[name])} {name}" for name in shown)
     kind, _, column = quantity.partition(" ")
     name = f"{kind.replace('_', ' ')} {column}".strip()
-    return (
-        f"In the error budget, beams and solid differ most in the {name} at load parameter {TIMES[k]:g}: by "
-        f"{_size(float(budget.total[quantity][k]))}, made of {words}."
-    )
+    return f"In the error budget, beams and solid differ most in the {name}, at load parameter {TIMES[k]:g}: by {_size(total)}, made of {words}."
 
 
 def _stopped(rows: Sequence[Row]) -> Iterator[str]:

@@ -1,6 +1,6 @@
 """Sections of a page about answers: shapes under a slider with histories, bands of stick and slip."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import groupby
 from typing import Any
@@ -12,15 +12,16 @@ from comparisons.answer.errors import error_columns
 from comparisons.answer.quantities import QUANTITIES, size
 from comparisons.answer.table import unit_names
 from comparisons.report import palette
+from comparisons.report.brief import at_largest, travel
 from comparisons.report.pages import Section, piece, rendered
 from comparisons.report.symbols import SYMBOL, end_symbols
 from comparisons.scene import Scene
 
-POINTS = 61
+POINTS = 41
 """Points of a deformed axis."""
 ARC = 25
 """Points of an undeformed axis that is an arc."""
-DIGITS = 5
+DIGITS = 7
 """Decimals of the coordinates, over the size of the scene."""
 DASHES = ("7 3", "2 3", "9 3 2 3", "12 3", "5 2 1 2 1 2", "3 2", "9 2 2 2 2 2", "4 4", "14 2 2 2")
 """Dashes of the lines of runs, which distinguish runs without colour."""
@@ -85,26 +86,42 @@ def motion_section(
     shown: Sequence[Track],
     *,
     focus: str,
+    first: Container[str] = (),
     vtu: Mapping[str, str] | None = None,
 ) -> Section:
-    """Return axes under a slider, switches, histories, the tip of the run `focus`, and links of `vtu`."""
+    """Return axes under a slider with their distances from the run `focus`, switches, histories, and links of `vtu`.
+
+    It begins where the force of `focus` is largest, with the runs `first`, or all.
+    """
     times = max((one.load_parameter for one in responses.values()), key=len)
     if not len(times):
         return Section(title, "<p>No run reached a load parameter.</p>")
     labels = dict.fromkeys([*responses, *(label for track in shown for label in track.values)])
     # the wide solid below, the exact answers on top
     ordered = sorted(labels, key=lambda label: -palette.style(label).width)
-    first, ends = scene.beams[0], np.array([[beam.start, beam.end] for beam in scene.beams]).reshape(-1, 2)
+    ends = np.array([[beam.start, beam.end] for beam in scene.beams]).reshape(-1, 2)
     extent = float(np.ptp(ends, axis=0).max())
     decimals, steps = DIGITS - int(np.floor(np.log10(extent))), range(len(times))
     axes = {label: _lines(scene, response, decimals) for label, response in responses.items()}
     runs = [
-        {"label": label, **_line_style(label, number), "lines": axes.get(label, [])}
+        {
+            "label": label,
+            "shown": not first or label in first,
+            **_line_style(label, number),
+            "lines": axes.get(label, []),
+        }
         for number, label in enumerate(ordered)
     ]
+    way, exact = travel(scene, times), responses[focus]
+    start = at_largest(exact) if len(exact.load_parameter) else len(times) - 1
+    across = {"title": "load parameter", "values": times}
+    if way is not None:
+        across = {"title": f"travel of the pin [{unit_names(scene.units)['length']}]", "values": way}
     data = {
         "load_parameter": times,
-        "length": {"unit": unit_names(scene.units)["length"], "beam": first.length},
+        "across": across,
+        "start": start,
+        "length": {"unit": unit_names(scene.units)["length"]},
         "beams": [
             [beam.place(part) for part in np.linspace(0.0, 1.0, ARC if beam.turn else 2)]
             for beam in scene.beams
@@ -127,14 +144,14 @@ def motion_section(
             }
             for one in end_symbols(scene)
         ],
-        "tip": responses[focus].tips[first.name],
         "focus": focus,
         "runs": runs,
         "tracks": shown,
         "vtu": vtu or {},
     }
-    html = rendered("motion", runs=runs, tracks=shown, last=len(times) - 1)
-    return Section(title, html.rstrip("\n"), data)
+    picture = rendered("motion", runs=runs, last=len(times) - 1, start=start)
+    more = rendered("charts", runs=runs, tracks=shown, across=across["title"])
+    return Section(title, picture.rstrip("\n"), data, more.rstrip("\n"))
 
 
 def _axis(scene: Scene, response: Response, beam: str, k: int) -> Array:
@@ -154,10 +171,11 @@ def _line_style(label: str, number: int) -> dict[str, Any]:
 
 def _lines(scene: Scene, response: Response, decimals: int) -> list[list[Array]]:
     """Return the deformed axes (POINTS, 2) of all beams at every load parameter, rounded to what a screen can show."""
+    from scipy.interpolate import CubicSpline  # straight pieces would show where differences are enlarged
 
     def thinned(arc: Array, line: Array) -> Array:
         at = np.linspace(arc[0], arc[-1], POINTS)
-        return np.asarray(np.round([np.interp(at, arc, line[:, i]) for i in (0, 1)], decimals).T)
+        return np.asarray(np.round(CubicSpline(arc, line)(at), decimals))
 
     steps = range(len(response.load_parameter))
     return [[thinned(*response.axis_line(beam.name, k)) for beam in scene.beams] for k in steps]

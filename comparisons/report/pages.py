@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from comparisons.files import write_text
 from comparisons.output import cell, plain
+from comparisons.report.brief import Brief
 from comparisons.scene import Scene, to_toml
 from comparisons.version import machine, versions
 
@@ -26,12 +27,15 @@ class Section(NamedTuple):
     """A part of a page: its heading, which no other section has, and the markup below it.
 
     The `data` are what a script shows, JSON's types, arrays or records; the script finds them as
-    ``DATA[ident]``.
+    ``DATA[ident]``. Of a page's first section, `beside` stands below
+    the answer, and what there is `more` below all.
     """
 
     title: str
     html: str
     data: Any = None
+    more: str = ""
+    beside: str = ""
 
     @property
     def ident(self) -> str:
@@ -51,6 +55,9 @@ def _templates() -> "Environment":
         undefined=StrictUndefined,
     )
     found.filters["cell"] = cell
+    found.filters["whole"] = lambda text: re.sub(
+        r"(?<=\de)-(?=\d)", "\u2011", text
+    )  # a line may end at a hyphen
     return found
 
 
@@ -67,21 +74,23 @@ def piece(name: str, *values: Any) -> "Markup":
     return found.strip()
 
 
-def page(title: str, lead: str, sections: Sequence[Section]) -> str:
-    """Return sections of different titles, below a title and a lead, as one HTML file that loads nothing."""
+def page(title: str, brief: Brief, sections: Sequence[Section]) -> str:
+    """Return a brief with the first of the sections, and the others folded, as one HTML file that loads nothing; their titles differ."""
     idents = [section.ident for section in sections]
     if len(set(idents)) < len(idents):
         raise ValueError(f"sections = {idents}: must have different titles")
     data = {section.ident: plain(section.data) for section in sections if section.data is not None}
     text = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     style, script = ((FOLDER / name).read_text(encoding="utf-8") for name in ("style.css", "script.js"))
-    return rendered("page", title=title, lead=lead, style=style, script=script, data=text, sections=sections)
+    return rendered(
+        "page", title=title, brief=brief, style=style, script=script, data=text, sections=sections
+    )
 
 
 def write_page(
     folder: Path,
     title: str,
-    lead: str,
+    brief: Brief,
     sections: Iterable[Section],
     scenes: Iterable[Scene],
     files: Iterable[Path],
@@ -94,7 +103,7 @@ def write_page(
         Section("Versions and machine", piece("definitions", {**versions(), **machine()})),
         Section("Files", piece("links", [path.relative_to(folder).as_posix() for path in files])),
     ]
-    write_text(folder / name, page(title, lead, [*sections, *closing]))
+    write_text(folder / name, page(title, brief, [*sections, *closing]))
     return folder / name
 
 

@@ -5,23 +5,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from comparisons.answer.quantities import SCOPES, names, table_columns
-from comparisons.output import aligned, csv_text
+from comparisons.output import NO_VALUE, csv_text
 from comparisons.suite import Row
 
 
 def caption(reference: str) -> str:
     """Return what the table shows."""
     return (
-        f"Largest error over the load parameters reached, against the {reference}; forces and moments relative to their\n"
+        f"Largest error over the load parameters reached, against the {reference}; forces and moments relative to their "
         "largest, positions to the length, friction to the contact forces; Newton iterations and seconds for the whole path"
     )
-
-
-def table_text(rows: Sequence[Row], reference: str) -> str:
-    """Return the table as aligned text; errors are the largest over all load parameters."""
-    head, *lines = list(line(rows[0])), *(list(line(row).values()) for row in rows)
-    first, *rest = aligned([head, *lines], [False] + [True] * (len(head) - 1))
-    return "\n".join([caption(reference), "", first, "-" * len(first), *rest])
 
 
 def line(row: Row) -> dict[str, str]:
@@ -31,11 +24,15 @@ def line(row: Row) -> dict[str, str]:
     return {
         "model": row.label if response.completed else f"{row.label} ({response.status})",
         "unknowns": str(response.unknowns),
-        **{words: "-" if np.isnan(value) else f"{value:.1e}" for words, value in errors.items()},
+        **{words: _error(value) for words, value in errors.items()},
         "stable": row.stable,
         "iterations": str(response.iterations),
         "seconds": f"{response.wall_seconds:.3f}",
     }
+
+
+def _error(value: float) -> str:
+    return "-" if np.isnan(value) else NO_VALUE if np.isinf(value) else f"{value:.1e}"
 
 
 def table_csv(rows: Sequence[Row]) -> str:

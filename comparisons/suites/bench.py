@@ -5,6 +5,7 @@ import json
 import math
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -143,8 +144,9 @@ def _queries(scene: Scene, at: Sequence[int], right: Response) -> Iterator[Query
     ]
     for of, what in wanted:
         values = columns[f"{of}.{what}"][list(at)]
-        scale = max(abs(v).max() for key, v in columns.items() if key.partition(".")[2][-6:] == what[-6:])
-        if np.nanmax(np.abs(values), initial=0.0) > 1e-9 * scale:
+        alike = (v for key, v in columns.items() if key.rpartition(".")[2].rstrip("xy") == what.rstrip("xy"))
+        largest, scale = (max(np.nanmax(np.abs(v), initial=0.0) for v in one) for one in ([values], alike))
+        if largest > 1e-9 * scale:
             yield from (
                 {"scene": scene.name, "of": of, "what": what, "at": k}
                 for k, value in enumerate(values)
@@ -172,7 +174,8 @@ def _free(scene: Scene) -> list[str]:
 
 def histories(scene: Scene, response: Response) -> dict[str, Any]:
     """Return what a response states, by ``OF.WHAT``, each of shape (s,)."""
-    found, steps = table(response), range(len(response.load_parameter))
+    # without extremes along the beams, which take long
+    found, steps = table(replace(response, definition=None)), range(len(response.load_parameter))
     for node in _free(scene):
         name, _, end = node.partition(".")
         lines = [response.axis_line(name, k)[1][0 if end == "start" else -1] for k in steps]

@@ -18,6 +18,7 @@ from comparisons.models import Model, certified, find, solve
 from comparisons.models.model import Count, ModelError, Options, Watch, uncounted, unwatched
 from comparisons.models.theory import bending
 from comparisons.output import Report, json_text
+from comparisons.report.brief import Brief
 from comparisons.report.budget_plot import budget_section, plot_budget, write_budget
 from comparisons.report.export import check_series, write_series
 from comparisons.report.findings import BUDGET, findings
@@ -96,6 +97,14 @@ class Comparison:
     def exported(self) -> list[tuple[Run, Response]]:
         """The answers of beams and solid that are exported and rendered."""
         return [(run, self.responses[run.label]) for run in EXPORTED if run.label in self.responses]
+
+    @property
+    def brief(self) -> Brief:
+        """What is found."""
+        rows = {row.label: row for row in self.rows}
+        beam, solid = rows.get(MIXED.label), rows.get(SOLID.label)
+        bodies = None if beam is None or solid is None else beam.against(solid.response, names(mesh=False))
+        return findings(self.scene, self.rows, ROD.label, bodies, self.budget, self.left_out)
 
     @property
     def apart(self) -> list[Row]:
@@ -229,17 +238,17 @@ def _write_page(found: Comparison, files: list[Path], stress: Path, budget: Path
     scene, responses = found.scene, found.responses
     vtu = {run.label: f"{run.model}/{run.model}-{{}}.vtm" for run, _ in found.exported}
     shown, states = tracks(responses, ROD.label, scene), states_section(responses)
+    first = {MIXED.label, SOLID.label, ROD.label}
     sections = [
+        motion_section("Shapes", scene, responses, shown, focus=ROD.label, first=first, vtu=vtu),
         Section("Errors", table(caption(ROD.label), [line(row) for row in found.rows])),
-        motion_section("Shapes and histories", scene, responses, shown, focus=ROD.label, vtu=vtu),
         *([] if states is None else [states]),
         *([] if found.budget is None else [budget_section(found.budget, budget)]),
     ]
     if stress in files:
         sections.append(Section("Stress", picture(stress, "Beams and solid, von Mises stress.")))
-    lead = " ".join(findings(scene, found.rows, ROD.label, found.budget, found.left_out))
     title = f"{scene.name}: beams, solid and exact answers"
-    write_page(stress.parent, title, lead, sections, [scene], files)
+    write_page(stress.parent, title, found.brief, sections, [scene], files)
 
 
 def _write_picture(found: Comparison, path: Path, report: Report) -> list[Path]:

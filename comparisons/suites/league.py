@@ -15,14 +15,15 @@ from comparisons.models.model import Options
 from comparisons.models.outside.programs import used
 from comparisons.output import write_numbers, write_rows
 from comparisons.report import palette
-from comparisons.report.pages import Section, folded, picture, table, write_page
+from comparisons.report.brief import Brief
+from comparisons.report.pages import Section, picture, table, write_page
 from comparisons.scene import Scene
 from comparisons.suite import Case, Row
 from comparisons.suite.progress import Runner
 from comparisons.suites.drawing import draw
 
-MOST = 5
-"""Largest number of resolutions of a program."""
+MOST, SCENES = 5, 6
+"""Largest numbers of resolutions of a program, and of scenes that a brief names."""
 QUANTITIES = ("force", "arc", "moment", "tip", "friction")
 """The quantities whose errors are stated."""
 SHOWN = {
@@ -30,11 +31,10 @@ SHOWN = {
     "process_seconds": "process",
 }  # fmt: skip
 """The columns that the page shows, and how it calls them."""
-FORCE, SECONDS = (
-    "largest error of the force (reactions without contact)",
-    "seconds of the whole process",
-)
-"""What the diagram shows."""
+SECONDS = "seconds of the whole process"
+"""What the diagram shows errors over."""
+ASKED = 0.01
+"""The error for which it is said which program is cheapest."""
 FLOOR = 1e-14
 """Errors below are drawn here: they are round-off."""
 FILES = ("league.csv", "league.json", "league.svg", "league.png", "report.html")
@@ -44,8 +44,8 @@ CAPTION = (
     "Seconds: processor time of the solution, and of a whole process of crossval solve."
 )
 DIAGRAM = (
-    "Largest error of the force over processor seconds of a whole process. Filled: certified. Hollow: stopped by name. Cross: said success "
-    "and was wrong."
+    "Largest error of the contact force, without contact of the tip, over processor seconds of a whole process. Filled: certified. "
+    "Hollow: stopped by name. Cross: said success and was wrong."
 )
 
 
@@ -136,6 +136,49 @@ def league_row(row: Row) -> dict[str, Any]:
     }
 
 
+def ranked(scene: Scene) -> tuple[str, ...]:
+    """Return the quantities by which programs are ranked; statics fix the forces of a scene without contact."""
+    return ("force", "arc", "moment", "tip") if scene.contacts else ("moment", "tip")
+
+
+def _cheapest(league: League, scene: Scene) -> Row | None:
+    """Return the certified row with an error up to `ASKED` that takes the least seconds."""
+    own = [row for row in league.rows if row.case.scene.name == scene.name and row.outcome == "certified"]
+    good = [row for row in own if np.nanmax([row.error("path", name) for name in ranked(scene)]) <= ASKED]
+    return min(good, key=_seconds, default=None)
+
+
+def brief(league: League) -> Brief:
+    """Return what is found: how the runs ended, the cheapest program for 1 % on every scene, and who was wrong."""
+    wrong = Counter(row.family for row in league.rows if row.wrong)
+    ends = Counter(row.outcome for row in league.rows)
+    said = f"{ends['certified']} of {len(league.rows)} runs are certified"
+    false = f"{wrong.total()} said success and {'was' if wrong.total() == 1 else 'were'} wrong"
+    points = [f"Success that was wrong: {', '.join(f'{who} ({n})' for who, n in wrong.items())}."] * bool(
+        wrong
+    )
+    best = {scene.name: _cheapest(league, scene) for scene in league.scenes}
+    found = [f"{name}: {row.label}, {_seconds(row):.2g} s" for name, row in best.items() if row is not None]
+    if found:
+        more = f"; and {len(found) - SCENES} more scenes below" if len(found) > SCENES else ""
+        points.append(f"Cheapest for {100 * ASKED:g} % of the exact rods: {'; '.join(found[:SCENES])}{more}.")
+    points += [f"The exact rods of {name} stop: {why}." for name, why in league.stopped.items()]
+    if others := [model.label for model in used()]:
+        points.append(f"Programs of others: {', '.join(others)}.")
+    first = Counter(row.family for row in best.values() if row is not None).most_common(1)
+    cheap = (
+        f"; {first[0][0]} is the cheapest for {100 * ASKED:g} % on {first[0][1]} of {len(best)} scenes"
+        if first
+        else ""
+    )
+    return Brief(
+        f"{said}, {false}{cheap}.",
+        points,
+        summary(league),
+        "How the runs of each program ended; wrong: said success and was wrong.",
+    )
+
+
 def write_league(league: League, folder: Path) -> list[Path]:
     """Write `FILES` to `folder`; return them, the page first."""
     rows = [league_row(row) for row in league.rows]
@@ -148,7 +191,7 @@ def write_league(league: League, folder: Path) -> list[Path]:
 
 
 def plot_league(league: League, *paths: Path) -> None:
-    """Draw the error of the force over the processor seconds of the whole process, a panel for each scene and a line for each program.
+    """Draw the error over the processor seconds of the whole process, a panel for each scene and a line for each program.
 
     A filled marker is a certified answer, a hollow one is a stop by name, and a cross is an answer that the program reported as a
     success and the referee refused.
@@ -157,15 +200,15 @@ def plot_league(league: League, *paths: Path) -> None:
     spent = np.log10([seconds for row in league.rows if isfinite(seconds := _seconds(row))] or [1.0])
     decades = 10.0 ** np.floor(spent.min() - 0.05), 10.0 ** np.ceil(spent.max() + 0.05)
 
-    def panel(axes: Any, scene: str) -> None:
+    def panel(axes: Any, scene: Scene) -> None:
+        quantity = "force" if scene.contacts else "tip"
         for program in league.programs:
-            _draw(axes, program, league.of(scene, program))
-        axes.set(
-            xscale="log", yscale="log", xlim=decades, title=scene, xlabel=SECONDS, ylabel="error of the force"
-        )
+            _draw(axes, program, league.of(scene.name, program), quantity)
+        axes.set(xscale="log", yscale="log", xlim=decades, title=scene.name, xlabel=SECONDS)
+        axes.set_ylabel(f"largest error of the {quantity}")
 
-    panels = [partial(panel, scene=scene.name) for scene in league.scenes]
-    draw(panels, *paths, tall=2.6, title=FORCE, sharex=True, sharey=True)
+    panels = [partial(panel, scene=scene) for scene in league.scenes]
+    draw(panels, *paths, tall=2.6, sharex=True, sharey=True)
 
 
 def _seconds(row: Row) -> float:
@@ -173,10 +216,10 @@ def _seconds(row: Row) -> float:
     return row.process_seconds if isfinite(row.process_seconds) else row.seconds
 
 
-def _draw(axes: Any, program: str, rows: Sequence[Row]) -> None:
+def _draw(axes: Any, program: str, rows: Sequence[Row], quantity: str) -> None:
     style = palette.style(program)
     own: dict[str, Any] = {"color": style.colour, "marker": style.marker}
-    places = [(_seconds(row), max(row.error("path", "force"), FLOOR)) for row in rows]
+    places = [(_seconds(row), max(row.error("path", quantity), FLOOR)) for row in rows]
     seen = [place for place in places if np.isfinite(place).all()]
     if seen:
         axes.plot(*zip(*seen, strict=True), linewidth=1.2, label=program, **own)
@@ -194,33 +237,21 @@ def summary(league: League) -> list[dict[str, object]]:
         own = [row for row in league.rows if row.family == program]
         ends = Counter("stopped by name" if row.outcome.isupper() else row.outcome for row in own)
         scenes = {row.case.scene.name for row in own}
-        told = {name: ends[name] for name in ("certified", "stopped by name")}
-        wrong = {"said success and was wrong": ends["wrong"]}
-        rows.append({"program": program, "scenes": len(scenes), "runs": len(own), **told, **wrong})
+        told = {"certified": ends["certified"], "stopped": ends["stopped by name"], "wrong": ends["wrong"]}
+        rows.append({"program": program, "scenes": len(scenes), "runs": len(own), **told})
     return rows
 
 
 def _write_page(league: League, files: Sequence[Path], folder: Path) -> Path:
-    sections = [
-        Section("Programs", table("How the runs of each program ended", summary(league))),
-        Section("Work and precision", picture(folder / "league.svg", DIAGRAM)),
-    ]
+    sections = [Section("Work and precision", picture(folder / "league.svg", DIAGRAM))]
     for scene in league.scenes:
         rows = [league_row(row) for program in league.programs for row in league.of(scene.name, program)]
         lines = [{words: row[name] for name, words in SHOWN.items()} for row in rows]
         reasons = [
             {"program": who, "reason": why} for name, who, why in league.left_out if name == scene.name
         ]
-        html = folded("all runs", table(CAPTION, lines))
-        if scene.name in league.stopped:
-            end = f"The exact rods end here: {league.stopped[scene.name]}"
-            html = f"<p>{end}. Errors are measured as far as they came.</p>\n{html}"
+        html = table(CAPTION, lines)
         if reasons:
-            html += "\n" + folded("who cannot state it", table("Reasons", reasons))
+            html += "\n" + table("Who cannot state it, and why", reasons)
         sections.append(Section(scene.name, html))
-    others = ", ".join(model.label for model in used())
-    lead = (
-        f"{len(league.rows)} runs of {len(league.programs)} programs on {len(league.scenes)} scenes, each against the exact rods"
-        f"{f'; programs of others: {others}' if others else ''}. Seconds belong to the machine named below. There is no single score."
-    )
-    return write_page(folder, "League", lead, sections, league.scenes, files)
+    return write_page(folder, "League", brief(league), sections, league.scenes, files)

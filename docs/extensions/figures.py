@@ -24,7 +24,7 @@ COMMANDS = {
     "run fig9 --out paper": ["paper/fig9.png"],
     "run fig7b --out paper": ["paper/fig7b-floor.png"],
     **{f"solve {name}.toml --out {name}.png": [f"{name}.png"] for name in ("leaf", "clip", "hook")},
-    "run trade ks-cantilever --out trade": ["trade/end-seconds.png"],
+    "run trade ks-cantilever --out trade": ["trade/path-seconds.png"],
 }
 """What each command draws; in the repository a hyphen stands in place of the slash."""
 

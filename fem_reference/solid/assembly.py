@@ -86,6 +86,6 @@ def element_entries(mesh: Discretisation, A: Array) -> Array:
     inverse, weighted = mesh.gauss.inverse, mesh.weights * mesh.gauss.inverse
     for i, k, products in mesh.products:
         half = np.einsum("jleq,Kjeq->Kleq", A[i, :, k], weighted)
-        pulled = np.einsum("Kleq,Lleq->eKLq", half, inverse)
+        pulled = np.moveaxis(np.einsum("Kleq,Lleq->KLeq", half, inverse), 2, 0)
         parts.append((pulled.reshape(len(mesh.cells), -1) @ products).ravel())
     return np.concatenate(parts)

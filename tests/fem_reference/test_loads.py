@@ -18,6 +18,7 @@ from tests.fem_reference.strips import (
     held,
     load,
     loads,
+    pressed,
     support,
 )
 
@@ -37,6 +38,21 @@ def test_the_axis_has_a_point_at_a_moment_between_two_sections():
     (at,) = np.flatnonzero(np.abs(stations - 0.58) < 1e-12)
     assert len(stations) == len(line) == 18
     assert line[at] == pytest.approx([0.58, 1e-6 * (0.58 + 0.58**2 / 2)], abs=1e-10)
+
+
+def test_a_face_contact_is_on_the_face_of_the_taper():
+    """A sharp pin touches the inclined face at the start; below it, it is refused."""
+
+    def problem(y):
+        return pressed(
+            held(end_height=0.01, **KEPT), ((0.6, y), (0.6, y - 1e-6)), side="left", surface="face"
+        )
+
+    face = (H - 0.6 * 0.01) / 2
+    with pytest.raises(ValueError, match="must not start beyond the left face"):
+        problem(face - 1e-6)
+    x, y = fr.solve(problem(face), loads(1)).contacts[PAIR].vector[-1]
+    assert x / y == pytest.approx(-np.tan(-0.005), rel=2e-3)  # normal to the face, which falls by .005
 
 
 def test_a_rotational_spring_turns_with_its_moment():

@@ -37,7 +37,7 @@ from tsm.system.newton import Newton
 from tsm.system.system import Drive
 
 _STRAIGHT = 0.02
-"""Largest unexplained fraction of a step that changes the index: a bifurcation. With a larger one it may have left the path."""
+"""A step across which the index changes holds a bifurcation if at most this part of it is unexplained; else it may have left the path."""
 _AHEAD = 1e-4
 """Load parameter beyond a critical point at which a fall starts."""
 _MOST_ATTEMPTS = 1000
@@ -52,7 +52,7 @@ _NAMED = {
     Status.PING_PONG,
     Status.JAMMED,
 }
-"""Failures that are reported by their own status instead of the general status of a step at its floor."""
+"""Failures that end the path under their own name; others end it as `CUTBACK_FLOOR`."""
 
 
 class Follower:
@@ -63,7 +63,7 @@ class Follower:
         self.newton = Newton(model, settings)
         self.step = 1.0  # length of the next load step
         self.target = 0.0  # load parameter to reach next
-        self.turned = -1.0  # last kink; -1 before any
+        self.turned = -1.0  # load parameter of the last corner; -1 before any
         start = self.newton.solve(initial_state(model))
         self.track = Track(start)
         self.log = Step(equilibrium=start)  # since the last yielded step
@@ -77,7 +77,7 @@ class Follower:
         return margins(point, self._drive(point.t))
 
     def _drive(self, t: float) -> Drive:
-        """Drive from the last point to t, or from there to the target."""
+        """Drive from the last point to t; from t to the target where t is not beyond the last point."""
         begin = self.track.last.t
         return self.newton.assembler.drive(*((begin, t) if t > begin else (t, max(t, self.target))))
 
@@ -137,10 +137,10 @@ class Follower:
         self._reach(self.target if left <= step * (1 + 1e-6) else self.track.last.t + step)
 
     def _turn_corner(self) -> None:
-        """Restart the path at a kink: at the start, a turn of a pin's path, or a stage's beginning.
+        """Restart the path at a corner: at the start, at a corner of a pin's path, or where a stage begins.
 
         Only with friction or stages. Contacts may then slip or stick anew. A stage begins just after
-        the load parameter at which the last one ends, so that all rates are its own. States before the kink
+        the load parameter at which the last one ends, so that all rates are its own. States before the corner
         do not enter predictions.
         """
         here, t = self.track.last, self.track.last.t
@@ -182,13 +182,14 @@ class Follower:
     def _reach(self, goal: float) -> None:
         """Go to a load parameter or to the first event before it."""
         last, reached = self.track.last, self._solve(goal)
-        missed = crossing(self.model, last.state, reached.state) or through_end(
+        passed = crossing(self.model, last.state, reached.state) or through_end(
             self.model, last.state, reached.state
         )
-        if missed is not None:
-            t, k = missed
+        if passed is not None:
+            t, k = passed
             if t > last.t:
                 return self._reach(t)
+            # the node crosses as soon as it leaves the last point: it touches there
             return self._switch(last, [m for m in self.margins if (m.kind, m.pair) == (EventKind.TOUCH, k)])
         after = self._measure(reached)
         numbers, search = broken(self.margins, after), self._search(goal)

@@ -59,7 +59,7 @@ class Equilibrium:
 
     @property
     def converged(self) -> bool:
-        """Whether it is one."""
+        """Whether the configuration is in equilibrium."""
         return self.status is Status.CONVERGED
 
     def with_state(self, state: State) -> Equilibrium:

@@ -20,9 +20,9 @@ from tsm.system.system import Assembler, Drag, Linearisation
 MAX_ITERATIONS = 25
 """Iterations before a step is given up."""
 _LONGEST, _LONGEST_WHOLE = 1.0, 1.4
-"""Largest Newton step, over 0.3 L and 0.7 rad; the second value holds where no contact passes from element to element."""
+"""Largest Newton step, in units of .3 L and .7 rad; the second value holds where no contact passes from element to element."""
 _START, _CLOSE = 1e-2, 1e-9
-"""Part of the tolerance within which a start is the solution; largest step that is taken from one which is only within the tolerance."""
+"""A start below this part of the tolerance is the solution. From one only below the tolerance one more step is taken if it is shorter than the second value."""
 _RISE, _SHORTEST = 10.0, 0.1
 """Merit test of exact elements. An iteration that raises the residual tenfold is halved, at most three times. A stricter test refuses
 iterations that would converge."""
@@ -34,7 +34,7 @@ _PAST = 0.05
 """Part of an element's length by which a contact may lie past a node to which the iteration sent it back and forth: the tangents of two
 elements differ there, and between them neither has an equilibrium within its ends."""
 _CRITICAL = 1e-6
-"""Largest round-off of the residual at which an equilibrium is accepted. A stiffer contact is in the critical area."""
+"""Largest round-off of the residual at which an equilibrium is accepted. A contact whose round-off is larger is too near a node: in the paper's critical area."""
 
 
 def _scales(model: Model) -> tuple[Array, Array, float]:
@@ -118,12 +118,12 @@ class Newton:
         taken: tuple[State, Array, Linearisation] | None = None
         residuals: list[float] = []
         owners: list[tuple[int, ...]] = []
-        near: Equilibrium | None = None
+        fallback: Equilibrium | None = None
         for iteration in range(MAX_ITERATIONS + 1):
             system = self.assembler.linearise(state, drag)
             residual, left = self.norm(system), MAX_ITERATIONS - iteration
-            if near is not None and not residual <= self.tolerance:
-                return near
+            if fallback is not None and not residual <= self.tolerance:
+                return fallback
             risen = taken is not None and self.assembler.internal and not residual <= _RISE * residuals[-1]
             if risen and part > _SHORTEST and left:
                 part /= 2
@@ -148,7 +148,7 @@ class Newton:
                 )
                 if step is None:
                     return here
-                near = None if status is None else here
+                fallback = None if status is None else here
                 past = _PAST if past or _alternates(owners) else 0.0
                 (change, load), part = step, 1.0
                 taken = state, change, system
@@ -204,11 +204,11 @@ class Newton:
 
     def converged(self, residuals: list[float], system: Linearisation) -> bool:
         """Whether the last residual is small enough, or the last two are round-off."""
-        small, left = residuals[-1] <= self.tolerance, max(residuals[-2:])
-        if small or len(residuals) == 1 or left > max(self.noise, _CRITICAL):
+        small, larger = residuals[-1] <= self.tolerance, max(residuals[-2:])
+        if small or len(residuals) == 1 or larger > max(self.noise, _CRITICAL):
             return small
         carried = max(float(np.abs(forces.ends[[0, 1, 3, 4]]).max()) for forces in system.groups)
-        return left <= max(self.noise, max(system.noise, _CARRIED * carried) / self.model.least_force)
+        return larger <= max(self.noise, max(system.noise, _CARRIED * carried) / self.model.least_force)
 
     def prescribed(self, state: State, t: float) -> State:
         """State at a load parameter, its supports where they are prescribed."""

@@ -31,6 +31,8 @@ _FEET = 40
 """Number of corrections of a place on a face whose height tapers."""
 _CLOSE = 1e-13
 """Change of a load parameter at which a root is found."""
+_ROUND_OFF = 1e-8
+"""Change of a load parameter within which a margin that no longer decreases is round-off."""
 _ZERO = 1e-12
 """Dimensionless margin that is zero."""
 
@@ -314,7 +316,8 @@ def _secant(margin: Callable[[float], float], phase: Phase) -> None:
     second = first + _FIRST * (phase.high - phase.low)
     for _ in range(_ITERATIONS):
         other = margin(second)
-        if abs(other) <= _ZERO or abs(second - first) <= _CLOSE or other == value:
+        width = abs(second - first)
+        if abs(other) <= _ZERO or width <= (_ROUND_OFF if 4.0 * abs(other) >= abs(value) else _CLOSE):
             return
         ahead = second - other * (second - first) / (other - value)
         if not low <= ahead <= high:

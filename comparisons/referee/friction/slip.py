@@ -27,8 +27,8 @@ from comparisons.referee.touching import rows, wrapped
 Array = NDArray[np.float64]
 Holds = dict[str, Hold]
 
-_AHEAD, _AHEAD_TURNED = 1e-4, 1e-6
-"""Load parameters over which rates are differences. The equations are linear in pins and loads, but not in prescribed rotations."""
+_AHEAD = 1e-4
+"""Load parameters over which rates are differences, of second order, since the equations are not linear in prescribed rotations."""
 _CORNER = 1e-9
 """Distance from a corner, in load parameters, that counts as none."""
 _PLACES = (1.0 - np.cos(np.pi * np.arange(9) / 8.0)) / 2.0
@@ -45,10 +45,10 @@ _SWEEPS, _LEAST = 30, 1e-4
 def _rates(now: Equilibrium, behind: bool) -> Array:
     """Rates of the unknowns ahead, or behind, up to the next of the `corners`."""
     scene, sign = now.layout.scene, -1.0 if behind else 1.0
-    turned = any(change[2] for motion in scene.prescribed_motions.values() for change in motion.increments)
     apart = [sign * (corner - now.load_parameter) for corner in corners(scene)]
     little = [part / 2.0 for part in apart if part > _CORNER]
-    return tangent(now, sign * min([_AHEAD_TURNED if turned else _AHEAD, *little]))[0]
+    ahead = sign * min([_AHEAD, *little])
+    return 2.0 * tangent(now, ahead / 2.0)[0] - tangent(now, ahead)[0]
 
 
 def slip_rate(now: Equilibrium, touch: Touch, *, behind: bool = False) -> float:

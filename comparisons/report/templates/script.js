@@ -2,8 +2,9 @@
 
 const DATA = JSON.parse(document.getElementById("_data").textContent);
 const PAD = { left: 64, right: 14, top: 12, bottom: 40 };
-const ZOOM = 0.02; // half the width of the enlarged piece, over the length of the beam
-const OTHERS = 5; // load parameters whose shapes stay in grey
+const SEEN = 0.06; // the largest difference that is drawn, over the size of the drawing
+const LEAST = 1e-7; // smaller differences, over the size, are round-off of what the page has
+const NAMES = 150; // pixels for the names of the lines in a chart of errors
 const ROUND_OFF = 1e-16; // smaller errors are drawn as this
 
 function element(parent, name, attributes = {}) {
@@ -81,11 +82,11 @@ function bounds(data) {
   return { left: box.left - rim, right: box.right + rim, bottom: box.bottom - rim, top: box.top + rim };
 }
 
-// The box grown to equal scales, and the height that it takes, no more than most of the screen.
+// The box grown to equal scales, and the height that it takes, no more than half of the screen.
 function equal(svg, box) {
   const width = (svg.clientWidth || 640) - PAD.left - PAD.right;
   const wide = box.right - box.left, high = box.top - box.bottom;
-  const height = Math.min((width * high) / wide, 0.7 * window.innerHeight);
+  const height = Math.min((width * high) / wide, 0.45 * window.innerHeight);
   const grown = Math.max(0, ((width / height) * high - wide) / 2);
   return [{ ...box, left: box.left - grown, right: box.right + grown }, height];
 }
@@ -95,12 +96,6 @@ function drawShapes(svg, data, wanted, k) {
   const unit = data.length.unit;
   const at = axes(svg, box, height, { x: `x [${unit}]`, y: `y [${unit}]` }, short);
   for (const beam of data.beams) element(at.plot, "polyline", { class: "rest", points: points(beam, at) });
-  const lines = data.runs.find((run) => run.label === data.focus).lines;
-  for (let part = 1; part <= OTHERS; part++) {
-    for (const line of lines[Math.round((part * lines.length) / OTHERS) - 1] ?? []) {
-      element(at.plot, "polyline", { class: "rest", points: points(line, at) });
-    }
-  }
   for (const pin of data.pins) element(at.plot, "polyline", { class: "path", points: points(pin.path, at) });
   data.runs.forEach((run, number) => {
     for (const line of run.lines[k] ?? []) {
@@ -125,12 +120,20 @@ function drawShapes(svg, data, wanted, k) {
   }
 }
 
-function drawZoom(svg, data, k) {
-  const tip = data.tip[k], half = ZOOM * data.length.beam;
-  if (!tip) return svg.replaceChildren();
-  const [a, b] = tip;
-  const box = { left: a - half, right: a + half, bottom: b - half, top: b + half };
-  drawShapes(svg, { ...data, symbols: [] }, box, k); // a symbol has no true size
+// The runs that are shown beside the focus, with their distances from it enlarged; returns by how much.
+function drawApart(svg, data, whole, k, hidden) {
+  const exact = data.runs.find((run) => run.label === data.focus).lines[k] ?? [];
+  const from = (run) => (run.lines[k] ?? []).map((line, b) => line.map(([x, y], n) => [x - exact[b][n][0], y - exact[b][n][1]]));
+  const near = data.runs.map((run, n) => (exact.length && run.label !== data.focus && !hidden.has(String(n)) ? from(run) : []));
+  const size = Math.max(whole.right - whole.left, whole.top - whole.bottom);
+  const most = Math.max(0, ...near.flat(2).map(([x, y]) => Math.hypot(x, y)));
+  const raw = (SEEN * size) / most, power = 10 ** Math.floor(Math.log10(raw));
+  const factor = most > LEAST * size ? power * [5, 2, 1].find((n) => n * power <= 1.001 * raw) : 0;
+  const runs = data.runs.map((run, n) => ({ ...run, lines: { [k]: run.label === data.focus ? exact : near[n].map((line, b) =>
+    line.map(([x, y], i) => [exact[b][i][0] + factor * x, exact[b][i][1] + factor * y])) } }));
+  const shown = { ...data, symbols: [], runs: factor ? runs : [] };
+  drawShapes(svg, shown, bounds({ ...shown, runs: runs.map((run) => ({ lines: [run.lines[k]] })) }), k);
+  return factor;
 }
 
 // A chart of one quantity, or of its errors in decades; returns what moves its marker to a load parameter.
@@ -142,10 +145,13 @@ function drawChart(svg, data, track, kind) {
   let [bottom, top] = known.length ? [Math.min(...known), Math.max(...known)] : [0, 1];
   const rim = logarithmic ? 0.3 : 0.05 * (top - bottom || 1);
   [bottom, top] = [bottom - rim, top + rim];
-  const times = data.load_parameter, height = Math.min(240, 0.55 * (svg.clientWidth || 640));
-  const box = { left: 0, right: times[times.length - 1], bottom, top };
-  const at = axes(svg, box, height, { x: "load parameter", y: "" }, logarithmic ? decade : short);
-  if (!logarithmic) drawBands(at, data, track);
+  const times = data.across.values, height = Math.min(240, 0.55 * (svg.clientWidth || 640));
+  const last = times[times.length - 1];
+  const width = (svg.clientWidth || 640) - PAD.left - PAD.right;
+  const box = { left: 0, right: logarithmic ? (last * width) / (width - NAMES) : last, bottom, top };
+  const at = axes(svg, box, height, { x: data.across.title, y: "" }, logarithmic ? decade : short);
+  if (logarithmic) nameLines(at, data, series, last);
+  else drawBands(at, data, track);
   series.forEach((values, number) => {
     let d = "";
     values.forEach((value, k) => {
@@ -173,6 +179,18 @@ function drawChart(svg, data, track, kind) {
   };
 }
 
+// The names of lines behind their ends, from above, none over another.
+function nameLines(at, data, series, last) {
+  const ends = series.map((values, number) => [at.y(values.findLast((value) => value != null) ?? NaN), number]);
+  let free = 10;
+  for (const [y, number] of ends.filter(([y]) => !Number.isNaN(y)).sort(([a], [b]) => a - b)) {
+    const place = Math.max(y + 4, free);
+    free = place + 12;
+    const name = element(at.plot, "text", { class: "name", "data-run": number, x: at.x(last) + 4, y: place });
+    name.textContent = data.runs[number].label;
+  }
+}
+
 // The area between every run and the reference, which is the run without errors.
 function drawBands(at, data, track) {
   const reference = Object.keys(track.values).find((label) => !(label in track.errors));
@@ -181,7 +199,7 @@ function drawBands(at, data, track) {
   data.runs.forEach((run, number) => {
     const values = run.label === reference ? [] : track.values[run.label] ?? [];
     const ks = values.map((value, k) => (value == null || exact[k] == null ? -1 : k)).filter((k) => k >= 0);
-    const edge = [...ks.map((k) => [data.load_parameter[k], values[k]]), ...ks.reverse().map((k) => [data.load_parameter[k], exact[k]])];
+    const edge = [...ks.map((k) => [data.across.values[k], values[k]]), ...ks.reverse().map((k) => [data.across.values[k], exact[k]])];
     if (edge.length) element(at.plot, "polygon", { class: "band", "data-run": number, style: `fill:${run.colour}`, points: points(edge, at) });
   });
 }
@@ -191,8 +209,8 @@ function moving(section, data) {
   const find = (selector) => section.querySelector(selector);
   const all = (selector) => [...section.querySelectorAll(selector)];
   const slider = find("input[type=range]"), play = find(".play"), last = data.load_parameter.length - 1;
-  const whole = bounds(data), hidden = new Set();
-  let k = last, moves = [], timer = null;
+  const whole = bounds(data), hidden = new Set(data.runs.flatMap((run, n) => (run.shown ? [] : [String(n)])));
+  let k = data.start, moves = [], timer = null;
 
   function hide() {
     for (const one of all("[data-run]")) one.classList.toggle("off", hidden.has(one.dataset.run));
@@ -206,7 +224,9 @@ function moving(section, data) {
     find("output").textContent = `t = ${t}`;
     find(".now").textContent = `Values at load parameter ${t}`;
     drawShapes(find(".shapes"), data, whole, k);
-    drawZoom(find(".zoom"), data, k);
+    const factor = drawApart(find(".apart"), data, whole, k, hidden);
+    find(".enlarged").textContent = factor ? `Distances from the ${data.focus}, enlarged ${short(factor)} times.`
+      : "No other run that is shown differs by as much as can be drawn.";
     for (const move of moves) move(k);
     for (const row of all("tr[data-run]")) {
       const run = data.runs[row.dataset.run];
@@ -255,7 +275,7 @@ function moving(section, data) {
     box.addEventListener("change", () => {
       if (box.checked) hidden.delete(box.dataset.switch);
       else hidden.add(box.dataset.switch);
-      hide();
+      show(k);
     });
   }
   for (const svg of all(".chart")) {
@@ -270,6 +290,7 @@ function moving(section, data) {
       show(k + step);
     });
   }
+  for (const folded of [...all("details"), section.closest("details")]) folded?.addEventListener("toggle", layout);
   addEventListener("resize", layout);
   layout();
 }
@@ -278,6 +299,22 @@ for (const place of document.querySelectorAll("[data-moving]")) {
   const section = place.closest("section");
   moving(section, DATA[section.id]);
 }
+
+// A table that is too wide becomes a list: each number behind the name of its column.
+const tables = [...document.querySelectorAll(".scroll, .sheet")];
+for (const table of tables.flatMap((one) => [...one.querySelectorAll("table")])) {
+  const names = [...table.querySelectorAll("thead th")].map((one) => one.textContent);
+  for (const row of table.querySelectorAll("tbody tr")) {
+    [...row.children].forEach((cell, n) => (cell.dataset.name = names[n] ?? ""));
+  }
+}
+function fit() {
+  for (const one of tables) one.classList.remove("stacked");
+  for (const one of tables.filter((one) => one.scrollWidth > one.clientWidth + 1)) one.classList.add("stacked");
+}
+for (const one of document.querySelectorAll("details")) one.addEventListener("toggle", fit);
+addEventListener("resize", fit);
+fit();
 
 // A print has no switch to open what is folded.
 addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((one) => (one.open = true)));

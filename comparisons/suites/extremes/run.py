@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.output import write_numbers, write_rows
+from comparisons.report.brief import Brief
 from comparisons.report.pages import Section, rendered, write_page
 from comparisons.suite import Case
 from comparisons.suite.progress import Runner
@@ -20,12 +21,16 @@ MARKS = dict(zip(VERDICTS, ("", "■ ", "□ ", "✗ "), strict=True))
 POWERS = (-14.0, -10.0, -6.0, -3.0, 0.0)
 SHADES = ((8, 33, 107, 189, 255), (48, 113, 174, 215, 247), (107, 181, 214, 231, 188))
 """Red, green and blue by the error's decimal logarithm: blue for small errors to pale yellow, safe for the colour-blind."""
+MOST = 2
+"""Wrong cells that a brief names."""
 ABSENT = ("·", {"class": "none"})
 """Text and attributes of a cell of the map without a cell of the matrix."""
 
 
-def extremes(folder: Path, run: Runner, *, quick: bool = False) -> tuple[list[Judgement], tuple[Path, ...]]:
-    """Run the matrix, judge it, and write page, table and numbers."""
+def extremes(
+    folder: Path, run: Runner, *, quick: bool = False
+) -> tuple[Brief, list[Judgement], tuple[Path, ...]]:
+    """Run the matrix, judge it, and write page, table and numbers; return what is found, the judgements and the files."""
     cells = matrix(quick=quick)
     cases = dict.fromkeys(case for cell in cells for case in cell.cases)
     results = run(sorted(cases, key=_cost, reverse=True))
@@ -33,10 +38,34 @@ def extremes(folder: Path, run: Runner, *, quick: bool = False) -> tuple[list[Ju
     html, rows = folder / "extremes.html", [item.row for item in judgements]
     numbers = {"quick": quick, "verdicts": counts(judgements), "cells": rows}
     tables = (write_rows(folder / "extremes.csv", rows), write_numbers(folder / "extremes.json", numbers))
-    part = ", a part of the matrix (quick)" if quick else ""
-    lead = f"{_counted(judgements)}{part}."
-    write_page(folder, "Where it holds, where it stops", lead, _sections(judgements), (), tables, html.name)
-    return judgements, (html, *tables)
+    found = brief(judgements, quick=quick)
+    write_page(folder, "Where it holds, where it stops", found, _sections(judgements), (), tables, html.name)
+    return found, judgements, (html, *tables)
+
+
+def brief(judgements: Sequence[Judgement], *, quick: bool) -> Brief:
+    """Return how many cells have each verdict, and why cells stop and are wrong."""
+    rows = [row for _, row in judgements]
+    number, needless = Counter(row["verdict"] for row in rows), sum(row["needless"] for row in rows)
+    said = f"{number['right']} of {len(rows)} cells are right, {number['stopped']} stop by name"
+    wrong = f"{number['wrong'] or 'none'} {'are' if number['wrong'] > 1 else 'is'} wrong"
+    points = [item.sentence for item in judgements if item.row["verdict"] == "wrong"][:MOST]
+    for verdict in ("stopped", "withdrawn"):
+        why = Counter(row["status"] for row in rows if row["verdict"] == verdict)
+        points += [
+            f"{verdict[0].upper()}{verdict[1:]}: {', '.join(f'{n} {name}' for name, n in why.most_common())}."
+        ] * bool(why)
+    points += [
+        f"{needless} of the withdrawn cells needlessly: their errors are within what is allowed."
+    ] * bool(needless)
+    answer = [{"axis": axis, **of} for axis, of in counts(judgements).items()]
+    withdrawn = f", {number['withdrawn']} are withdrawn by their own checks" if number["withdrawn"] else ""
+    return Brief(
+        f"{said}{withdrawn}, {wrong}.",
+        points,
+        answer,
+        f"The cells of each axis{', a part of them (quick)' * quick}:",
+    )
 
 
 def _cost(case: Case) -> int:
@@ -52,17 +81,8 @@ def counts(judgements: Sequence[Judgement]) -> dict[str, dict[str, int]]:
     return {axis: {verdict: number[axis, verdict] for verdict in VERDICTS} for axis in axes}
 
 
-def _counted(judgements: Sequence[Judgement]) -> str:
-    """Return the number of cells, their number by verdict, and the number of withdrawn cells that are right."""
-    number = Counter(row["verdict"] for _, row in judgements)
-    needless = sum(row["needless"] for _, row in judgements)
-    more = {"withdrawn": f" ({needless} needlessly)" if needless else ""}
-    words = (f"{number[verdict]} {verdict}{more.get(verdict, '')}" for verdict in VERDICTS)
-    return f"{len(judgements)} cells: {', '.join(words)}"
-
-
 def _sections(judgements: Sequence[Judgement]) -> list[Section]:
-    """Return the key and one map for each axis that has cells."""
+    """Return one map for each axis that has cells, and the key after the first."""
     errors = [10.0**power for power in (-14, -10, -6, -3, -1)]
     shaded = {_number(error): {"style": _shade(error)} for error in errors}
     parts = [Section("How to read the maps", rendered("maps", marks=MARKS, shaded=shaded))]
@@ -72,9 +92,9 @@ def _sections(judgements: Sequence[Judgement]) -> list[Section]:
             at = {(item.row["model"], item.row["value"]): _cell(item) for item in own}
             rows, columns = (list(dict.fromkeys(names)) for names in zip(*at, strict=True))
             grid = {row: [at.get((row, column), ABSENT) for column in columns] for row in rows}
-            about = f"{axis['scene']}. {_counted(own)}."
+            about = f"{axis['scene']}."
             parts.append(Section(axis["title"], rendered("map", about=about, columns=columns, grid=grid)))
-    return parts
+    return [*parts[1:2], parts[0], *parts[2:]]
 
 
 def _cell(item: Judgement) -> tuple[str, dict[str, Any]]:

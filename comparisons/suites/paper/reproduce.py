@@ -10,6 +10,7 @@ import numpy as np
 
 from comparisons.files import writable_folder, write_text
 from comparisons.output import Report, Row, markdown
+from comparisons.report.brief import Brief
 from comparisons.report.pages import Section, picture, table, write_page
 from comparisons.suites.formula import sentence, value_of
 from comparisons.suites.names import FIGURES
@@ -37,8 +38,6 @@ class Verdict(StrEnum):
     IN_DIRECTION = "reproduced in direction, not in size"
     NOT_REPRODUCED = "not reproduced"
     CANNOT_BE_TOLD = "cannot be told"
-    PROVISIONAL = "provisional"
-    """Coarse settings decide nothing: a full run may decide otherwise."""
 
 
 Bounds = Mapping[str, tuple[float, float]]
@@ -95,7 +94,7 @@ def judged(found: Mapping[str, Numbers], *, quick: bool) -> Judgements:
         became = verdict(cases, in_size=all(_within(claim.in_size, numbers)))
         number, why = (sentence(MACROS + text, **numbers) for text in (claim.number, claim.why))
         if quick and claim.figure in COARSE:
-            became, why = Verdict.PROVISIONAL, f"With coarse settings: {became}. {why}"
+            why = f"With coarse settings; a full run may decide otherwise. {why}"
         judgements[claim.name] = {
             "": str(len(judgements) + 1),
             "where": "; ".join(place for place, _ in claim.stated),
@@ -129,8 +128,24 @@ whose contact force is an unknown. EI/L^2 is the unit of the unbalanced force.
 {markdown([list(rows[0]), *(list(row.values()) for row in rows)])}"""
 
 
-def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[list[Path], list[str]]:
-    """Draw a figure of `FIGURES` or "all" and judge its claims; return the files and what stopped."""
+def brief(judgements: Judgements, *, quick: bool) -> Brief:
+    """Return how many claims have each verdict, and which are not reproduced, by their numbers."""
+    by = {name: [row[""] for row in judgements.values() if row["verdict"] == name] for name in Verdict}
+    coarse = " with coarse settings" if quick else ""
+    sentence = (
+        f"{len(by[Verdict.REPRODUCED])} of {len(judgements)} claims of the paper are reproduced{coarse}."
+    )
+    points = [f"{name[0].upper()}{name[1:]}: {len(numbers)}." for name, numbers in by.items() if numbers]
+    answer = [
+        {"": name, "claims": len(numbers), "numbers": ", ".join(numbers)}
+        for name, numbers in by.items()
+        if numbers
+    ]
+    return Brief(sentence, points[1:], answer, "The verdicts, and the numbers of the claims below:")
+
+
+def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[Brief, list[Path], list[str]]:
+    """Draw a figure of `FIGURES` or "all" and judge its claims; return what is found, the files and what stopped."""
     folder = writable_folder(folder)
     found: dict[str, Study] = {}
     files: list[Path] = []
@@ -141,17 +156,17 @@ def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[
     judgements = judged({figure: study.numbers for figure, study in found.items()}, quick=quick)
     files.append(folder / ("claims.md" if name == "all" else f"claims-{name}.md"))
     write_text(files[-1], claims_text(judgements, quick=quick))
-    caption = f"{counted(judgements)}. Every number is computed by the run that wrote this page."
-    sections = [Section(title="Claims", html=table(caption, list(judgements.values()), prose=True))]
+    told = brief(judgements, quick=quick)
+    claims = Section("Claims", table(f"{counted(judgements)}.", list(judgements.values()), prose=True))
+    sections = list[Section]()
     for figure, study in found.items():
         title = FIGURES[figure]
         drawn = (picture(folder / f"{stem}.svg", f"{stem}: {title}") for stem in study.pictures)
-        sections += [Section(title=f"{figure}: {title}", html="\n".join(drawn)), *study.moving]
+        sections += [Section(f"{figure}: {title}", "\n".join(drawn)), *study.moving]
+    sections.insert(1, claims)
     scenes = dict.fromkeys(scene for study in found.values() for scene in study.scenes)
-    settings = "coarse settings" if quick else "full settings"
-    lead = f"{', '.join(found)}: reproduced with {settings}, and the claims that they bear on."
-    page = write_page(folder, "The paper's figures and claims", lead, sections, scenes, files)
+    page = write_page(folder, "The paper's figures and claims", told, sections, scenes, files)
     stopped = [
         f"{figure}: {one}" for figure, study in found.items() for one in study.numbers.get("stopped", ())
     ]
-    return [page, *files], stopped
+    return told, [page, *files], stopped

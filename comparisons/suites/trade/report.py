@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from functools import partial
-from itertools import product
+from itertools import pairwise, product
 from math import isfinite
 from operator import itemgetter
 from pathlib import Path
@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 
 from comparisons.answer.quantities import KEPT, SCOPES
-from comparisons.models import MODELS, ROD, SOLID
+from comparisons.models import MODELS, ROD, SOLID, TSM
 from comparisons.output import tabulated, write_numbers, write_rows
 from comparisons.report import palette
-from comparisons.report.pages import Section, folded, picture, piece, table, write_page
+from comparisons.report.brief import Brief
+from comparisons.report.pages import Section, picture, piece, table, write_page
 from comparisons.scene import to_toml
 from comparisons.suite import Row
 from comparisons.suite.study import result_rows
@@ -23,57 +24,52 @@ from comparisons.suites.trade.trade import COSTS, MESHED, TARGETS, Line, Trade, 
 
 SHOWN = "force"
 """The quantity of the diagrams, and of the tables for people; the files have all."""
-AXES = {
-    "seconds": "processor seconds of one thread, scene to checked answer",
-    "iterations": "Newton iterations of the whole path",
-    "unknowns": "unknowns",
-}
+SCOPE = "path"
+"""The scope of the diagram."""
+SECONDS = "processor seconds of one thread, from the scene to the checked answer"
 APART = 0.045
 """Least distance of two labels, over the height of the diagram."""
 
 
-def plot_work(trade: Trade, scope: str, cost: str, folder: Path) -> list[Path]:
-    """Draw the errors of all settings over a cost, against the reference and against each model's limit."""
-    paths = [folder / f"{scope}-{cost}{suffix}" for suffix in (".png", ".svg")]
+def plot_work(trade: Trade, *paths: Path) -> None:
+    """Draw the errors of all settings over their seconds, against the reference and against each model's limit."""
     title = f"{trade.scene.name}: what accuracy costs\n[n]: load steps; hollow: fewer than the scene's"
-    panels = [partial(_draw, trade=trade, scope=scope, cost=cost, own=own) for own in (False, True)]
+    panels = [partial(_draw, trade=trade, own=own) for own in (False, True)]
     draw(panels, *paths, tall=3.95, title=title, columns=1, sharex=True, sharey=True)
-    return paths
 
 
-def _draw(axes: Any, trade: Trade, scope: str, cost: str, *, own: bool) -> None:
+def _draw(axes: Any, trade: Trade, *, own: bool) -> None:
     """Draw the completed settings in the order of the legend, and fronts; what is uncertain bounds errors from below."""
     order = [words for model in MODELS.values() for words in model.styles()]
     rows = [
         (max(k for k, words in enumerate(order) if row.family.startswith(words)), row)
         for model in MODELS.values()
         if model.meshed or not model.rod
-        for row in trade.of_model(model.name, scope)
+        for row in trade.of_model(model.name, SCOPE)
     ]
     for _, row in sorted(rows, key=itemgetter(0)):
-        style, spent, error = palette.style(row.family), row.spent(cost), row.error(scope, SHOWN, own=own)
+        style, spent, error = palette.style(row.family), row.seconds, row.error(SCOPE, SHOWN, own=own)
         if not (np.isfinite(error) and spent > 0):
             continue
-        floor = trade.uncertainty(row.case.model if own else ROD.name, scope, SHOWN)
+        floor = trade.uncertainty(row.case.model if own else ROD.name, SCOPE, SHOWN)
         full = row.case.scene.load_parameters == trade.scene.load_parameters
         axes.plot(
             spent, max(error, floor), color=style.colour, marker=style.marker, linestyle="none", label=row.family,
             markersize=9 if style.marker == "*" else 6, markerfacecolor=style.colour if full else "none", alpha=0.85,
         )  # fmt: skip
-    state = f"at t = {trade.reference.end:g}" if scope == "end" else "largest over the load parameters"
     title = "against what each model converges to, Pareto fronts" if own else "against the exact rod"
-    axes.set(xscale="log", yscale="log", ylabel=f"error of {SHOWN}, {state}", title=title)
+    axes.set(xscale="log", yscale="log", ylabel=f"largest error of {SHOWN}", title=title)
     axes.margins(x=0.3, y=0.06)
     low, high = np.log10(axes.get_xlim())  # whole decades have labels that do not overlap
     axes.set_xlim(10.0 ** np.floor(low), 10.0 ** np.ceil(high))
     if own:
-        axes.set_xlabel(AXES[cost])
-        doubt = trade.uncertainty(SOLID.name, scope, SHOWN)
+        axes.set_xlabel(SECONDS)
+        doubt = trade.uncertainty(SOLID.name, SCOPE, SHOWN)
         if np.isfinite(doubt) and doubt > 0.0:
             words = "the solid's limit is known to this"
             axes.axhline(doubt, color=SOLID.colour, linewidth=0.9, linestyle=":", label=words)
         for model in MESHED:
-            _draw_front(axes, front(trade, model, scope, SHOWN, cost), model)
+            _draw_front(axes, front(trade, model, SCOPE, SHOWN, COSTS[0]), model)
 
 
 def _draw_front(axes: Any, points: Sequence[Line], model: str) -> None:
@@ -98,8 +94,6 @@ SETTING = (
 """Columns of all settings for people; the files have all."""
 HIDDEN = ("scope", "quantity", "limit_uncertainty", "settings", "order_scatter", "cost_exponent_scatter")
 """Columns that the other tables for people leave out."""
-STATES = {"end": "at the end", "path": "largest over the path"}
-SECONDS = "processor time of one thread from the scene to the checked answer, median of repeats"
 
 
 def _shown(rows: Sequence[Line], columns: Sequence[str] = ()) -> list[Line]:
@@ -134,30 +128,25 @@ def write_trade(trade: Trade, folder: Path) -> list[Path]:
     }
     files = [write_rows(folder / name, rows) for name, rows in tables.items() if rows]
     files.append(write_numbers(folder / "trade.json", numbers))
-    for scope, cost in product(SCOPES, COSTS):
-        files += plot_work(trade, scope, cost, folder)
+    drawn = folder / "path-seconds.png", folder / "path-seconds.svg"
+    plot_work(trade, *drawn)
+    files += drawn
     return [_write_page(trade, settings, files, folder), *files]
 
 
 def _write_page(trade: Trade, settings: list[Line], files: Sequence[Path], folder: Path) -> Path:
-    reasons = stopped(trade)
-    sections = {
-        "Cheapest settings": [table(*rows) for rows in _cheapest(trade)],
-        "Work and precision": [
-            picture(folder / f"{scope}-{cost}.svg", f"Error of {SHOWN}, {STATES[scope]}, against {cost}.")
-            for scope, cost in product(SCOPES, COSTS)
-        ],
-        "Orders of convergence": [table(*_orders(trade))],
-        "All settings": [
-            piece("definitions", _references(trade)),
-            folded("table of all settings", table(f"Seconds: {SECONDS}.", _shown(settings, SETTING))),
-            folded("settings without a solution", piece("definitions", reasons)),
-        ],
+    shown = {
+        "Work and precision": picture(files[-1], f"Largest error of {SHOWN} over the path, against seconds."),
+        "Cheapest settings": "\n".join(table(*rows) for rows in _cheapest(trade)),
+        "Orders of convergence": table(*_orders(trade)),
+        "All settings": piece("definitions", _references(trade))
+        + table(f"Seconds: {SECONDS}", _shown(settings, SETTING)),
+        "Settings without a solution": piece("definitions", stopped(trade)),
     }
-    lead = f"{len(trade.rows)} settings of beams and solid; {len(reasons)} without a solution."
-    title = f"{trade.scene.name}: what accuracy costs"
-    parts = [Section(name, "\n".join(markup)) for name, markup in sections.items()]
-    return write_page(folder, title, lead, parts, [trade.scene], files)
+    parts = [Section(name, markup) for name, markup in shown.items()]
+    return write_page(
+        folder, f"{trade.scene.name}: what accuracy costs", brief(trade), parts, [trade.scene], files
+    )
 
 
 def _settings(rows: Sequence[Row]) -> list[Line]:
@@ -202,21 +191,52 @@ def stopped(trade: Trade) -> dict[str, str]:
     }
 
 
-def summary(trade: Trade) -> str:
-    """Return what a person reads of a trade-off: references, cheapest settings, orders, and what stopped."""
+def brief(trade: Trade) -> Brief:
+    """Return what is found: what the solid costs beside beams of equal error, and what more time buys."""
+    rows = [cheapest(trade, SCOPE, SHOWN, target) for target in TARGETS]
+    ratios = [row["ratio"] for row in rows if row["ratio"]]
+    dear = "No solid here is as near to its limit as beams are to theirs"
+    if ratios:
+        between = " to ".join(dict.fromkeys(f"{ratio:.2g}" for ratio in (min(ratios), max(ratios))))
+        dear = f"At equal error the solid takes {between} times the seconds of beams"
+    steps = front(trade, TSM.name, SCOPE, SHOWN, COSTS[0])
+    best = max(pairwise(steps), key=lambda ab: _gain(*ab), default=None)
+    more = ""
+    if best is not None:
+        a, b = best
+        more = f"; {b['spent'] / a['spent'] - 1.0:.0%} more time buys an error of {b['own_error']:.0e} instead of {a['own_error']:.0e} ({b['setting']})"
+    points = [f"{name[0].upper()}{name[1:]}: {what}." for name, what in _references(trade).items()]
     reasons = stopped(trade)
-    head = [
-        f"{trade.scene.name}: {len(trade.rows)} settings",
-        *(f"{name}: {what}" for name, what in _references(trade).items()),
-        f"seconds: {SECONDS} after a warm-up",
-        "-: no setting does it, or the solid's own limit is known less well than that; [n]: n load steps",
-    ]
-    tables = [
-        f"{title}\n\n{tabulated(rows) if rows else 'none'}"
-        for title, rows in [*_cheapest(trade), _orders(trade)]
-    ]
-    ends = [
-        f"{len(reasons)} of {len(trade.rows)} settings without a solution:",
-        *(f"  {name}: {why}" for name, why in reasons.items()),
-    ]
-    return "\n\n".join(["\n".join(head), *tables, "\n".join(ends)])
+    points.append(
+        f"{len(trade.rows)} settings, {len(reasons)} without a solution; [n]: n load steps; -: no setting does it."
+    )
+    keys = {
+        "target": "error",
+        TSM.name: "beams",
+        f"{TSM.name}_seconds": "seconds",
+        SOLID.name: SOLID.label,
+        f"{SOLID.name}_seconds": "seconds ",
+        "ratio": "ratio",
+    }
+    answer = [{words: row[key] for key, words in keys.items()} for row in rows]
+    return Brief(
+        f"{dear}{more}.",
+        points,
+        answer,
+        f"The cheapest settings for an error of {SHOWN} over the path, and their seconds:",
+    )
+
+
+def _gain(a: Line, b: Line) -> float:
+    """Return by how many decades the error falls over how many the seconds rise."""
+    return float(np.log(a["own_error"] / b["own_error"]) / np.log(b["spent"] / a["spent"]))
+
+
+def summary(trade: Trade) -> str:
+    """Return the tables of a trade-off, and what stopped."""
+    tables = [*_cheapest(trade), _orders(trade)]
+    reasons = [f"  {name}: {why}" for name, why in stopped(trade).items()]
+    ends = ["settings without a solution:", *reasons] if reasons else []
+    return "\n\n".join(
+        [*(f"{title}\n\n{tabulated(rows) if rows else 'none'}" for title, rows in tables), "\n".join(ends)]
+    )

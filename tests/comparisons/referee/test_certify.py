@@ -14,6 +14,7 @@ from comparisons.models.model import Options
 from comparisons.referee import Distance, Verdict, certify
 from comparisons.scene import ContactSpec, PinMove, PinSpec, Scene, StageSpec, load_scene
 from tests.comparisons.referee.forged import bent, contact, scene_of, stated
+from tests.fuzz.special import drawn_special
 from tests.fuzz.world import drawn
 
 PAIR, BEAM = "pin->cantilever", "cantilever"
@@ -156,3 +157,29 @@ def test_a_force_that_is_there_at_once_does_its_work_too():
     """In the first of ten steps, where the trapezoidal rule takes it for one that grows."""
     scene = drawn(2026112513)
     assert certify(solve(scene, "tsm", Options(element="exact")), scene, at=range(10)).certified
+
+
+def beside(scene: Scene) -> Response:
+    """The answer of a scene without its second contact, which is stated to be open all along."""
+    seen = replace(scene, pins=scene.pins[:1], contacts=scene.contacts[:1])
+    answer = solve(seen, "tsm", Options(element="exact"))
+    (own,) = answer.contacts.values()
+    nothing = np.full(scene.load_parameters, np.nan)
+    away = replace(
+        own, force=np.nan_to_num(nothing), arc_position=nothing, gap=nothing, vector=None, friction=None
+    )
+    return replace(answer, contacts={**answer.contacts, scene.contacts[1].pair: away})
+
+
+@pytest.mark.parametrize("rubbed", [False, pytest.param(True, marks=pytest.mark.slow)])
+def test_a_node_that_goes_through_a_beam_near_its_end_is_followed(rubbed):
+    """By straight lines between load parameters it passes .8 mm past the end; on its way it is 12 mm inside. Then it is beyond the end."""
+    scene = replace(drawn_special(26112600), load_parameters=3)
+    if not rubbed:
+        scene = replace(scene, contacts=tuple(replace(item, friction=0.0) for item in scene.contacts))
+        assert certify(solve(scene, "tsm", Options(element="exact")), scene).certified
+    forged = beside(scene)
+    words = "INADMISSIBLE: p1->b2 is open and its node goes through the beam up to load parameter 0.333333"
+    assert certify(forged, scene).line().startswith(words)
+    words = "NOT_JUDGED: the path up to load parameter 0.333333 is not found, on which the node of p1->b2"
+    assert certify(replace(forged, events=None), scene).line().startswith(words)

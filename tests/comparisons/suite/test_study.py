@@ -56,7 +56,8 @@ def test_a_row_is_the_answer_at_the_last_load_parameter(many):
     assert {name: float(row[name]) for name in expected} == pytest.approx(expected, rel=1e-9)
 
 
-def test_the_table_and_what_is_done_is_not_done_again(many, capsys):
+def test_the_table_and_what_is_done_is_not_done_again(many, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "300")
     before, kept = many.read_text(), {file.name for file in many.with_suffix("").iterdir()}
     assert crossval("run", MANY, "--out", many.parent, "--workers", "1") == 0
     out, err = capsys.readouterr()

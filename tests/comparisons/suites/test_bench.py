@@ -18,6 +18,7 @@ from comparisons.scene import load_scene
 from comparisons.suites import bench
 from tests.comparisons.suite.conftest import crossval
 from tests.laws.transform import Change
+from tests.oracles.coupled import pair_of
 
 BENCH = Path(__file__).parents[3] / "bench"
 SCENES, QUERIES, RIGHT = (
@@ -154,6 +155,29 @@ def test_other_units_and_a_turn_leave_the_digits(make, name, change):
         assert abs(value / size - row["value"]) <= 10.0 ** -min(row["digits"], 10) * row["scale"], row
 
 
+def test_an_oracle_has_the_path_of_two_beams():
+    """Touch, both slip-offs, force and place of the pin on the first beam, by a third program."""
+    depth, name = 0.76, "double-beam"
+    times = next(one["load_parameters"] for one in SCENES["scenes"] if one["name"] == name)
+    pair = pair_of(load_scene(name))
+    stage = pair.stage([depth * times[1], depth * times[2]])
+    events = {
+        ("upper.end->lower", "touch"): stage.touch_depth / depth,
+        ("pin->upper", "slip-off"): stage.end_depth / depth,
+        ("pin->lower", "slip-off"): pair.slip_off() / depth,
+    }
+    for (of, what), value in events.items():
+        assert value == pytest.approx(right({"scene": name, "of": of, "what": what}), abs=1e-11)
+    for k in (0, 1):
+        for of, what, value in (
+            ("pin->upper", "force_y", -stage.pin_force[k, 1]),
+            ("pin->upper", "arc_position", stage.pin_arc[k]),
+        ):
+            assert value == pytest.approx(
+                right({"scene": name, "of": of, "what": what, "at": k + 1}), abs=1e-11
+            )
+
+
 def test_right_and_refused_are_no_failure(tmp_path):
     """Three programs, on the screen, as JUnit XML and as a table; what is refused needs no rows."""
     none = mine(answers=[], refused={one["name"]: "no beams" for one in SCENES["scenes"]})
@@ -243,7 +267,7 @@ def test_a_client_is_right_on_what_it_answers(name, tmp_path):
     digits = {"closed_form.mjs": 11, "shooting.py": 7, "frames.py": 3}[name]
     status, out = scored(tmp_path, done.stdout, options=["--digits", str(digits)])
     assert status == 0, out
-    least = {"closed_form.mjs": 42, "shooting.py": 112, "frames.py": 115}[name]
+    least = {"closed_form.mjs": 42, "shooting.py": 112, "frames.py": 100}[name]
     assert re.search(rf"^all +961 +{least} +{961 - least} +0 ", out, re.M)
 
 
@@ -265,3 +289,26 @@ def test_the_command_answers_for_models(in_folder, monkeypatch, capsys):
     capsys.readouterr()
     assert crossval("run", "bench", "tsm 25x2", "--out", "p") == 2
     assert capsys.readouterr().err == "crossval: tsm: mesh = (25, 2): not an option of this model\n"
+
+
+@pytest.mark.slow
+def test_the_table_of_results_is_that_of_the_scorer(in_folder):
+    """The column of `tsm mixed 20`, but for round-off."""
+    assert crossval("run", "bench", "tsm mixed 20", "--out", "o") == 0
+    status, _ = scored(
+        in_folder, Path("o/tsm-mixed-20.json").read_text(), options=["--digits", "3", "--results", "r.md"]
+    )
+    tables = [
+        path.read_text().split("| --- |\n")[-1].splitlines() for path in (Path("r.md"), BENCH / "RESULTS.md")
+    ]
+    assert status == 0
+    for made, stated in zip(*tables, strict=True):
+        names, columns = zip(
+            *((row.split(" | ")[0], row.split(" | ")[column]) for row, column in ((made, 1), (stated, 2))),
+            strict=True,
+        )
+        assert names[0] == names[1]
+        digits = [[float(word) for word in re.findall(r"\d+\.\d", column)] for column in columns]
+        assert all(
+            abs(one - other) <= 0.1 or min(one, other) > 9.0 for one, other in zip(*digits, strict=True)
+        )

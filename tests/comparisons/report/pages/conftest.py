@@ -53,7 +53,7 @@ class Browser(NamedTuple):
         ]  # fmt: skip
         return subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
 
-    def told(self, page: Path, script: str, *, width: int = 1200) -> Any:
+    def told(self, page: Path, script: str, *flags: str, width: int = 1200) -> Any:
         """Run `script`, which fills the table `told`, in a copy of `page` of that width; return the table. The console must say nothing.
 
         The copy is in a frame: windows are at least 500 pixels wide.
@@ -64,7 +64,7 @@ class Browser(NamedTuple):
         inner = escape(page.read_text().replace("</body>", probe))
         frame = f'<iframe style="border:0;width:{width}px;height:900px" srcdoc="{inner}"></iframe>'
         copy.write_text(f'<!DOCTYPE html><meta charset="utf-8"><pre id="told"></pre>{frame}')
-        done = self.run(copy, "--window-size=1400,1000", "--dump-dom")
+        done = self.run(copy, "--window-size=1400,1000", "--dump-dom", *flags)
         assert [line for line in done.stderr.splitlines() if ":CONSOLE" in line] == []
         found = re.search(r'<pre id="told">(.*?)</pre>', done.stdout, re.DOTALL)
         assert found, done.stderr

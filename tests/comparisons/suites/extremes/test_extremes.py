@@ -202,10 +202,9 @@ def test_the_command_writes_every_cell_and_fails_where_one_is_wrong(tmp_path, ca
     text = re.sub(r"<[^>]*>", "", html)
     for mark, k in (("■ CUTBACK_FLOOR", 1), ("✗ {}", 2), ("□ {}", 3)):
         assert mark.format(f"{data['cells'][k]['error']:.1e}".replace("e-0", "e-")) in text
-    assert (
-        "4 cells: 1 right, 1 stopped, 1 withdrawn (1 needlessly), 1 wrong, a part of the matrix (quick)."
-        in html
-    )
+    assert "1 of 4 cells are right, 1 stop by name, 1 are withdrawn by their own checks, 1 is wrong." in html
+    assert "1 of the withdrawn cells needlessly" in html
+    assert "a part of them (quick)" in html
     with table.open() as file:
         assert [row["verdict"] for row in csv.DictReader(file)] == list(becomes.values())
 

@@ -1,0 +1,125 @@
+"""What a page and a terminal begin with: one sentence, at most five points, and the answer in units, model by model."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from shutil import get_terminal_size
+from textwrap import TextWrapper
+from typing import NamedTuple
+
+import numpy as np
+
+from comparisons.answer import Array, Response
+from comparisons.answer.along import ALONG, extremes_along
+from comparisons.answer.quantities import forces, moments, size
+from comparisons.answer.round_off import round_off
+from comparisons.answer.table import unit_names
+from comparisons.output import Row, tabulated
+from comparisons.scene import Scene
+
+POINTS = 5
+"""Points of a brief at most."""
+BOLD = "\x1b[1m{}\x1b[0m"
+DIGITS = 4
+"""Significant digits of an answer in a brief."""
+
+
+def filled(words: str, first: str = "", rest: str = "") -> list[str]:
+    """Return lines that fit the terminal, the first one and the others indented; no word is broken."""
+    style = TextWrapper(
+        get_terminal_size().columns, first, rest, break_long_words=False, break_on_hyphens=False
+    )
+    return style.wrap(words)
+
+
+class Brief(NamedTuple):
+    """What is found: a sentence, points, and a table of the answer with what it is about."""
+
+    sentence: str
+    points: Sequence[str] = ()
+    answer: Sequence[Row] = ()
+    about: str = ""
+
+    def text(self, *, bold: bool = False) -> str:
+        """Return lines that fit the terminal; no word is broken."""
+        head = [BOLD.format(line) if bold else line for line in filled(self.sentence)]
+        points = [line for point in self.points[:POINTS] for line in filled(point, "- ", "  ")]
+        answer = ["", *filled(self.about), "", tabulated(self.answer)] if self.answer else []
+        return "\n".join([*head, *points, *answer])
+
+
+def at_largest(response: Response) -> int:
+    """Return the number of the load parameter with the largest contact force, or support force without contact; of the first one if several have it."""
+    found = [size(values) for values in forces(response).values()]
+    return int(np.argmax(np.max(found, axis=0))) if found else len(response.load_parameter) - 1
+
+
+def travel(scene: Scene, load_parameter: Array) -> Array | None:
+    """Return how far the one pin that moves has come along its path; None with more pins, or without a path."""
+    moving = [pin for pin in scene.pins if pin.moving]
+    if len(moving) != 1:
+        return None
+    fine = np.linspace(0.0, scene.times[-1], 100 * len(scene.times) + 1)
+    steps = np.hypot(*np.diff([moving[0].position(float(t)) for t in fine], axis=0).T)
+    return np.asarray(np.interp(load_parameter, fine, np.append(0.0, np.cumsum(steps))))
+
+
+def spring_rate(response: Response, scene: Scene) -> float:
+    """Return the rise of the force of the one moving pin over its travel as it begins to push; nan without one."""
+    way = travel(scene, response.load_parameter)
+    pushing = [
+        one.force
+        for pair, one in response.contacts.items()
+        if pair.partition("->")[0] in {p.name for p in scene.pins if p.moving}
+    ]
+    if way is None or len(pushing) != 1:
+        return np.nan
+    closed = np.flatnonzero(pushing[0] > 0.0)
+    rise = np.diff(pushing[0][closed[:2]]) / np.diff(way[closed[:2]])
+    return float(rise[0]) if len(rise) else np.nan
+
+
+def in_units(scene: Scene, responses: Mapping[str, Response], t: float) -> list[Row]:
+    """Return the answers of models at a load parameter, a row for each quantity and a column for each model; what none has is left out."""
+    columns = {label: _values(scene, one, t) for label, one in responses.items()}
+    named = dict.fromkeys(name for values in columns.values() for name in values)
+    return [
+        {"": name, **{label: values.get(name, "-") for label, values in columns.items()}} for name in named
+    ]
+
+
+def _values(scene: Scene, response: Response, t: float) -> dict[str, str]:
+    at = np.flatnonzero(np.isclose(response.load_parameter, t, rtol=0.0, atol=1e-9))
+    if not len(at):
+        return {}
+    k, units, least = int(at[0]), unit_names(scene.units), round_off(response, scene)
+    one = replace(
+        response,
+        load_parameter=response.load_parameter[k : k + 1],
+        axis_line=lambda beam, _: response.axis_line(beam, k),
+        sections=response.sections and (lambda beam, _: response.sections(beam, k)),  # type: ignore[misc]
+    )
+    found: dict[str, tuple[str, float]] = {}
+    what = "contact force" if response.contacts else "support force"
+    acting = forces(response)
+    for name, values in acting.items():
+        found[f"{what} {name}" if len(acting) > 1 else what] = "force", float(size(values)[k])
+    turned = {name: float(values[k]) for name, values in moments(response).items() if values.any()}
+    for name, moment in turned.items():
+        found[f"moment {name}" if len(turned) > 1 else "support moment"] = "moment", moment
+    along = extremes_along(one, scene)
+    for name in ("tensile_stress", "compressive_stress", "displacement"):
+        sizes = [extremes[name].value[0] for extremes in along.values() if name in extremes]
+        if sizes:
+            kind, words = ALONG[name]
+            found[f"largest {words.removeprefix('nominal axial ').removesuffix(' of the axis')}"] = (
+                kind,
+                max(sizes, key=abs),
+            )
+    rate = spring_rate(response, scene)
+    units["rate"] = f"{units['force']}/{units['length']}"
+    if np.isfinite(rate):
+        found["spring rate at first touch"] = "rate", rate
+    return {
+        f"{name} [{units[kind]}]": f"{value:.{DIGITS}g}" if abs(value) > getattr(least, kind, 0.0) else "0"
+        for name, (kind, value) in found.items()
+    }
