@@ -1,5 +1,6 @@
 """Settings of the documentation: `make docs` builds it strictly into out/docs/."""
 
+import logging
 import sys
 from importlib import metadata
 from pathlib import Path
@@ -8,10 +9,10 @@ from typing import Any
 from sphinx.application import Sphinx
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+logging.getLogger("skfem").setLevel(logging.WARNING)  # it tells of every mesh
 
-project = "tsm-crossval"
-author = "The tsm-crossval authors"
-copyright = author  # noqa: A001 - Sphinx's own name
+project = html_title = "tsm-crossval"
+author = copyright = "The tsm-crossval authors"  # noqa: A001 - Sphinx's own name
 release = version = metadata.version("tsm-crossval")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc", "sphinx_argparse_cli", "docs.extensions.site"]
@@ -21,7 +22,6 @@ myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
 
 html_theme = "furo"
-html_title = "tsm-crossval"
 html_math_renderer = "mathml"
 html_copy_source = False
 html_static_path = ["static"]

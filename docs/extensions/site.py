@@ -56,7 +56,7 @@ def _write(app: Sphinx) -> None:
     (folder / "gallery.md").write_text(gallery(folder / "scenes"), encoding="utf-8")
     page = folder / "manual" / "index.md"
     packages = (ROOT / name for name in ("tsm", "fem_reference", "comparisons"))
-    if not stale(page, (path for package in packages for path in package.rglob("*.*"))):
+    if not stale(page, (path for package in packages for path in package.rglob("*.*[!c]"))):  # no .pyc
         return
     page.unlink(missing_ok=True)  # it was changed after it was written, and a changed file is not replaced
     answers, _ = write_manual(page.parent, log.info, problems())
