@@ -93,12 +93,10 @@ def switched(now: Equilibrium, arcs: Mapping[str, float], grips: Mapping[str, Gr
     put(layout, z, seen)
     ends = before.extents(now.z)[:, 1]
     for part, extent in zip(layout.parts, layout.extents(z), strict=True):
-        own = (
-            old
-            for old, end in zip(before.parts, ends, strict=True)
-            if old.beam == part.beam and end > extent.mean()
-        )
-        z[part.force : part.force + 2] = next(own).constant(now.z)[:, 0]
+        own = [(end, old) for old, end in zip(before.parts, ends, strict=True) if old.beam == part.beam]
+        # behind a contact at the tip, a part without length is of the last one
+        old = next((old for end, old in own if end > extent.mean()), own[-1][1])
+        z[part.force : part.force + 2] = old.constant(now.z)[:, 0]
     mesh = mesh_of(layout, _first_grids(layout, z))
     return correct(_seen(layout, mesh, z, lambda beam, s: shape(beam, s).rotation, _FIT), _ITERATIONS)
 
