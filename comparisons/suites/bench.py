@@ -7,6 +7,7 @@ import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -154,7 +155,8 @@ def _queries(scene: Scene, at: Sequence[int], right: Response) -> Iterator[Query
             )
     last, numbers = scene.times[at[-1]], dict[tuple[str, str], int]()
     jumps = {event.load_parameter for event in right.events or () if event.kind == "slip-off"}
-    for event in right.events or ():
+    # by contact: round-off orders two events at one load parameter
+    for event in sorted(right.events or (), key=attrgetter("pair")):
         key = (event.pair, event.kind)
         numbers[key] = numbers.get(key, 0) + 1
         # what else happens in the jump behind a slip-off is no state
