@@ -112,11 +112,12 @@ def _diagram(axes: Any, response: Response, scene: Scene, name: str, kind: str, 
                 (-4 if place > beam.length / 2 else 4, 0),
                 va="center",
                 fontsize="x-small",
+                bbox={"facecolor": "white", "alpha": 0.75, "linewidth": 0.0, "pad": 0.5},
                 **near,
             )
     axes.axhline(0.0, color="0.3", linewidth=0.6)
     axes.grid(visible=True, linewidth=0.3)
-    axes.margins(x=0.01)
+    axes.margins(x=0.01, y=0.15)
 
 
 def _history(axes: Any, response: Response, scene: Scene) -> None:
