@@ -83,8 +83,12 @@ def _sentence(
         return f"{enough[0].upper()}{enough[1:]}."
     said = f"Beam and solid are {_size(apart)} apart in the {quantity}"
     if budget is not None and apart > AGREES:
-        _, _, parts = _largest(budget)
-        said += f", most of it by the {max(parts, key=lambda name: abs(parts[name]))}"
+        measured, _, parts = _largest(budget)
+        most = max(parts, key=lambda name: abs(parts[name]))
+        # the parts are those of the quantity that differs most in the budget, which may be another one
+        same = measured.partition(" ")[0].replace("_", " ") == quantity
+        if same and 2.0 * abs(parts[most]) > sum(map(abs, parts.values())):
+            said += f", most of it by the {most}"
     return f"{said}; {enough if apart <= ASKED else f'for {_size(ASKED)} of the solid a beam is not enough'}."
 
 

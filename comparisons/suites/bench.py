@@ -130,7 +130,7 @@ def _path(pin: PinSpec) -> list[tuple[float, float, float]]:
 
 
 def queries(found: Mapping[str, Response]) -> list[Query]:
-    """Return the queries; which contacts are closed, and which events there are, is told by the right answers."""
+    """Return the queries. The right answers tell which contacts are closed and which events there are."""
     return [query for name, (scene, at) in scenes().items() for query in _queries(scene, at, found[name])]
 
 

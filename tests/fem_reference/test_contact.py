@@ -146,7 +146,7 @@ def test_strip_that_was_left_by_its_pin_comes_to_rest_on_the_next():
 
 @pytest.mark.parametrize(("end", "x", "way"), [("start", -0.3, 0.2), ("end", 1.3, -0.2)])
 def test_the_end_that_a_round_pin_meets_is_named(end, x, way):
-    """Of a strip between springs, both of whose ends are free."""
+    """The strip lies on springs, and both its ends are free."""
     springs = (fr.Spring(strip=STRIP, end=one, stiffness=(EI, EI, EI)) for one in ("start", "end"))
     problem = pressed(held(*springs, mesh=(10, 1)), ((x, 0.0), (x + way, 0.0)), 0.2)
     result = fr.solve(problem, loads(1), throw=False)

@@ -17,12 +17,13 @@ def test_the_branch_of_the_straight_beam_ends_at_the_fold():
     def at(direction):
         return elastica_under_pin([(np.cos(direction) / 5.0, np.sin(direction) / 5.0)])
 
-    # largest `tc - atan2(int_0^tc sqrt(sin), 2 sqrt(sin tc))`, in closed form
-    fold = np.radians(99.568499)
-    angles = [at(direction).shape(0, 2)[-1, 2] for direction in np.linspace(0.1, fold - 1e-8, 50)]
+    found, lost = 1.5, 2.5
+    while lost - found > 1e-13:
+        middle = (found + lost) / 2.0
+        found, lost = (found, middle) if at(middle).outcome[0] is LOST else (middle, lost)
+    angles = [at(direction).shape(0, 2)[-1, 2] for direction in np.linspace(0.1, found, 50)]
     assert np.all(np.diff(angles) > 0.0)
-    assert angles[-1] == pytest.approx(2.983418, abs=2e-4)
-    assert at(fold + 1e-8).outcome[0] is LOST
+    assert angles[-1] == pytest.approx(2.983418, abs=2e-6)
 
 
 UP = [(0.8, -0.1), (0.8, 0.7), (0.8, 0.6), (0.8, -0.1), (0.8, 0.1), (0.8, 0.7)]

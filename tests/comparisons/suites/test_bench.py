@@ -1,4 +1,4 @@
-"""The benchmark set: made anew, scored without libraries, lies told by name, and clients that do not import the package."""
+"""The benchmark set is made anew. The scorer needs no library and names lies. The clients do not import the package."""
 
 import importlib.util
 import json

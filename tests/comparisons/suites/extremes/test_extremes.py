@@ -141,7 +141,7 @@ def test_what_is_allowed_falls_with_the_order_of_the_element_and_has_a_cap():
 
 
 def test_the_bending_that_theory_allows_for_has_no_units():
-    """Of the strip of an engineer in mm, and of the exact answer's own numbers."""
+    """The strip is an engineer's, in mm; the numbers are those of the exact answer."""
     found = []
     for change in (Change(), Change(length=1e3, force=1e-3)):
         scene = change.scene(SCENE)
