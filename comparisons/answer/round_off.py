@@ -29,6 +29,11 @@ def least_force(scene: Scene) -> float:
     return LEAST * min(beam.EI / beam.length**2 for beam in scene.beams)
 
 
+def residual_force(scene: Scene) -> float:
+    """Return the force that Newton's methods leave unbalanced: `RESIDUAL` times the largest ``EI/L^2`` of the beams."""
+    return RESIDUAL * max(beam.EI / beam.length**2 for beam in scene.beams)
+
+
 @dataclass(frozen=True, kw_only=True)
 class RoundOff:
     """What is not resolved of each kind of quantity; a smaller number is printed as 0."""
@@ -65,8 +70,7 @@ def round_off(response: Answer, scene: Scene) -> RoundOff:
     forces = [one.force for one in response.contacts.values()]
     forces += [one.force for one in response.supports.values()]
     largest = max((float(np.abs(force).max(initial=0.0)) for force in forces), default=0.0)
-    residual = RESIDUAL * max(beam.EI / beam.length**2 for beam in scene.beams)
-    force = max(force_round_off(scene, max(largest, least_force(scene))), residual)
+    force = max(force_round_off(scene, max(largest, least_force(scene))), residual_force(scene))
     longest = max(beam.length for beam in scene.beams)
     places = [*(point for beam in scene.beams for point in (beam.start, beam.end)), (longest, 0.0)]
     deflections = (force * beam.length**3 / beam.EI for beam in scene.beams)

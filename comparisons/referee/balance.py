@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.answer import Array, Response
-from comparisons.answer.round_off import force_round_off, least_force
+from comparisons.answer.round_off import force_round_off, least_force, residual_force
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import BeamSpec, Scene
 
@@ -66,7 +66,9 @@ def balance_failures(response: Response, scene: Scene, allowed: float = BALANCE)
     # a least value keeps the solvers' residuals within balance where nothing acts
     forces = [*(item.force for item in actions), *(moment / length for moment in moments)]
     largest = max([least_force(scene), *(float(np.abs(x).max(initial=0.0)) for x in (magnitude, *forces))])
-    scale = allowed * largest + max(force_round_off(scene, largest), response.round_off)
+    scale = allowed * largest + max(
+        force_round_off(scene, largest), residual_force(scene), response.round_off
+    )
     off = np.where(
         pushing <= 1, np.abs(np.hypot(*force.T) - magnitude), np.hypot(*_sum(response, [*actions, *pins]).T)
     )

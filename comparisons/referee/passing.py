@@ -258,7 +258,7 @@ def misstated(
             continue
         for k in (after - 1, after)[: 1 if event.kind in OPENS else 2]:
             there = _beside(response, event, found.get(k))
-            wrong = "" if there is None else _wrong(specs[event.pair], event, there, allowed)
+            wrong = "" if there is None else _wrong(specs[event.pair], event, there, found[k], allowed)
             if wrong:
                 yield f"{event.kind} of {event.pair} at load parameter {t:.6g}: {wrong}"
     for spec in scene.contacts:
@@ -290,8 +290,10 @@ def _disorder(response: Response, spec: ContactSpec) -> Iterator[str]:
         yield f"{spec.pair} is {'open' if closed else 'closed'} at the end, not as its last event says"
 
 
-def _wrong(spec: ContactSpec, event: ContactEvent, there: Equilibrium, allowed: float) -> str:
-    """Return what an event states otherwise than the equilibrium there; empty if it states the same."""
+def _wrong(
+    spec: ContactSpec, event: ContactEvent, there: Equilibrium, beside: Equilibrium, allowed: float
+) -> str:
+    """Return what an event states otherwise than the equilibrium there, whose force may vanish; empty if it states the same."""
     length, contact = there.scene.beam(spec.beam).length, there.contacts.get(spec.pair)
     if contact is None:
         off = gap_off(there, spec, 0.0) / length if event.kind in CLOSES else 0.0
@@ -300,5 +302,5 @@ def _wrong(spec: ContactSpec, event: ContactEvent, there: Equilibrium, allowed: 
     if not off <= allowed:
         return f"arc position off by {off:.2g}"
     force = 0.0 if event.kind in CLOSES else math.hypot(*contact.force)
-    off = abs(force - event.force) / largest_force(there)
+    off = abs(force - event.force) / max(largest_force(there), largest_force(beside))
     return "" if off <= allowed else f"contact force off by {off:.2g}"
