@@ -66,9 +66,9 @@ def balance_failures(response: Response, scene: Scene, allowed: float = BALANCE)
     # a least value keeps the solvers' residuals within balance where nothing acts
     forces = [*(item.force for item in actions), *(moment / length for moment in moments)]
     largest = max([least_force(scene), *(float(np.abs(x).max(initial=0.0)) for x in (magnitude, *forces))])
-    scale = allowed * largest + max(
-        force_round_off(scene, largest), residual_force(scene), response.round_off
-    )
+    # a sum of forces has the residuals of all nodes of a beam
+    residual = residual_force(scene) * max(beam.divisions for beam in scene.beams)
+    scale = allowed * largest + max(force_round_off(scene, largest), residual, response.round_off)
     off = np.where(
         pushing <= 1, np.abs(np.hypot(*force.T) - magnitude), np.hypot(*_sum(response, [*actions, *pins]).T)
     )
