@@ -101,17 +101,8 @@ def test_every_command_is_shown():
 
 
 SEARCHED = (
-    "spring rate",
-    "force-displacement",
-    "PDF",
-    "stress",
-    "buckling",
-    "buckles",
-    "friction",
-    "reaction",
-    "units",
-    "install",
-)
+    "spring rate", "force-displacement", "PDF", "stress", "buckling", "buckles", "friction", "reaction", "units", "install",
+)  # fmt: skip
 """Words that people search for."""
 
 

@@ -139,18 +139,7 @@ def test_right_and_refused_are_no_failure(tmp_path):
         tmp_path, mine(), some, none, options=["--junit", files[0], "--results", files[1], "--every"]
     )
     assert status == 0
-    assert re.findall(r"^all .*$", out, re.M)[0].split() == [
-        "all",
-        "961",
-        "961",
-        "0",
-        "0",
-        "0.0e+00",
-        "0.0e+00",
-        "12.0",
-        "/",
-        "9.0",
-    ]
+    assert re.search(r"^all +961 +961 +0 +0 +0\.0e\+00 +0\.0e\+00 +12\.0 / 9\.0$", out, re.M)
     assert "ks-face: pin->cantilever force_y at 2" in out
     suites = ET.parse(files[0]).getroot()  # noqa: S314 our own file
     assert [len(suite) for suite in suites] == [961] * 3
