@@ -14,9 +14,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-import tsm
 from comparisons.cli import main
-from comparisons.models.tsm import to_structure
 from comparisons.scene import load_scene
 from comparisons.suite import budget
 from comparisons.suites import compare
@@ -36,16 +34,6 @@ def equal_error(bench):
             row for row in rows if (row["scope"], row["quantity"], row["target"]) == (scope, "force", 1e-3)
         )
         bench.add(Gate(f"solid over TSM at .1 % of F, {state}, seconds", found["ratio"], 100, at_least=True))
-
-
-def scenes(bench):
-    """Double beam against KS."""
-    both = load_scene("double-beam")
-    one, two, depths = to_structure(KS, elements=20), to_structure(both, elements=10), np.array(both.times)
-    single, double = bench.seconds(
-        mixed_20_KS=lambda: tsm.solve(one, T), double_beam=lambda: tsm.solve(two, depths)
-    )
-    bench.add(Gate("double beam over KS with 20 elements, seconds", double / single, 4))
 
 
 def comparison(bench):
@@ -110,4 +98,4 @@ def start_up(bench):
     bench.add(Gate("crossval solve without its solution over import numpy", rest, 3))
 
 
-PARTS = (equal_error, scenes, comparison, start_up)
+PARTS = (equal_error, comparison, start_up)

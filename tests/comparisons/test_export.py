@@ -15,6 +15,7 @@ from comparisons.models.model import Options
 from comparisons.report.export import CONTACTS, HINGES, SUPPORTS, blocks, write_series
 from comparisons.scene import load_scene
 from tests.comparisons.report.specimen import SPECIMEN
+from tests.comparisons.test_faults import listed
 
 SCENE, RUBBED = (replace(load_scene(name), load_parameters=3) for name in ("ks-cantilever", "ks-friction"))
 PAGE = (Path(__file__).parents[2] / "docs/how-to/paraview.md").read_text()
@@ -114,10 +115,6 @@ def test_forces_between_beams_balance_the_supports():
     on_lower = contacts["contact_force"][1:].sum(axis=0)
     assert on_lower == pytest.approx(-supports["reaction_force"][1], rel=1e-6)
     assert contacts["slip"][1] == -1.0
-
-
-def listed(file: Path) -> list[str]:
-    return re.findall(r' file="(.*?)"', file.read_text())
 
 
 def all_files(folder: Path) -> set[str]:

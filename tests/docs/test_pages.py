@@ -66,13 +66,9 @@ SAID = {
 """What a command, or one that begins with these words, prints beside its exit status."""
 ELSEWHERE = ("run trade", "run manual", "run extremes", "compare tip-load")
 """Beginnings of commands of a minute and more, which have slow tests of their own: here only their arguments are read."""
-MORE = (
-    "crossval solve double-beam",
-    "crossval certify",
-    "crossval check ks-cantilever --out",
-    "crossval --version",
-    "crossval solve ks-cantilever --model rod",
-)
+MORE = tuple(
+    f"crossval {one}" for one in ("solve double-beam", "certify", "check ks-cantilever --out", "--version", "solve ks-cantilever --model rod")
+)  # fmt: skip
 """Lines of more than a second besides those of `SLOW`; the fast tests of the commands run them on smaller scenes."""
 
 

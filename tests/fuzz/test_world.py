@@ -17,6 +17,7 @@ from comparisons.scene import SPECIAL, Scene, load_scene, read_scene, to_tables,
 
 # the tables of a file and their records
 from comparisons.scene.read import LISTS
+from tests.comparisons.referee.forged import contact
 from tests.fuzz.special import DRAW
 from tests.fuzz.world_judge import BEAMS, Judged, Row, findings, judged, wrong
 
@@ -141,12 +142,9 @@ def row() -> Row:
 def forged(row: Row, at: slice = slice(None), **changes: object) -> Row:
     """A row whose contact force is a tenth too large."""
     assert row.response is not None
-    ((pair, contact),) = row.response.contacts.items()
-    force = contact.force.copy()
+    force = next(iter(row.response.contacts.values())).force.copy()
     force[at] *= 1.1
-    return replace(
-        row, response=replace(row.response, contacts={pair: replace(contact, force=force)}), **changes
-    )
+    return replace(row, response=contact(row.response, force=force), **changes)
 
 
 def kinds(*rows: Row) -> list[str]:

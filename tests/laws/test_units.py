@@ -17,14 +17,6 @@ def test_an_answer_does_not_depend_on_the_units(model: str, name: str) -> None:
         assert off[0] <= within(model), (change, off)
 
 
-def test_a_contact_that_turns_a_beam_without_bending_it_slips_in_all_units() -> None:
-    """The rate of its force is round-off, of which it stuck or jammed."""
-    for change in (Change(length=1e3, force=1e-3), Change(length=1e-5, force=1e-7)):
-        found = answer(change.scene(scene("friction-12")), "mixed")
-        assert found.completed
-        assert [item.kind for item in found.events or () if item.kind != "pass-through"] == ["release"]
-
-
 def test_the_round_off_of_a_stiff_hinge_has_a_unit() -> None:
     """Newton's method ends at it: with that of another unit it goes on for ever."""
     for length in (1e-4, 1e4):

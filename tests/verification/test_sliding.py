@@ -52,10 +52,6 @@ def dimensionless(result):
     return np.stack([*found, *result.tips[beam.name].T / L], axis=1)
 
 
-def slip_offs(result):
-    return when(result, OFF)
-
-
 def places(elements, length, extra=()):
     """Places on and beside every node of a mesh: one unit in the last place, 1e-16 to 1e-1 of an element, the middle, and `extra`."""
     powers = 10.0 ** np.arange(-16, 0)
@@ -90,7 +86,7 @@ def test_mixed_on_ks(elements, stated):
 @pytest.mark.parametrize("x", PINS)
 def test_slip_off_displacements(x, stated):
     """Within 1e-5 of the rod, which is of the third power of the shear strain there, with 18 and with 72 elements."""
-    found = [slip_offs(tsm.solve(mixed(raised(x, 2.0), elements=n), steps(20)))[0] for n in (18, 72)]
+    found = [when(tsm.solve(mixed(raised(x, 2.0), elements=n), steps(20)), OFF)[0] for n in (18, 72)]
     exact = oracle(mixed(raised(x, 2.0)), [1.0]).slip_off
     error = np.abs(np.array(found) / exact - 1).max()
     assert error <= 1e-5
@@ -244,7 +240,7 @@ def test_41_at_60_depths_and_its_slip_off(x, stated):
     for count in (1, 20):
         over = tsm.solve(cantilever(raised(x, 2.0), **given), steps(count))
         assert essentials(over) == [(OFF, "p0->b")]
-        error = abs(2.0 * slip_offs(over)[0] / slip_off - 1)
+        error = abs(2.0 * when(over, OFF)[0] / slip_off - 1)
         assert error <= 1e-9
         stated("exact.4.1-slip-off", error, part=True)
         assert np.abs(over.tips["b"][-1] - [LENGTH, 0.0]).max() <= 1e-9
@@ -256,7 +252,7 @@ def test_near_the_tip():
         for x in (0.99, 1 - 1e-5, 1 - 1e-9, 1 - 1e-10, np.nextafter(1.0, 0), 1.0):
             path = raised(x * length, 0.02 * length)
             structure = cantilever(path, section=section, length=length, elements=11)
-            squares = [(0.02 * t) ** 2 for t in slip_offs(tsm.solve(structure, steps(3)))]
+            squares = [(0.02 * t) ** 2 for t in when(tsm.solve(structure, steps(3)), OFF)]
             expected = oracle(structure, steps(3)).slip_off
             located = 5e-12 if 1 - x > 1.01e-10 else 2e-10
             assert squares == pytest.approx(
