@@ -25,7 +25,7 @@ docs: setup
 	$(THREADS) $(BIN)/python -m sphinx -W --keep-going -n -q -d out/docs/doctrees docs out/docs/html
 
 bench: setup
-	$(THREADS) $(BIN)/python -m tests.benchmarks.bench --out bench.json
+	$(THREADS) $(BIN)/python -m tests.benchmarks.bench
 
 lint: setup
 	$(BIN)/ruff check .
@@ -49,4 +49,4 @@ $(STAMP): pyproject.toml .constraints.txt
 	@echo "crossval is $(BIN)/crossval: $(BIN)/crossval scenes"
 
 clean:
-	rm -rf $(VENV) .nox out docs/_generated bench.json .mypy_cache .ruff_cache .import_linter_cache
+	rm -rf $(VENV) .nox out docs/_generated .mypy_cache .ruff_cache .import_linter_cache

@@ -121,16 +121,8 @@ def test_the_sdist_has_what_its_tests_need(built):
     [sdist] = built.glob("*.tar.gz")
     with tarfile.open(sdist) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
-    files = {
-        "README.md",
-        "CHANGELOG.md",
-        "LICENSE",
-        "CITATION.cff",
-        "Makefile",
-        ".constraints.txt",
-        "pyproject.toml",
-    }
-    assert files | {"tests", "docs", *PACKAGES} <= names | {name.partition("/")[0] for name in names}
+    files = "README.md CHANGELOG.md LICENSE CITATION.cff Makefile .constraints.txt pyproject.toml tests docs"
+    assert {*files.split(), *PACKAGES} <= names | {name.partition("/")[0] for name in names}
     assert not [name for name in names if "__pycache__" in name or "_generated" in name]
 
 

@@ -1,10 +1,7 @@
-"""Speed as ratios within one run, one thread. `make bench` writes them to bench.json and compares them with the pages."""
+"""Speed as ratios within one run, one thread. `make bench` prints them and compares them with the pages."""
 
 import argparse
-import json
-import platform
 import sys
-from pathlib import Path
 
 from tests.benchmarks import commands, inside
 from tests.benchmarks.measure import Bench
@@ -12,17 +9,6 @@ from tests.stated import MARK, check, pages
 
 VARIES = 0.25
 """Part of a stated ratio by which machines and runs may differ."""
-
-
-def recorded(bench):
-    """What was measured, and where, as JSON."""
-    record = {
-        "machine": platform.platform(),
-        "python": platform.python_version(),
-        "gates": [vars(gate) | {"value": float(gate.value), "met": gate.met} for gate in bench.gates],
-        "seconds": bench.times,
-    }
-    return json.dumps(record, indent=1) + "\n"
 
 
 def compared(gates, *, write):
@@ -40,7 +26,6 @@ def compared(gates, *, write):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path("bench.json"))
     parser.add_argument("--write-results", action="store_true", help="write changed ratios into the pages")
     given = parser.parse_args()
     bench = Bench()
@@ -50,7 +35,6 @@ def main():
         print(gate)
     for name, value in bench.times.items():
         print(f"         {name}: {1e3 * value:.3g} ms")
-    given.out.write_text(recorded(bench), encoding="utf-8")
     failures = compared(bench.gates, write=given.write_results)
     marks = {mark for page in pages() for mark in MARK.findall(page.read_text()) if mark.startswith("bench.")}
     failures += [

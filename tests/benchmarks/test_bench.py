@@ -1,6 +1,4 @@
-"""What the benchmark writes can be read, whatever the numbers were measured with; what it measures stands in the pages."""
-
-import json
+"""What the benchmark measures stands in the pages."""
 
 import numpy as np
 import pytest
@@ -9,16 +7,6 @@ from comparisons.models import solve
 from tests.benchmarks import bench, inside, plain
 from tests.benchmarks.measure import Bench, Gate
 from tests.stated import MARK, NUMBER, ROOT
-
-
-def test_measured_ratios_are_written_and_read():
-    made = Bench(times={"import tsm": 0.25})
-    made.add(Gate("ratio", np.float64(3.5), 3.0, at_least=True))
-    made.add(Gate("cut-backs", np.int64(1), 0))
-    record = json.loads(bench.recorded(made))
-    found = [(gate["name"], gate["value"], gate["met"]) for gate in record["gates"]]
-    assert found == [("ratio", 3.5, True), ("cut-backs", 1.0, False)]
-    assert record["seconds"] == {"import tsm": 0.25}
 
 
 def test_a_ratio_that_has_moved_is_named():
@@ -31,7 +19,7 @@ def test_a_ratio_that_has_moved_is_named():
 def test_the_page_says_which_targets_are_missed():
     page = (ROOT / "docs" / "results" / "speed.md").read_text()
     rows = [line.split("|")[2:4] for line in page.splitlines() if "<!--bench." in line]
-    assert len(rows) > 15
+    assert len(rows) > 10
     for measured, target in rows:
         values = [float(number) for number, _ in NUMBER.findall(MARK.sub(" ", measured))]
         bars = [float(number) for number, _ in NUMBER.findall(target)]

@@ -1,6 +1,5 @@
 """Files are whole or not there, and no file of a user is replaced."""
 
-import errno
 import os
 import re
 import subprocess
@@ -15,30 +14,20 @@ from comparisons.scene import load_scene, to_toml
 from tests.comparisons.processes import begun
 
 
-@pytest.mark.parametrize(
-    ("fault", "told"),
-    [
-        (RuntimeError("power cut"), "^power cut$"),
-        (
-            OSError(errno.ENOSPC, "No space left on device"),
-            r"a\.txt: cannot be written: No space left on device$",
-        ),
-    ],
-)
-def test_a_failed_write_leaves_the_old_file_and_nothing_else(fault, told, tmp_path):
+def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
     path = tmp_path / "a.txt"
 
     def fail() -> None:
         with files.replacing(path) as temporary:
             assert temporary.suffix == path.suffix
             temporary.write_text("half")
-            raise fault
+            raise RuntimeError("power cut")
 
     for old in (None, "old"):
         if old:
             files.write_text(path, old)
         there = {file.name: file.read_text() for file in tmp_path.iterdir()}
-        with pytest.raises((RuntimeError, ValueError), match=told):
+        with pytest.raises(RuntimeError, match="power cut"):
             fail()
         assert {file.name: file.read_text() for file in tmp_path.iterdir()} == there
     assert there.keys() == {"a.txt", ".crossval"}
@@ -158,12 +147,11 @@ def test_a_folder_of_a_user_is_left_alone(line, capsys):
 @pytest.mark.usefixtures("scene")
 def test_an_answer_is_not_replaced_by_its_certificate_nor_a_new_scene_by_anything(capsys):
     assert main(["solve", "s.toml", "--out", "a.json"]) == main(["new", "mine", "--like", "tip-load"]) == 0
-    judged = ("certify a.json --scene s.toml --out ./a.json", "a.json", "a.json: is the answer to be judged")
     for line, file, told in (
-        judged,
-        ("check mine.toml --out mine.toml", "mine.toml", "mine.toml: must end in"),
+        ("certify a.json --scene s.toml --out ./a.json", "a.json", "is the answer to be judged"),
+        ("check mine.toml --out mine.toml", "mine.toml", "must end in"),
     ):
         there = Path(file).read_bytes()
         assert main(line.split()) == 2
-        assert told in capsys.readouterr().err
+        assert f"{file}: {told}" in capsys.readouterr().err
         assert Path(file).read_bytes() == there

@@ -39,11 +39,8 @@ def test_every_place_has_a_new_quantity(scene, capsys):
     assert main(["compare", scene, "--out", "out", "--quiet"]) == 0
     table, page = capsys.readouterr().out, Path("out/report.html").read_text()
     assert re.search(r" friction +rise +stable ", table)
-    (run, _), lines = (
-        json.loads(Path("out/summary.json").read_text())["runs"],
-        Path("out/table.csv").read_text().splitlines(),
-    )
-    row, _ = csv.DictReader(lines)
+    run, _ = json.loads(Path("out/summary.json").read_text())["runs"]
+    row, _ = csv.DictReader(Path("out/table.csv").read_text().splitlines())
     error = run["errors"]["path"]["rise"]
     assert 0.0 < error < 1e-5
     assert float(row["error_path_rise"]) == error
@@ -52,10 +49,8 @@ def test_every_place_has_a_new_quantity(scene, capsys):
     assert "rise [m]" in page
     assert "over the length" in page
     for bound, status in ((2.0 * error, 0), (0.5 * error, 1)):
-        assert (
-            main(["compare", scene, "--elements", "20", "--element", "mixed", "--max-error", f"rise={bound}"])
-            == status
-        )
+        line = f"compare {scene} --elements 20 --element mixed --max-error rise={bound}"
+        assert main(line.split()) == status
         assert f"  rise {error:13.3g}  " in capsys.readouterr().out
     assert "| `rise` | length | rise of the tips over the length |" in generated.PAGES["quantities.md"]()
     with pytest.raises(SystemExit):

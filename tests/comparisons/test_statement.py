@@ -1,7 +1,6 @@
 """The errors of a response by every quantity."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +10,7 @@ from comparisons.answer.errors import errors
 from comparisons.answer.quantities import KEPT
 from comparisons.models import solve
 from comparisons.scene import load_scene
+from tests.comparisons.referee.forged import contact
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=5)
 PAIR, BEAM, CLAMP = "pin->cantilever", "cantilever", "cantilever.start"
@@ -19,10 +19,6 @@ PAIR, BEAM, CLAMP = "pin->cantilever", "cantilever", "cantilever.start"
 @pytest.fixture(scope="module")
 def rod() -> Response:
     return solve(SCENE, "rod")
-
-
-def with_contact(rod: Response, **changes: Any) -> Response:
-    return replace(rod, contacts={PAIR: replace(rod.contacts[PAIR], **changes)})
 
 
 def shifted(rod: Response, way: np.ndarray) -> Response:
@@ -35,13 +31,13 @@ def shifted(rod: Response, way: np.ndarray) -> Response:
 
 def changed(rod: Response, name: str) -> tuple[Response, float]:
     """A response with a fault that one quantity sees, and its error on a beam twice as long."""
-    contact, support = rod.contacts[PAIR], rod.supports[CLAMP]
+    own, support = rod.contacts[PAIR], rod.supports[CLAMP]
     way, moment = np.array([0.03, 0.04]), 0.01 * np.abs(support.moment).max()
     return {
-        "force": lambda: (with_contact(rod, force=contact.force + 0.01 * contact.force.max()), 0.01),
-        "arc": lambda: (with_contact(rod, arc_position=contact.arc_position - 0.03), 0.015),
+        "force": lambda: (contact(rod, force=own.force + 0.01 * own.force.max()), 0.01),
+        "arc": lambda: (contact(rod, arc_position=own.arc_position - 0.03), 0.015),
         "moment": lambda: (replace(rod, supports={CLAMP: replace(support, moment=support.moment + moment)}), 0.01),
-        "friction": lambda: (replace(rod, material_force={BEAM: rod.material_force[BEAM] + 0.02 * contact.force}), 0.02),
+        "friction": lambda: (replace(rod, material_force={BEAM: rod.material_force[BEAM] + 0.02 * own.force}), 0.02),
         "tip": lambda: (replace(rod, tips={BEAM: rod.tips[BEAM] + way}), 0.025),
         "shape": lambda: (shifted(rod, way), 0.025),
     }[name]()  # fmt: skip
@@ -65,7 +61,7 @@ def test_every_quantity_sees_its_own_fault(name, rod):
 def test_errors_of_a_stopped_run_are_unknown_and_of_a_contact_lost_alone_infinite(rod):
     stopped = replace(rod, load_parameter=rod.load_parameter[:2])
     assert np.isnan(errors(stopped, rod, SCENE)["path"]["force"])
-    lost = replace(with_contact(rod, arc_position=np.full(5, np.nan)), material_force={})
+    lost = replace(contact(rod, arc_position=np.full(5, np.nan)), material_force={})
     for own, true in ((lost, rod), (rod, lost)):
         found = errors(own, true, SCENE)["path"]
         assert found["arc"] == found["friction"] == np.inf

@@ -24,10 +24,7 @@ STOPS = {
     "release of a contact that must persist": ("LOST_CONTACT", pin(BACK, keep="true"), KEPT, 8),
     "slip-off of a contact that must persist": ("SLIPPED_OFF", pin(OFF, keep="true"), KEPT, 6),
     "slip-off of the solid": ("LOST_CONTACT", pin(OFF, keep="true"), ["solid --mesh 16x1"], 6),
-    "pin behind the last equilibrium": ("LIMIT_POINT", pin(BEHIND), ["tsm"], 6),
     "no equilibrium of the rod": ("LOST", pin(BEHIND), ["rod"], 6),
-    "a lost contact that need not persist": ("COMPLETED", pin(BACK), ["tsm"], 10),
-    "a slip-off that need not persist": ("COMPLETED", pin(OFF), ["tsm"], 10),
     "a contact that persists as it must": ("COMPLETED", pin(UP, keep="true"), ["tsm", "rod"], 10),
 }  # fmt: skip
 

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparisons.answer import Deformation, Response
+from comparisons.answer import Response
 from comparisons.models import solve
 from comparisons.models.model import Options
 from comparisons.models.verify import CHECK_FAILED, CHECKS, verified
 from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene
-from tests.comparisons.referee.forged import contact, support
+from tests.comparisons.referee.forged import contact, deformed, support
 from tests.comparisons.referee.test_thresholds import CASES as THRESHOLDS
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=5)
@@ -45,16 +45,6 @@ def opened(response: Response) -> Response:
     return contact(response, arc_position=arc, force=force)
 
 
-def bent(r: Response) -> Response:
-    one = np.ones(1)
-    return replace(
-        r,
-        deformation=Deformation(
-            load_parameter=r.load_parameter[2:3], turn=2.0 * one, strain=0.0 * one, bearable=1.0
-        ),
-    )
-
-
 KEPT = replace(SCENE, contacts=(replace(SCENE.contacts[0], keep=True),))
 OVER = replace(SCENE, pins=(PinSpec(name="pin", path=((1.0, -0.2), (1.005, -0.005)), radius=0.02),))
 BREAKS: dict[str, tuple[Change, str, Scene]] = {
@@ -64,7 +54,7 @@ BREAKS: dict[str, tuple[Change, str, Scene]] = {
     "clear ends": (without_force, "pin overlaps the end of beam cantilever at load parameter 1", OVER),
     "sides of beams": (without_force, "open and its node goes through the beam up to load parameter 0.2", SCENE),
     "balance": (lambda r: support(r, force=-r.supports[CLAMP].force), "support moments do not balance", SCENE),
-    "bend of elements": (bent, "too few elements: one bends by 2 rad, more than 1 at load parameter 0.6", SCENE),
+    "bend of elements": (lambda r: deformed(r, 0.6, turn=2.0), "too few elements: one bends by 2 rad, more than 1 at load parameter 0.6", SCENE),
 }  # fmt: skip
 """For each check without a threshold: how an answer is spoiled, what is said then, and the scene."""
 BOUNDED = {

@@ -66,13 +66,9 @@ SAID = {
 """What a command, or one that begins with these words, prints beside its exit status."""
 ELSEWHERE = ("run trade", "run manual", "run extremes", "compare tip-load")
 """Beginnings of commands of a minute and more, which have slow tests of their own: here only their arguments are read."""
-MORE = (
-    "crossval solve double-beam",
-    "crossval certify",
-    "crossval check ks-cantilever --out",
-    "crossval --version",
-    "crossval solve ks-cantilever --model rod",
-)
+MORE = tuple(
+    f"crossval {one}" for one in ("solve double-beam", "certify", "check ks-cantilever --out", "--version", "solve ks-cantilever --model rod")
+)  # fmt: skip
 """Lines of more than a second besides those of `SLOW`; the fast tests of the commands run them on smaller scenes."""
 
 
@@ -101,17 +97,8 @@ def test_every_command_is_shown():
 
 
 SEARCHED = (
-    "spring rate",
-    "force-displacement",
-    "PDF",
-    "stress",
-    "buckling",
-    "buckles",
-    "friction",
-    "reaction",
-    "units",
-    "install",
-)
+    "spring rate", "force-displacement", "PDF", "stress", "buckling", "buckles", "friction", "reaction", "units", "install",
+)  # fmt: skip
 """Words that people search for."""
 
 

@@ -1,7 +1,6 @@
 """The pages that are made from the code say what the code does."""
 
 import json
-import os
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +10,6 @@ import pytest
 
 import tsm
 from comparisons.scene import SPECIAL, built_in_scenes, load_scene, to_toml, unstated
-from docs.extensions.gallery import gallery
 from docs.extensions.generated import PAGES, SCHEMAS, STATUSES, questions, write_pages
 from tests.docs.snippets import ROOT, run_line
 
@@ -120,19 +118,6 @@ def test_a_resolved_scene_obeys_its_schema(scene):
     data = json.loads(run_line(f"crossval check {scene} --out -"))
     check_schema(SCHEMAS["resolved-scene"], data)
     assert len(data["beams"]) == len(found.beams)
-
-
-@pytest.mark.slow
-def test_a_picture_older_than_its_scene_is_drawn_anew(tmp_path):
-    shown = gallery(tmp_path)
-    pictures = {name: tmp_path / f"{name}.svg" for name in built_in_scenes()}
-    assert all(f"/{path.name}" in shown for path in pictures.values())
-    os.utime(pictures["ks-cantilever"], (0, 0))
-    times = {name: path.stat().st_mtime_ns for name, path in pictures.items()}
-    assert gallery(tmp_path) == shown
-    assert [name for name, path in pictures.items() if path.stat().st_mtime_ns != times[name]] == [
-        "ks-cantilever"
-    ]
 
 
 def test_pages_are_written_and_an_unchanged_one_keeps_its_time(tmp_path):

@@ -35,10 +35,8 @@ def test_augmented_lagrangian_reaches_the_requested_penetration(surface, materia
     result = fr.solve(problem, np.append(t, 1.0))
     power = result.contacts[PAIR].vector[:-1] @ np.subtract(*problem.pins[0].path[::-1])
     work = np.tile(w / 2 / panels, panels) @ power
-    penetration, difference = (
-        np.abs(result.contacts[PAIR].gap).max(),
-        abs(work / sum(fr.energy(result, -1)) - 1),
-    )
+    penetration = np.abs(result.contacts[PAIR].gap).max()
+    difference = abs(work / sum(fr.energy(result, -1)) - 1)
     assert penetration <= 1e-10
     assert difference <= 1e-6
     stated("solid.penetration", penetration, part=True)

@@ -19,6 +19,7 @@ from tests.fem_reference.strips import (
     load,
     loads,
     pressed,
+    rotation,
     support,
 )
 
@@ -64,6 +65,15 @@ def test_a_rotational_spring_turns_with_its_moment():
     assert result.springs[CLAMP].moment[-1] == pytest.approx(-4 * k, rel=1e-8)
     angle = np.arctan2(*result.tips[STRIP][-1][::-1]) % (2 * np.pi)
     assert angle == pytest.approx(4.0 + 0.002, abs=1e-7)  # half of the strip's own turn of .004
+
+
+@pytest.mark.parametrize("angle", [0.0, np.pi / 2, 0.9])
+def test_a_full_clamp_holds_every_point_of_its_edge(angle):
+    along = rotation(angle)[:, 0]
+    clamp = {"clamp": "full", "end": tuple(map(float, along)), "mesh": (4, 2)}
+    result = fr.solve(held(load(force=(EI, 2 * EI)), **KEPT | clamp), loads(1))
+    still = np.flatnonzero(np.all(result.displacement[-1] == 0.0, axis=1))
+    assert still.tolist() == np.flatnonzero(np.abs(result.mesh_points @ along) < 1e-9).tolist()
 
 
 def arc(turn, **changes):

@@ -144,6 +144,10 @@ def flat(points, quads, lines):
     return points, quads, lines
 
 
+def without_one(points, quads, lines):
+    return points, np.delete(quads, 34, axis=0), lines
+
+
 def parted(points, quads, lines):
     split = np.where(quads[:, :1] >= 30, quads + len(points), quads)
     used, local = np.unique(split, return_inverse=True)
@@ -157,16 +161,12 @@ BROKEN = {
     "element 5 has no area": flat,
     "element .* is not convex": moved(lambda p: p + (np.arange(len(p)) == 31)[:, None] * [0.07, 0, 0]),
     r"the boundary from \(0\.495, .* must lie at x = 0": parted,
-    "covers the strip 2 times": lambda points, quads, lines: (
-        np.concatenate([points, points]),
-        np.concatenate([quads, quads + len(points)]),
+    "covers the strip 2 times": lambda p, quads, lines: (
+        np.tile(p, (2, 1)),
+        np.r_[quads, quads + len(p)],
         lines,
     ),
-    r"the boundary from \(0\.8.*, .* must lie at x = 0 or 1, or at y = -0\.01 or 0\.01": lambda p, quads, lines: (
-        p,
-        np.delete(quads, 34, axis=0),
-        lines,
-    ),
+    r"the boundary from \(0\.8.*, .* must lie at x = 0 or 1, or at y = -0\.01 or 0\.01": without_one,
     r"the boundary from \(0\.1, .* must lie": moved(lambda p: np.add(p, [0.1, 0, 0])),
     r"the boundary from \(0\.5, .* must lie": moved(lambda p: 0.5 * p * [1, 2, 1]),
     r"the boundary from \(0, -0\.03\) .* must lie": moved(lambda p: p * [1, 3, 1]),

@@ -93,10 +93,6 @@ def end_beyond():
     return fr.SolidProblem(strips=(make_strip(end=(2.0, 0.0)), upper), contacts=(end,))
 
 
-def pin_beyond(y, **values):
-    return make_problem(path=((0.5, y), (0.5, 1.0)), contact=values)
-
-
 HINGE = support(motion=(0.0, 0.0, None))
 TOGETHER = {
     "SolidProblem.strips = 'cantilever': must not appear twice": lambda: fr.SolidProblem(
@@ -107,14 +103,11 @@ TOGETHER = {
     "SolidProblem.supports = .*: must not appear twice": lambda: held(support(), support()),
     "Support.*end = 'start': must not be a clamped end": lambda: held(support(), clamped=("start",)),
     "ends = 'other.start': must be an end without a clamp, at the pos": joint_apart,
-    "stiffness = .*: must be three finite numbers, none negative": lambda: spring(stiffness=(-1.0, 0.0, 0.0)),
-    "strip = 's': must name a strip": lambda: held(point(), clamped=("start",)),
     "turn = 2.0: must leave the radius": lambda: make_strip(turn=2.0, height=1.3),
     "turn = 1.0: must be zero with a mesh file": lambda: make_strip(turn=1.0, mesh_file="a.msh"),
     "Contact('upper.end->cantilever').node = .*must not start be": end_beyond,
-    "Pin('pin').path[0] = .*must not start beyond the right axis": lambda: pin_beyond(0.01),
-    "Pin('pin').path[0] = .*must not start beyond the left face": lambda: pin_beyond(
-        0.0, side="left", surface="face"
+    "Pin('pin').path[0] = .*must not start beyond the right axis": lambda: make_problem(
+        path=((0.5, 0.01), (0.5, 1.0))
     ),
 }
 

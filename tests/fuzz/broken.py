@@ -4,21 +4,15 @@ import copy
 import math
 import tomllib
 from random import Random
+from typing import Any
 
 from hypothesis import strategies as st
 from hypothesis.internal.conjecture import providers
 
-from comparisons.scene import (
-    BeamSpec,
-    ContactSpec,
-    HingeSpec,
-    LoadSpec,
-    PinSpec,
-    SpringSpec,
-    StageSpec,
-    SupportSpec,
-    to_toml,
-)
+from comparisons.scene import to_toml
+
+# the tables of a file and their records
+from comparisons.scene.read import LISTS
 from tests.fuzz.special import drawn_special
 from tests.fuzz.world import Tables, toml_text
 
@@ -60,11 +54,6 @@ numbers = st.one_of(
     st.floats(allow_nan=True, allow_infinity=True),
     one_of(0, -1, 1, 2, 3, 100_001, 2**31, 2**63, 2**64, 10**30, 10**400, -(10**400)),
 )
-TABLES = {
-    "beam": BeamSpec, "support": SupportSpec, "load": LoadSpec, "pin": PinSpec, "contact": ContactSpec, "hinge": HingeSpec,
-    "spring": SpringSpec, "stage": StageSpec,
-}  # fmt: skip
-"""The records of a scene by the names of their tables."""
 WORDS = ["start", "end", "pin", "beam", "a.end", "x", "..", "\U0001d6fc", "\u202e", "%s{}"]
 texts = st.one_of(one_of(*WORDS, "", " ", "N, m", "a\nb", "\0"), st.text(max_size=12))
 values = st.recursive(
@@ -73,7 +62,7 @@ values = st.recursive(
     max_leaves=6,
 )
 KEYS = sorted(
-    {key for kind in TABLES.values() for key in kind.__annotations__} | {"units", "load_parameters", *TABLES}
+    {key for kind in LISTS.values() for key in kind.__annotations__} | {"units", "load_parameters", *LISTS}
 )
 """Keys that are added where they may not stand."""
 
@@ -93,6 +82,13 @@ def mutated(draw: st.DrawFn) -> str:
     return toml_text(scene)
 
 
+def _number(draw: st.DrawFn, holder: Any, at: Any) -> None:
+    """Put a number in the place of a value, or of one in its lists."""
+    while isinstance(value := holder[at], list) and value:
+        holder, at = value, draw(st.integers(0, len(value) - 1))
+    holder[at] = draw(numbers)
+
+
 def _mutate(draw: st.DrawFn, table: Tables) -> None:
     """Change one key of a table."""
     key = draw(st.sampled_from(list(table)))
@@ -100,10 +96,8 @@ def _mutate(draw: st.DrawFn, table: Tables) -> None:
     several = isinstance(value, list) and bool(value)
     tables = several and isinstance(value[0], dict)
     how = draw(one_of("value", "number", "delete", "misspell", "add", "length", "scale", "repeat", "wrap"))
-    if how == "number" and several and not tables:
-        value[draw(st.integers(0, len(value) - 1))] = draw(numbers)
-    elif how == "number" and not isinstance(value, dict | list):
-        table[key] = draw(numbers)
+    if how == "number" and not tables and not isinstance(value, dict):
+        _number(draw, table, key)
     elif how == "scale" and isinstance(value, float):
         table[key] = value * 10.0 ** draw(st.integers(-300, 300))
     elif how == "length" and isinstance(value, list):
@@ -121,28 +115,6 @@ def _mutate(draw: st.DrawFn, table: Tables) -> None:
             table[key[:at] + draw(one_of("", "x", "_", "é", ".")) + key[at + 1 :] or "x"] = value
     else:
         table[key] = draw(values)
-
-
-def _numbers(value: object) -> bool:
-    """Whether a value is a point, or a path of points."""
-    return isinstance(value, list) and any(isinstance(item, float) or _numbers(item) for item in value)
-
-
-@st.composite
-def displaced(draw: st.DrawFn) -> str:
-    """A valid scene with a coordinate, a modulus or a force moved to where floating-point numbers end."""
-    scene = copy.deepcopy(draw(valid_scenes))
-    table = draw(st.sampled_from(_tables(scene)))
-    numeric = [key for key, value in table.items() if isinstance(value, float) or _numbers(value)]
-    if numeric:
-        key = draw(st.sampled_from(numeric))
-        size = draw(one_of(-1, 1)) * 10.0 ** draw(st.integers(-323, 308))
-        if isinstance(table[key], list):
-            point = table[key][0] if isinstance(table[key][0], list) else table[key]
-            point[draw(st.integers(0, len(point) - 1))] = size
-        else:
-            table[key] = size
-    return toml_text(scene)
 
 
 @st.composite
@@ -168,7 +140,7 @@ def garbled(draw: st.DrawFn) -> bytes:
     return data
 
 
-wrong = st.one_of(mutated(), mutated(), mutated(), displaced(), deepened()).map(str.encode)
+wrong = st.one_of(mutated(), mutated(), mutated(), mutated(), deepened()).map(str.encode)
 files = st.one_of(
     valid_scenes.map(lambda scene: toml_text(scene).encode()), wrong, garbled(), st.binary(max_size=200)
 )

@@ -14,7 +14,10 @@ import pytest
 from comparisons.models import solve
 from comparisons.models.model import Options
 from comparisons.scene import SPECIAL, Scene, load_scene, read_scene, to_tables, to_toml
-from tests.fuzz.broken import TABLES
+
+# the tables of a file and their records
+from comparisons.scene.read import LISTS
+from tests.comparisons.referee.forged import contact
 from tests.fuzz.special import DRAW
 from tests.fuzz.world_judge import BEAMS, Judged, Row, findings, judged, wrong
 
@@ -93,7 +96,7 @@ def test_drawn_scenes_have_everything_that_a_scene_can_state() -> None:
     numbers = {"world": 400, "special": 400, "friction": 20}
     scenes = [DRAW[kind](seed) for kind, number in numbers.items() for seed in range(number)]
     found = Counter(kind for scene in scenes for kind in set(_kinds(scene)))
-    keys = {f"{table}.{field.name}" for table, kind in TABLES.items() for field in fields(kind)} - SOLID_ONLY
+    keys = {f"{table}.{field.name}" for table, kind in LISTS.items() for field in fields(kind)} - SOLID_ONLY
     words = {
         "clamped", "pinned", "roller", "start", "end", "x", "y", "rotation", "left", "right", "axis", "face",
         "slender", "thick", "soft in shear", "stiff in shear", "strut", "rigid joint", "several pins on a beam",
@@ -139,12 +142,9 @@ def row() -> Row:
 def forged(row: Row, at: slice = slice(None), **changes: object) -> Row:
     """A row whose contact force is a tenth too large."""
     assert row.response is not None
-    ((pair, contact),) = row.response.contacts.items()
-    force = contact.force.copy()
+    force = next(iter(row.response.contacts.values())).force.copy()
     force[at] *= 1.1
-    return replace(
-        row, response=replace(row.response, contacts={pair: replace(contact, force=force)}), **changes
-    )
+    return replace(row, response=contact(row.response, force=force), **changes)
 
 
 def kinds(*rows: Row) -> list[str]:

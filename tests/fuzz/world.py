@@ -36,20 +36,20 @@ def quoted(key: str) -> str:
 
 def toml_text(tables: Tables) -> str:
     """The file of a scene, however broken."""
-    lines: list[str] = []
+
+    def lines(table: Tables) -> list[str]:
+        return [f"{quoted(key)} = {toml_value(value)}" for key, value in table.items()]
+
+    plain, headed = dict(tables), []
     for key, value in tables.items():
-        if isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
-            for table in value:
-                lines += [
-                    f"[[{quoted(key)}]]",
-                    *(f"{quoted(k)} = {toml_value(v)}" for k, v in table.items()),
-                    "",
-                ]
-        elif isinstance(value, dict):
-            lines += [f"[{quoted(key)}]", *(f"{quoted(k)} = {toml_value(v)}" for k, v in value.items()), ""]
-        else:
-            lines.insert(0, f"{quoted(key)} = {toml_value(value)}")
-    return "\n".join(lines) + "\n"
+        several = isinstance(value, list) and value and all(isinstance(item, dict) for item in value)
+        if several or isinstance(value, dict):
+            header = f"[[{quoted(key)}]]" if several else f"[{quoted(key)}]"
+            headed += [
+                line for table in (value if several else [value]) for line in (header, *lines(table), "")
+            ]
+            del plain[key]
+    return "\n".join([*lines(plain), *headed]) + "\n"
 
 
 class Place:
@@ -60,10 +60,8 @@ class Place:
         self.cos, self.sin = math.cos(angle), math.sin(angle)
 
     def vector(self, x: float, y: float) -> list[float]:
-        return [
-            self.length * (self.cos * x - self.sin * y) + 0.0,
-            self.length * (self.sin * x + self.cos * y) + 0.0,
-        ]
+        turned = self.cos * x - self.sin * y, self.sin * x + self.cos * y
+        return [self.length * value + 0.0 for value in turned]
 
     def point(self, x: float, y: float) -> list[float]:
         vx, vy = self.vector(x, y)
@@ -87,13 +85,9 @@ def drawn_with_friction(seed: int) -> Scene:
     random = Random(-1 - seed)  # noqa: S311 - nothing is secret
     contacts = scene.contacts
     while not any(contact.friction for contact in contacts):
-        coefficients = (
-            random.choice((0.0, random.uniform(0.0, 1.0), 10.0 ** random.uniform(-3.0, 0.5)))
-            for _ in contacts
-        )
-        contacts = tuple(
-            replace(contact, friction=mu) for contact, mu in zip(contacts, coefficients, strict=True)
-        )
+        for k, contact in enumerate(contacts):
+            mu = random.choice((0.0, random.uniform(0.0, 1.0), 10.0 ** random.uniform(-3.0, 0.5)))
+            contacts = (*contacts[:k], replace(contact, friction=mu), *contacts[k + 1 :])
     return replace(scene, contacts=contacts)
 
 
@@ -140,14 +134,9 @@ class _World:
             self.pin()
         if self.chance(0.15):
             self.load()
-        tables: Tables = {
-            "scene": {
-                "name": name,
-                "units": self.one_of("N, m", "N, mm"),
-                "load_parameters": self.one_of(1, 2, 3, 4, 5, 7, 8, 10),
-            },
-            "beam": self.beams,
-        }
+        head = {"name": name, "units": self.one_of("N, m", "N, mm")}
+        head["load_parameters"] = self.one_of(1, 2, 3, 4, 5, 7, 8, 10)
+        tables: Tables = {"scene": head, "beam": self.beams}
         lists = {"support": self.supports, "load": self.loads, "pin": self.pins, "contact": self.contacts}
         return tables | {key: items for key, items in lists.items() if items}
 
@@ -184,11 +173,8 @@ class _World:
         width = height * self.one_of(1.0, 1.0, 10.0 ** self.random.uniform(-1.0, 1.0))
         section: Tables = {"youngs_modulus": self.stiffness * self.one_of(1.0, 1.0, 3.0)}
         if not self.soft:
-            return section | {
-                "width": width,
-                "height": height,
-                "poissons_ratio": self.one_of(0.3, 0.0, 0.49, -0.3),
-            }
+            nu = self.one_of(0.3, 0.0, 0.49, -0.3)
+            return section | {"width": width, "height": height, "poissons_ratio": nu}
         area, inertia = width * height, width * height**3 / 12.0
         shear = 10.0 ** self.random.uniform(0.3, 5.0) * inertia / (length * self.place.length) ** 2
         section |= {"area": area, "second_moment": inertia, "shear_area": shear}
@@ -219,12 +205,9 @@ class _World:
         far = self.one_of("free", "pinned", "held")
         self.support(name, (0.0, 0.0), PINNED if far == "pinned" else CLAMPED)
         if far != "free" and self.chance(0.5):
-            motion = self.place.vector(
-                -(10.0 ** self.random.uniform(-4.0, -0.5)), self.one_of(0.0, 1e-6, 1e-3, 0.02)
-            )
-            self.support(
-                name, (1.0, 0.0), (PINNED if far == "pinned" else CLAMPED) | {"displacement": motion}
-            )
+            shortened, aside = 10.0 ** self.random.uniform(-4.0, -0.5), self.one_of(0.0, 1e-6, 1e-3, 0.02)
+            kind = PINNED if far == "pinned" else CLAMPED
+            self.support(name, (1.0, 0.0), kind | {"displacement": self.place.vector(-shortened, aside)})
             return
         if far != "free":
             # what is free must be a global direction
@@ -242,9 +225,8 @@ class _World:
         for _ in range(self.random.randint(2, 4)):
             size = self.one_of(1.0, 1.0, 0.5)
             x, y = corners[-1]
-            corners.append(
-                (round(x + size * math.cos(direction), 6), round(y + size * math.sin(direction), 6))
-            )
+            way = math.cos(direction), math.sin(direction)
+            corners.append((round(x + size * way[0], 6), round(y + size * way[1], 6)))
             direction += self.one_of(0.0, math.pi / 2, -math.pi / 2, self.random.uniform(-1.5, 1.5))
         names = [self.beam(a, b) for a, b in pairwise(corners)]
         self.support(names[0], corners[0], self.one_of(CLAMPED, CLAMPED, PINNED))
@@ -261,11 +243,8 @@ class _World:
     def fork(self) -> None:
         """Three beams that meet in one joint."""
         joint = (0.6, 0.0)
-        tips = [
-            (0.0, 0.0),
-            (1.2, round(self.random.uniform(0.05, 0.6), 3)),
-            (1.0, -round(self.random.uniform(0.05, 0.6), 3)),
-        ]
+        up, down = (round(self.random.uniform(0.05, 0.6), 3) for _ in range(2))
+        tips = [(0.0, 0.0), (1.2, up), (1.0, -down)]
         names = [self.beam(joint, tip) for tip in tips]
         self.support(names[0], tips[0], CLAMPED)
         if self.chance(0.4):
@@ -299,19 +278,17 @@ class _World:
         top = (round(x + self.one_of(0.0, 1e-4, self.random.uniform(-0.6, 0.6)), 6), 1.0)
         tip = (round(x, 6), gap)
         above = self.beam(top, tip)
-        motion = self.place.vector(
-            self.one_of(0.0, self.random.uniform(-0.3, 0.3)), -self.one_of(0.01, 0.1, 0.3)
-        )
-        self.support(above, top, self.one_of(CLAMPED, CLAMPED, PINNED) | {"displacement": motion})
+        aside, down = self.one_of(0.0, self.random.uniform(-0.3, 0.3)), self.one_of(0.01, 0.1, 0.3)
+        moved = {"displacement": self.place.vector(aside, -down)}
+        self.support(above, top, self.one_of(CLAMPED, CLAMPED, PINNED) | moved)
         self.touch(f"{above}.{self.end_at(above, tip)}", below, above=True)
 
     def over_a_drum(self) -> None:
         """A cantilever bent over a round pin by its tip's load, a pin or a moved clamp."""
         name = self.beam((0.0, 0.0), (1.0, 0.0))
         self.support(name, (0.0, 0.0), CLAMPED)
-        self.pin(
-            name, above=False, x=self.random.uniform(0.1, 0.7), radius=10.0 ** self.random.uniform(-2.0, 0.0)
-        )
+        x, radius = self.random.uniform(0.1, 0.7), 10.0 ** self.random.uniform(-2.0, 0.0)
+        self.pin(name, above=False, x=x, radius=radius)
         if self.chance(0.7):
             size = -(10.0 ** self.random.uniform(-0.5, 1.6))
             self.loaded(name, (1.0, 0.0), self.scaled(name, 0.0, size), 0.0)
@@ -347,17 +324,11 @@ class _World:
         name = name or self.one_of(*self.corners)
         size = 10.0 ** self.random.uniform(-2.0, 1.2)
         direction = self.one_of(math.pi / 2, -math.pi / 2, math.pi, self.random.uniform(-math.pi, math.pi))
-        force = (
-            self.scaled(name, size * math.cos(direction), size * math.sin(direction))
-            if self.chance(0.8)
-            else [0.0, 0.0]
-        )
-        turning = self.chance(0.3) or not any(force)
-        moment = (
-            self.bending(name) * self.place.length * self.one_of(1.0, -1.0) * min(size, 6.0)
-            if turning
-            else 0.0
-        )
+        force, moment = [0.0, 0.0], 0.0
+        if self.chance(0.8):
+            force = self.scaled(name, size * math.cos(direction), size * math.sin(direction))
+        if self.chance(0.3) or not any(force):
+            moment = self.bending(name) * self.place.length * self.one_of(1.0, -1.0) * min(size, 6.0)
         self.loaded(name, self.corners[name][self.random.randrange(2)], force, moment)
 
     def moved(self) -> None:

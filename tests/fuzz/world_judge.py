@@ -39,13 +39,8 @@ BETWEEN = 2e-2
 INSIDE = {"exact": 1e-9, "mixed": 1e-4, "solid": math.inf, "rod": 1e-9}
 """Largest depth of a completed axis inside a round pin, over the beam's length. The axis of `mixed` is drawn through element ends."""
 NO_NEXT_STEP = {
-    "CUTBACK_FLOOR",
-    "STEP_LIMIT",
-    "SINGULAR_TANGENT",
-    "ITERATION_LIMIT",
-    "NOT_FINITE",
-    "INACCURATE",
-}
+    "CUTBACK_FLOOR", "STEP_LIMIT", "SINGULAR_TANGENT", "ITERATION_LIMIT", "NOT_FINITE", "INACCURATE",
+}  # fmt: skip
 """Statuses of a step that was not found: which of them depends on the step's length."""
 GAVE_UP = "no next step"
 SAME = 1e-6

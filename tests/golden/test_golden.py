@@ -14,14 +14,8 @@ BOUND = 1e-12 if machine() == MACHINE else 1e-11 if machine().split(";")[0] == M
 SOLID = BOUND if machine() == MACHINE else 1e-7
 """That of the solid: its Newton's method ends at 1e-9 of the forces, which move a slender strip by more."""
 LATE = {
-    *SLOW,
-    "heavy-strip",
-    "tip-load",
-    "hinged-truss",
-    "sleeve",
-    "page-hysteresis-stages",
-    *(f"compare-{scene}" for scene in COMPARED),
-}
+    *SLOW, "heavy-strip", "tip-load", "hinged-truss", "sleeve", "page-hysteresis-stages", *(f"compare-{scene}" for scene in COMPARED),
+}  # fmt: skip
 ALLOWED = {"exact": 1e-8, "mixed": 2e-3, "timoshenko": 0.03, "elastica": 5e-3, "solid": 0.06}
 """Largest difference of a model from the referee, over the largest number of a line."""
 THICK = {("sleeve", "solid"): 0.25}

@@ -40,14 +40,8 @@ def column(ends: str, load: float, number: int) -> Scene:
     hinges = (HingeSpec(**foot, stiffness=SPRING),) if ends == "hinged" else ()
     springs = (SpringSpec(**foot, rotation=SPRING),) if ends == "sprung" else ()
     return Scene(
-        name="column",
-        load_parameters=number,
-        beams=(beam,),
-        supports=supports,
-        loads=(push,),
-        hinges=hinges,
-        springs=springs,
-    )
+        name="column", load_parameters=number, beams=(beam,), supports=supports, loads=(push,), hinges=hinges, springs=springs,
+    )  # fmt: skip
 
 
 def critical(ends: str, mode: int, GA: float = GA) -> float:

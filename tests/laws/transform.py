@@ -4,25 +4,38 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
 from comparisons.answer import Response
-from comparisons.scene import BeamSpec, LoadSpec, Scene
+from comparisons.scene import BeamSpec, HingeSpec, LoadSpec, Scene, SpringSpec
+from comparisons.scene.record import Record
 
 OTHER = {"start": "end", "end": "start", "left": "right", "right": "left", "x": "y", "y": "x"}
+STIFF = {HingeSpec: "hinge", SpringSpec: "spring"}
 STATIONS = np.linspace(0.0, 1.0, 5)
 """Parts of a beam's length at which its axis is read."""
 Readings = dict[str, tuple[str, np.ndarray]]
 """Kind and values of what an answer states, by names such as ``force pin->beam``."""
 
 
-def pair(value: object, change: Callable[[float], float]) -> object:
-    """Change a number, or both of two, or none."""
-    if isinstance(value, tuple):
-        return tuple(map(change, value))
-    return None if value is None else change(value)  # type: ignore[arg-type]
+def rebuilt(record: Any, change: Callable[[Any, str, Any], Any]) -> Any:
+    """Return a record, and those in it, with what it states changed by ``change(record, key, value)``."""
+    new = {}
+    for key in (item.name for item in fields(record)):
+        value = getattr(record, key)
+        if isinstance(value, tuple) and value and isinstance(value[0], Record):
+            new[key] = tuple(rebuilt(one, change) for one in value)
+        elif value is not None:
+            new[key] = change(record, key, value)
+    return replace(record, **new)
+
+
+def pair(value: Any, change: Callable[[Any], Any]) -> Any:
+    """Change a value, or each of several."""
+    return tuple(map(change, value)) if isinstance(value, tuple) else change(value)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,103 +75,48 @@ class Change:
         uneven = any(len({"x", "y"} & set(support.held)) == 1 for support in scene.all_supports)
         return not uneven and all(item.stiffness[0] == item.stiffness[1] for item in scene.springs)
 
-    def _direction(self, component: str) -> str:
-        return OTHER.get(component, component) if abs(self.matrix[0, 0]) < 0.5 else component
-
-    def _beam(self, beam: BeamSpec) -> BeamSpec:
-        L, F = self.length, self.force
-        powers = {
-            "width": L, "height": L, "area": L**2, "second_moment": L**4, "shear_area": L**2,
-            "density": F / L**3, "youngs_modulus": F / L**2, "shear_modulus": F / L**2,
-        }  # fmt: skip
-        scaled = {key: pair(getattr(beam, key), power.__mul__) for key, power in powers.items()}
-        ends = {"start": self.point(beam.start), "end": self.point(beam.end)}
-        return replace(beam, **scaled, **ends, turn=self.sign * beam.turn)  # type: ignore[arg-type]
-
-    def _load(self, load: LoadSpec) -> LoadSpec:
-        if load.force_per_length is not None:
-            return replace(
-                load, force_per_length=self.turned(load.force_per_length, self.force / self.length)
-            )
-        moment = self.sign * self.force * self.length * load.moment
-        return replace(load, force=self.turned(load.force, self.force), moment=moment)
-
-    def _moved(self, item, **changes):  # type: ignore[no-untyped-def] - a support or a move of one
-        moved = item.displacement and self.vector(item.displacement)
-        return replace(
-            item, displacement=moved, rotation=item.rotation and self.sign * item.rotation, **changes
-        )
-
-    def _support(self, item):  # type: ignore[no-untyped-def]
-        fixed = item.fixed and tuple(map(self._direction, item.fixed))
-        return self._moved(item, free=item.free and self._direction(item.free), fixed=fixed)
-
-    def _way(self, pin):  # type: ignore[no-untyped-def] - a pin or a move of one
-        points = pin.path and tuple(map(self.point, pin.path))
-        return replace(pin, path=points, displacement=pin.displacement and self.vector(pin.displacement))
-
     def scene(self, scene: Scene) -> Scene:
         """Return the changed scene."""
-        L, F = self.length, self.force
+        L, F, sign, across = self.length, self.force, self.sign, abs(self.matrix[0, 0]) < 0.5
+        factors = {
+            "width": L, "height": L, "radius": L, "area": L**2, "shear_area": L**2, "second_moment": L**4, "density": F / L**3,
+            "youngs_modulus": F / L**2, "shear_modulus": F / L**2, "penalty": F / L, "moment": sign * F * L, "turn": sign,
+            "rotation": sign, "spring rotation": F * L, "hinge stiffness": F * L, "spring stiffness": F / L,
+        }  # fmt: skip
+        vectors = {"gravity": 1.0, "displacement": L, "force": F, "force_per_length": F / L}
 
-        def stiffness(values: tuple[float, float]) -> tuple[float, float]:
-            x, y = values if values[0] == values[1] else abs(self.matrix).round(12) @ values
-            return float(x * F / L), float(y * F / L)
+        def direction(component: str) -> str:
+            return OTHER.get(component, component) if across else component
 
-        return replace(
-            scene,
-            gravity=scene.gravity and self.turned(scene.gravity, 1.0),
-            beams=tuple(map(self._beam, scene.beams)),
-            supports=tuple(map(self._support, scene.supports)),
-            loads=tuple(map(self._load, scene.loads)),
-            pins=tuple(
-                replace(self._way(pin), start=pin.start and self.point(pin.start), radius=pin.radius and L * pin.radius)
-                for pin in scene.pins
-            ),
-            contacts=tuple(
-                replace(item, side=OTHER[item.side] if self.mirror else item.side, penalty=item.penalty and F / L * item.penalty)
-                for item in scene.contacts
-            ),
-            hinges=tuple(replace(item, stiffness=F * L * item.stiffness) for item in scene.hinges),
-            springs=tuple(
-                replace(item, stiffness=stiffness(item.stiffness), rotation=F * L * item.rotation) for item in scene.springs
-            ),
-            stages=tuple(
-                replace(
-                    stage,
-                    pin=tuple(map(self._way, stage.pin)),
-                    support=tuple(map(self._moved, stage.support)),
-                    load=tuple(map(self._load, stage.load)),
-                    gravity=self.turned(stage.gravity, 1.0),
-                )
-                for stage in scene.stages
-            ),
-        )  # fmt: skip
+        def changed(record: Record, key: str, value: Any) -> Any:
+            key = f"{STIFF.get(type(record), '')} {key}" if key in ("stiffness", "rotation") else key
+            if (factor := factors.get(key.strip())) is not None:
+                scaled = pair(value, factor.__mul__)
+                return scaled[::-1] if key == "spring stiffness" and across else scaled
+            if key in vectors:
+                return self.turned(value, vectors[key])
+            if key in ("start", "end", "path") and not isinstance(value, str):
+                return tuple(map(self.point, value)) if key == "path" else self.point(value)
+            if key == "side":
+                return OTHER[value] if self.mirror else value
+            return pair(value, direction) if key in ("free", "fixed") else value
+
+        return rebuilt(scene, changed)
 
     def readings(self, found: Readings) -> Readings:
         """Return what the answer to the changed scene states."""
         L, F = self.length, self.force
-        factors = {
-            "size": F,
-            "moment": self.sign * F * L,
-            "arc": L,
-            "energy": F * L,
-            "number": 1.0,
-            "word": 1,
-        }
+        factors = {"size": F, "moment": self.sign * F * L, "arc": L, "energy": F * L, "number": 1.0}
         changed = {}
         for name, (kind, values) in found.items():
+            new = values
             if kind == "point":
                 new = values @ (L * self.matrix.T) + L * np.array(self.shift)
             elif kind == "force":
                 new = values @ (F * self.matrix.T)
-            else:
+            elif kind != "word":
                 # a shear force is positive to the left
-                new = (
-                    factors[kind] * values * (self.sign if name.startswith("V ") else 1.0)
-                    if kind != "word"
-                    else values
-                )
+                new = factors[kind] * values * (self.sign if name.startswith("V ") else 1.0)
             changed[name] = kind, new
         return changed
 
@@ -167,40 +125,22 @@ def swapped(scene: Scene, beams: Iterable[str]) -> Scene:
     """Return the scene with start and end of some beams exchanged."""
     chosen = set(beams)
 
-    def beam(item: BeamSpec) -> BeamSpec:
-        if item.name not in chosen:
-            return item
-        sizes = {
-            key: value[::-1] for key in ("width", "height") if isinstance(value := getattr(item, key), tuple)
-        }
-        return replace(
-            item, start=item.end, end=item.start, turn=-item.turn, clamped=tuple(OTHER[end] for end in item.clamped),
-            nodes=tuple(1.0 - part for part in reversed(item.nodes)), **sizes,
-        )  # fmt: skip
+    def changed(record: Record, key: str, value: Any) -> Any:
+        if key == "node":
+            return other_end(value, chosen)
+        if getattr(record, "name" if isinstance(record, BeamSpec) else "beam", None) not in chosen:
+            return value
+        if key in ("start", "end") and not isinstance(value, str):
+            return getattr(record, OTHER[key])
+        if key in ("width", "height", "nodes", "part") and isinstance(value, tuple):
+            value = value[::-1]
+        if key in ("at", "nodes", "part"):
+            return pair(value, lambda part: 1.0 - part)
+        if key == "turn":
+            return -value
+        return pair(value, OTHER.__getitem__) if key in ("clamped", "end", "side") else value
 
-    def at(item):  # type: ignore[no-untyped-def] - anything at an end
-        return replace(item, end=OTHER[item.end]) if item.beam in chosen else item
-
-    def load(item: LoadSpec) -> LoadSpec:
-        if item.beam not in chosen:
-            return item
-        part = item.part and (1.0 - item.part[1], 1.0 - item.part[0])
-        return replace(
-            item, end=item.end and OTHER[item.end], at=None if item.at is None else 1.0 - item.at, part=part
-        )
-
-    def contact(item):  # type: ignore[no-untyped-def]
-        side = OTHER[item.side] if item.beam in chosen else item.side
-        return replace(item, node=other_end(item.node, chosen), side=side)
-
-    stages = (
-        replace(stage, support=tuple(map(at, stage.support)), load=tuple(map(load, stage.load))) for stage in scene.stages
-    )  # fmt: skip
-    return replace(
-        scene, beams=tuple(map(beam, scene.beams)), supports=tuple(map(at, scene.supports)),
-        hinges=tuple(map(at, scene.hinges)), springs=tuple(map(at, scene.springs)), loads=tuple(map(load, scene.loads)),
-        contacts=tuple(map(contact, scene.contacts)), stages=tuple(stages),
-    )  # fmt: skip
+    return rebuilt(scene, changed)
 
 
 def other_end(node: str, beams: Iterable[str]) -> str:

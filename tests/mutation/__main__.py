@@ -16,12 +16,7 @@ from random import Random
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("tsm", "fem_reference", "comparisons")
-DRAWS = (
-    "comparisons/report",
-    "comparisons/cli",
-    "comparisons/suites/paper",
-    "comparisons/suites/trade/plots.py",
-)
+DRAWS = ("comparisons/report", "comparisons/cli", "comparisons/suites/paper")
 """Where faults are not put: pages, pictures and texts of help."""
 NEAR = {
     "tsm": "tests/tsm tests/verification tests/laws tests/oracles",

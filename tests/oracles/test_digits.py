@@ -12,10 +12,9 @@ from comparisons.models import solve
 from comparisons.models.model import Options
 from comparisons.scene import load_scene
 from comparisons.suites.manual import problems, read_problem
-from comparisons.suites.manual.measures import (
-    Answers,
-    readings,
-)  # not public: what a problem reads, of the exact rod
+
+# not public: what a problem reads, of the exact rod
+from comparisons.suites.manual.measures import Answers, readings
 from comparisons.suites.paper.fig9 import HAND_OVER
 from tests.oracles import elastica, frames
 from tests.oracles.coupled import pair_of

@@ -47,14 +47,8 @@ def on_a_beam(exact: Equilibrium) -> list[Any]:
 def last(path: Any) -> list[Any]:
     """Return the same of the last state of an exact answer."""
     x, y, rotation = path.shape(-1, 9)[:, :3].T
-    return [
-        path.force[-1],
-        path.arc_position[-1],
-        path.clamp_moment[-1],
-        path.tip[-1],
-        np.stack([x, y], 1),
-        rotation,
-    ]
+    states = path.force, path.arc_position, path.clamp_moment, path.tip
+    return [*(one[-1] for one in states), np.stack([x, y], 1), rotation]
 
 
 def on_the_face(scene: Scene) -> list[Any]:

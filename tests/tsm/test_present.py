@@ -16,11 +16,8 @@ def result():
 
 def test_a_result_prints_its_status_and_has_columns_of_every_quantity(result):
     first, counts, *lines = repr(result).splitlines()
-    contact, moment, (x, y) = (
-        result.contacts["p0->b"],
-        result.supports["b.start"].moment[-1],
-        result.tips["b"][-1],
-    )
+    contact, moment = result.contacts["p0->b"], result.supports["b.start"].moment[-1]
+    x, y = result.tips["b"][-1]
     assert (first, counts[:13]) == ("COMPLETED: all load parameters were reached", "33 unknowns, ")
     assert lines[:4] == [
         "at load parameter 1, the last of 10:",

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from comparisons.answer import ContactHistory, Response, SupportHistory
+from comparisons.answer import ContactHistory, Deformation, Response, SupportHistory
 from comparisons.referee import AnswerState, Equilibrium, SearchStatus, equilibrium
 from comparisons.scene import Scene, load_scene
 
@@ -28,6 +28,14 @@ def support(response: Response, **changes: object) -> Response:
     """Return an answer whose first support states something else."""
     node, history = next(iter(response.supports.items()))
     return replace(response, supports={**response.supports, node: replace(history, **changes)})  # type: ignore[arg-type]
+
+
+def deformed(response: Response, t: float, *, turn: float = 0.0, strain: float = 0.0) -> Response:
+    """Return an answer whose elements turn and strain so much at a load parameter, and bear a turn of 1."""
+    at, turned, strained = (np.array([value]) for value in (t, turn, strain))
+    return replace(
+        response, deformation=Deformation(load_parameter=at, turn=turned, strain=strained, bearable=1.0)
+    )
 
 
 def stated(scene: Scene, path: list[Equilibrium], model: str = "tsm") -> Response:

@@ -53,8 +53,6 @@ def found(scene: Scene, given: AnswerState | None = None) -> Equilibrium:
     return exact
 
 
-WEIGHT = {"beams": (strip(density=3.0),), "gravity": GRAVITY}
-CURVED = {"beams": (strip(turn=0.8),)}
 TIP = {"loads": (LoadSpec(beam="a", end="end", force=(1.0, 6.0), moment=0.5),)}
 PART = LoadSpec(beam="a", force_per_length=(5.0, -10.0), part=(0.15, 0.55))
 INSIDE = LoadSpec(beam="a", at=0.8, force=(2.0, 3.0), moment=0.4)
@@ -160,12 +158,8 @@ LOOSE = (
 SPRUNG = {"beams": (strip(end=(1.0, 0.0), clamped=()),), "springs": LOOSE, "loads": (INSIDE,), "supports": (SupportSpec(beam="a", end="start", fixed=("x",)),)}  # fmt: skip
 MORE = 1.0 + 1e-6
 OTHERS: dict[str, tuple[dict[str, object], dict[str, object], bool]] = {
-    "weight": (WEIGHT, {"gravity": (2.0 * MORE, -20.0 * MORE)}, False),
     "heavy taper": (HEAVY_TAPER, {"beams": (strip(density=3.0, height=0.04),)}, True),
-    "curvature": (CURVED | TIP, {"beams": (strip(turn=-0.8),)}, True),
-    "load on a part": ({"beams": (strip(),), "loads": (PART,)}, {"loads": (replace(PART, force_per_length=(5.0 * MORE, -10.0 * MORE)),)}, False),
     "force inside": ({"beams": (strip(),), "loads": (INSIDE,)}, {"loads": (replace(INSIDE, at=0.8001),)}, False),
-    "spring": ({"beams": (strip(),), "springs": (SPRING,)} | TIP, {"springs": (replace(SPRING, rotation=0.396),)}, False),
     "springs alone": (SPRUNG, {"springs": (LOOSE[0], replace(LOOSE[1], stiffness=(0.0, 396.0)))}, False),
     "hinge": (HINGED, {"hinges": ()}, True),
     "stage": (STAGED, {"loads": (ALONG,), "stages": (StageSpec(load_parameters=2, load=(UP,)),)}, True),

@@ -7,13 +7,13 @@ from functools import cache
 import numpy as np
 import pytest
 
-from comparisons.answer import ContactHistory, Deformation, Response
+from comparisons.answer import ContactHistory, Response
 from comparisons.models import solve
 from comparisons.models.model import Options
 from comparisons.models.verify import CHECK_FAILED, verified
 from comparisons.referee import certify
 from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene
-from tests.comparisons.referee.forged import contact, scene_of, support
+from tests.comparisons.referee.forged import contact, deformed, scene_of, support
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=2)
 RUBBED = replace(load_scene("ks-friction"), load_parameters=6)
@@ -131,14 +131,6 @@ def pressed_in(size: float) -> tuple[Response, Scene]:
     return bulged(response, size, 0.1, 0.3), scene
 
 
-def strained(size: float) -> Response:
-    one = np.ones(1)
-    return replace(
-        answer(KS),
-        deformation=Deformation(load_parameter=one, turn=0.0 * one, strain=size * one, bearable=1.0),
-    )
-
-
 def refused(response: Response, scene: Scene, allowance: float | None = None) -> str:
     found = certify(response, scene, at=[-1], allowance=allowance)
     return "" if found.certified else found.line()
@@ -168,7 +160,11 @@ CASES: dict[str, tuple[float, Callable[[float], str], str]] = {
     "verify.CLOSED": (1e-9, lambda x: failed(ajar(x), KS), "open gap"),
     "verify.PENETRATION": (1e-2, lambda x: failed(pressed(x), KS), "the penetration of"),
     "verify.INSIDE": (1e-3, lambda x: failed(*pressed_in(x)), "L inside beam"),
-    "verify.STRAIN": (0.1, lambda x: failed(strained(x), KS), "beyond elements of small strain"),
+    "verify.STRAIN": (
+        0.1,
+        lambda x: failed(deformed(answer(KS), 1.0, strain=x), KS),
+        "beyond elements of small strain",
+    ),
     # a shorter path is refused
     "verify.MOTION": (1e-10, lambda x: failed(*on_the_arc(0.01, way=1e-20 / x)), "is not resolved"),
 }

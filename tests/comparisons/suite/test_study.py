@@ -1,11 +1,5 @@
 """`crossval run FILE.toml`: what a study file states, what is found, and one line for whatever is wrong."""
 
-import io
-import json
-import re
-import shutil
-import sys
-
 import pytest
 
 from comparisons.cli import main
@@ -14,7 +8,6 @@ from comparisons.models.model import Options
 from comparisons.scene import load_scene
 from docs.extensions.messages import SCENES
 from tests.comparisons.suite.conftest import MANY, crossval, rows
-from tests.comparisons.test_progress import Terminal
 
 HEAD = '[study]\nname = "mine"\nscene = "ks-cantilever"\nrepeats = 1\n'
 RUN = '[[run]]\nmodel = "tsm"\n'
@@ -75,29 +68,6 @@ def test_the_table_and_what_is_done_is_not_done_again(many, capsys, monkeypatch)
     assert many.read_text() == before
     assert {file.name for file in many.with_suffix("").iterdir()} == kept
     assert len(kept) == 12
-
-
-@pytest.mark.slow
-def test_progress_is_a_bar_on_a_terminal_and_lines_elsewhere(many, tmp_path, monkeypatch):
-    """Two cases are left to do."""
-    for stream in (Terminal(), io.StringIO()):
-        folder = tmp_path / type(stream).__name__
-        shutil.copytree(many.with_suffix(""), folder / "many")
-        for file in folder.glob("many/*"):
-            told = json.loads(file.read_text())
-            if told["model"] == "rod" or told["response"]["status"] == "REFUSED":
-                file.unlink()
-        monkeypatch.setattr(sys, "stderr", stream)
-        assert crossval("run", MANY, "--out", folder, "--workers", "1") == 0
-        text = stream.getvalue()
-        if stream.isatty():
-            first, *_, last = text.split("\r")[1:]
-            assert [picture.count("#") for picture in (first, last)] == [25, 30]
-            assert last.endswith("12 of 12 cases done, 4 failed\x1b[K\n")
-        else:
-            assert text.splitlines()[0] == "10 of 12 cases done, 3 failed"
-            assert text.splitlines()[-1] == "12 of 12 cases done, 4 failed"
-            assert re.search(r"^\d+ of 12 cases done, \d failed, \d:\d\d left$", text, re.MULTILINE)
 
 
 @pytest.mark.slow

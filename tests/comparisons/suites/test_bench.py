@@ -13,12 +13,9 @@ from xml.etree import ElementTree as ET
 import pytest
 from jsonschema import Draft202012Validator
 
-from comparisons.models import solve
 from comparisons.scene import load_scene
 from comparisons.suites import bench
 from tests.comparisons.suite.conftest import crossval
-from tests.laws.transform import Change
-from tests.oracles.coupled import pair_of
 
 BENCH = Path(__file__).parents[3] / "bench"
 SCENES, QUERIES, RIGHT = (
@@ -130,59 +127,6 @@ def test_the_set_is_made_anew_byte_for_byte(make, tmp_path):
         assert row["digits"] >= kept["digits"] - 1
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["ks-face", "double-beam", "heavy-strip", "three-point-friction"])
-@pytest.mark.parametrize(
-    "change",
-    [Change(length=1e3, force=1e-3), Change(angle=math.pi / 2, shift=(2.0, -3.0))],
-    ids=["units", "turned"],
-)
-def test_other_units_and_a_turn_leave_the_digits(make, name, change):
-    scene = change.scene(load_scene(name))
-    response = solve(scene, "tsm", make.EXACT)
-    columns, queries = (
-        bench.histories(scene, response),
-        [one for one in RIGHT["answers"] if one["scene"] == name],
-    )
-    power = {
-        "force": change.force,
-        "moment": change.force * change.length,
-        "dissipated": change.force * change.length,
-    }
-    for row in queries:
-        size = power.get(
-            row["what"].rpartition("_")[0] or row["what"], 1.0 if "number" in row else change.length
-        )
-        value = bench.told(row, response, columns)
-        if row["what"][-2:] in ("_x", "_y") and change.angle:
-            x, sign = {"_x": ("_y", 1.0), "_y": ("_x", -1.0)}[row["what"][-2:]]
-            value = sign * bench.told({**row, "what": row["what"][:-2] + x}, response, columns)
-        assert abs(value / size - row["value"]) <= 10.0 ** -min(row["digits"], 10) * row["scale"], row
-
-
-def test_an_oracle_has_the_path_of_two_beams():
-    """Touch, both slip-offs, force and place of the pin on the first beam, by a third program."""
-    depth, name = 0.76, "double-beam"
-    times = next(one["load_parameters"] for one in SCENES["scenes"] if one["name"] == name)
-    pair = pair_of(load_scene(name))
-    stage = pair.stage([depth * times[1], depth * times[2]])
-    events = {
-        ("upper.end->lower", "touch"): stage.touch_depth / depth,
-        ("pin->upper", "slip-off"): stage.end_depth / depth,
-        ("pin->lower", "slip-off"): pair.slip_off() / depth,
-    }
-    for (of, what), value in events.items():
-        assert value == pytest.approx(right({"scene": name, "of": of, "what": what}), abs=1e-11)
-    for k in (0, 1):
-        for of, what, value in (
-            ("pin->upper", "force_y", -stage.pin_force[k, 1]),
-            ("pin->upper", "arc_position", stage.pin_arc[k]),
-        ):
-            assert value == pytest.approx(
-                right({"scene": name, "of": of, "what": what, "at": k + 1}), abs=1e-11
-            )
-
-
 def test_right_and_refused_are_no_failure(tmp_path):
     """Three programs, on the screen, as JUnit XML and as a table; what is refused needs no rows."""
     none = mine(answers=[], refused={one["name"]: "no beams" for one in SCENES["scenes"]})
@@ -195,26 +139,12 @@ def test_right_and_refused_are_no_failure(tmp_path):
         tmp_path, mine(), some, none, options=["--junit", files[0], "--results", files[1], "--every"]
     )
     assert status == 0
-    assert re.findall(r"^all .*$", out, re.M)[0].split() == [
-        "all",
-        "961",
-        "961",
-        "0",
-        "0",
-        "0.0e+00",
-        "0.0e+00",
-        "12.0",
-        "/",
-        "9.0",
-    ]
+    assert re.search(r"^all +961 +961 +0 +0 +0\.0e\+00 +0\.0e\+00 +12\.0 / 9\.0$", out, re.M)
     assert "ks-face: pin->cantilever force_y at 2" in out
     suites = ET.parse(files[0]).getroot()  # noqa: S314 our own file
     assert [len(suite) for suite in suites] == [961] * 3
-    assert [len(list(suite.iter("skipped"))) for suite in suites] == [
-        0,
-        sum("number" in row for row in some["answers"]),
-        961,
-    ]
+    events = sum("number" in row for row in some["answers"])
+    assert [len(list(suite.iter("skipped"))) for suite in suites] == [0, events, 961]
     assert "| ks-face | 12.0 / 12.0 | 12.0 / 12.0 | - |" in files[1].read_text()
 
 
@@ -308,12 +238,7 @@ def test_the_table_of_results_is_that_of_the_scorer(in_folder):
     ]
     assert status == 0
     for made, stated in zip(*tables, strict=True):
-        names, columns = zip(
-            *((row.split(" | ")[0], row.split(" | ")[column]) for row, column in ((made, 1), (stated, 2))),
-            strict=True,
-        )
-        assert names[0] == names[1]
-        digits = [[float(word) for word in re.findall(r"\d+\.\d", column)] for column in columns]
-        assert all(
-            abs(one - other) <= 0.1 or min(one, other) > 9.0 for one, other in zip(*digits, strict=True)
-        )
+        (name, own, *_), (kept, _, column, *_) = made.split(" | "), stated.split(" | ")
+        assert name == kept
+        digits = [list(map(float, re.findall(r"\d+\.\d", cell))) for cell in (own, column)]
+        assert all(abs(x - y) <= 0.1 or min(x, y) > 9.0 for x, y in zip(*digits, strict=True))

@@ -21,18 +21,16 @@ FINDINGS = Path(__file__).parents[2] / "findings"
 KS, FACE = load_scene("ks-cantilever"), load_scene("ks-face")
 PAIR = "pin->cantilever"
 BEAM = KS.beams[0]
-TIP = replace(
-    KS,
-    pins=(),
-    contacts=(),
-    loads=(LoadSpec(beam=BEAM.name, end="end", force=(0.0, 5.0 * BEAM.EI / BEAM.length**2)),),
-    load_parameters=5,
-)
-ROLL = replace(
-    TIP,
-    loads=(LoadSpec(beam=BEAM.name, end="end", moment=np.pi * BEAM.EI / BEAM.length),),
-    load_parameters=10,
-)
+UNIT = BEAM.EI / BEAM.length**2
+
+
+def loaded(load_parameters: int, **load: Any) -> Scene:
+    """The beam of KS under a load at its end."""
+    loads = (LoadSpec(beam=BEAM.name, end="end", **load),)
+    return replace(KS, pins=(), contacts=(), loads=loads, load_parameters=load_parameters)
+
+
+TIP, ROLL = loaded(5, force=(0.0, 5.0 * UNIT)), loaded(10, moment=np.pi * UNIT * BEAM.length)
 PORTAL, TIED = load_scene(str(FINDINGS / "portal.toml")), load_scene("ks-tied-tip")
 DOUBLE = load_scene("double-beam")
 (X, Y), (U, V) = FACE.pins[0].points

@@ -11,14 +11,8 @@ from tests.comparisons.report.pages.conftest import Browser, Compared
 
 pytestmark = pytest.mark.slow
 SHEETS = (
-    "double-beam",
-    "hysteresis-stages",
-    "ks-cantilever",
-    "portal-frame",
-    "three-point-friction",
-    "two-pins",
-    "clamped-column",
-)
+    "double-beam", "hysteresis-stages", "ks-cantilever", "portal-frame", "three-point-friction", "two-pins", "clamped-column",
+)  # fmt: skip
 """Scenes whose sheets are pages, and fit on one sheet of paper."""
 DARK = "--blink-settings=preferredColorScheme=0"
 LOOK = """

@@ -138,10 +138,8 @@ def test_a_scene_that_is_moved_is_the_scene():
     """Turned by .7 and shifted, mirrored, reversed: paths and sides are where they must be; the answers show the rest."""
     places = {"objectivity": lambda z: np.exp(0.7j) * z + 2 - 3j, "mirror": np.conj, "reversal": lambda z: z}
     for name, place in places.items():
-        scene, other = (
-            (problem := read_problem(PROBLEMS[name])).scene,
-            read_scene(problem.settings["other"], name),
-        )
+        scene = (problem := read_problem(PROBLEMS[name])).scene
+        other = read_scene(problem.settings["other"], name)
         given, found = (np.array(one.pins[0].points) @ [1.0, 1.0j] for one in (scene, other))
         assert found == pytest.approx(place(given), abs=1e-15)
         assert (other.beams != scene.beams) == (name != "mirror")

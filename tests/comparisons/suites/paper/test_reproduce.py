@@ -13,6 +13,7 @@ from comparisons.cli import main
 from comparisons.suites.paper.fig7 import PRINTED
 from comparisons.suites.paper.reproduce import CLAIMS  # that each is on the page is the contract
 from tests.comparisons.report.pages.markup import block, check_alone
+from tests.comparisons.suites.paper.test_claims import CANTILEVER, SIMPLE, SLOPES, TIMOSHENKO
 
 REPRODUCED, IN_DIRECTION = "reproduced", "reproduced in direction, not in size"
 NOT, OPEN = "not reproduced", "cannot be told"
@@ -108,23 +109,13 @@ def test_all_with_full_settings(tmp_path, stated):
     summary = "; ".join(f"{counts[verdict]} {verdict}" for verdict in names.values())
     assert summary in (tmp_path / "claims.md").read_text()
     critical = json.loads((tmp_path / "fig7b.json").read_text())
-    cantilever = "euler-bernoulli-cantilever"
-    slopes = {
-        cantilever: -3,
-        f"{cantilever}, turned frame": -3,
-        "euler-bernoulli-simple": -3,
-        "timoshenko": -1,
-        "mixed": 0,
-    }
-    for element, slope in slopes.items():
+    for element, slope in SLOPES.items():
         assert critical["slopes_of_the_floor"][element] == pytest.approx([slope, slope], abs=0.05)
-    for element in ("euler-bernoulli-simple", cantilever, "timoshenko"):
+    for element in (SIMPLE, CANTILEVER, TIMOSHENKO):
         # round-off decides them, so another processor may differ
         stated(f"paper.tolerance-{element}", critical["tolerance_for_the_printed"][element], relative=0.5)
     areas = critical["critical_area"]
-    simple, clamped = (
-        np.array(areas[element]["median"]) for element in ("euler-bernoulli-simple", cantilever)
-    )
+    simple, clamped = (np.array(areas[element]["median"]) for element in (SIMPLE, CANTILEVER))
     assert (simple / clamped).max() > 2.0
     stated("paper.gain", (simple / clamped).max(), relative=0.2)
     assert (simple / clamped)[-2:] == pytest.approx(1.0, abs=0.1)
