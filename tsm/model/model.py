@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 
 import numpy as np
@@ -40,8 +41,12 @@ class Model(Numbering):
         return self.group_of(pair.target).project(pair, state)
 
     def direction(self, pair: PairModel, touch: Touch, state: State) -> Vector:
-        """Direction of the beam at a contact, to which its force is normal; of any length."""
-        return self.group_of(pair.target).direction(touch, state.q)
+        """Direction of the beam at a contact, to which its force is normal: the section's normal, of an element in closed form the chord."""
+        if pair.cuts:
+            return math.cos(touch.angle), math.sin(touch.angle)
+        i, j = self.element_nodes[touch.element]
+        dx, dy = self.coordinates[j] - self.coordinates[i] + state.q[3 * j :][:2] - state.q[3 * i :][:2]
+        return dx, dy
 
     @cached_property
     def bandwidth(self) -> int:

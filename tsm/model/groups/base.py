@@ -17,7 +17,7 @@ from tsm.model.mesh import BeamModel
 from tsm.model.numbering import Numbering
 from tsm.model.pairs import PairModel
 from tsm.model.projection import Projection, arc_position, overshoot, slide
-from tsm.model.state import State, Touch
+from tsm.model.state import State
 
 _STEPS, _PROJECTED = 30, 1e-14
 """Newton steps of a projection at most, and the step, in lengths of an element, at which the closest point is found."""
@@ -49,16 +49,6 @@ class GroupTangent:
     by_load: (
         Array  # derivative of the residual in the load parameter, by loads along the elements; shape (n, e)
     )
-
-
-class Change(NamedTuple):
-    """Change of a configuration."""
-
-    dofs: Array  # change of all degrees of freedom; shape (dofs,)
-    contacts: Array  # change of the contacts' unknowns; shape (contact unknowns,)
-    residual: float  # part of the residual that the change removes
-    factor: float  # part of the change that is taken
-    load: float  # change of the load parameter
 
 
 class Stations(NamedTuple):
@@ -159,11 +149,7 @@ class ElementGroup(ABC):
         return Projection(element, place, float(gap), overshoot(target, arc))
 
     @abstractmethod
-    def direction(self, touch: Touch, q: Array) -> tuple[float, float]:
-        """Direction of the beam at a contact, to which its force is normal; of any length."""
-
-    @abstractmethod
-    def curvature(self, k: int, touch: Touch, state: State, forces: Any, push: tuple[float, float]) -> float:
+    def curvature(self, k: int, state: State, forces: Any, push: tuple[float, float]) -> float:
         """Curvature of the axis at closed pair k, on which `push` acts, positive where the beam bends to the left."""
 
     @abstractmethod

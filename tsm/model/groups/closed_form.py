@@ -20,7 +20,7 @@ from tsm.model.groups.base import ElementGroup, GroupForces, GroupTangent, Stati
 from tsm.model.mesh import BeamModel
 from tsm.model.pairs import PairModel
 from tsm.model.projection import Projection, nearest_chord
-from tsm.model.state import State, Touch
+from tsm.model.state import State, Touch, touch_of
 
 _POINTS = 10
 """Intervals in which an element is drawn."""
@@ -108,18 +108,10 @@ class ClosedFormGroup(ElementGroup):
         dent = partial(self._dent, pair, state.touches)
         return self.closest(pair, state, owner, xi * target.lengths[owner], dent)
 
-    def direction(self, touch: Touch, q: Array) -> tuple[float, float]:
-        """Chord of the touched element."""
-        i, j = self.model.element_nodes[touch.element]
-        coordinates = self.model.coordinates
-        dx, dy = coordinates[j] - coordinates[i] + q[3 * j : 3 * j + 2] - q[3 * i : 3 * i + 2]
-        return dx, dy
-
-    def curvature(
-        self, k: int, touch: Touch, state: State, forces: ClosedFormForces, push: tuple[float, float]
-    ) -> float:
+    def curvature(self, k: int, state: State, forces: ClosedFormForces, push: tuple[float, float]) -> float:
         """Curvature from the moment and stretch that the forces at end i and the lever of the contact give."""
-        model, pair, (p, x, start) = self.model, self.model.pairs[k], self._at(touch.element, state)
+        model, pair, touch = self.model, self.model.pairs[k], touch_of(state, k)
+        p, x, start = self._at(touch.element, state)
         fx, fy, moment = forces.nodal[:3, model.place[touch.element]].tolist()
         dx, dy = p.dx0 + x[3] - x[0], p.dy0 + x[4] - x[1]
         chord, size = math.hypot(dx, dy), math.hypot(*push)
