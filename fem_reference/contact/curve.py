@@ -30,6 +30,7 @@ _HERMITE = np.array(
     ],
     dtype=float,
 ).reshape(12, 4)
+_POWERS = np.arange(4.0)[:, None]
 """Coefficients of the powers of z in Hermite's cubic polynomials over [0, 1], and in their first two derivatives."""
 
 
@@ -67,11 +68,7 @@ class ContactCurve:
         k = np.minimum(np.maximum(np.searchsorted(s, inner) - 1, 0), s.size - 2)
         h = s[k + 1] - s[k]
         z = (inner - s[k]) / h
-        powers = np.empty((4, z.size))
-        powers[0], powers[1] = self.kernel, self.kernel * z
-        powers[2] = powers[1] * z
-        powers[3] = powers[2] * z
-        hermite = (_HERMITE @ powers).reshape(3, 4, -1)
+        hermite = (_HERMITE @ (self.kernel * z**_POWERS)).reshape(3, 4, -1)
         hermite[:, 2:] *= h
         hermite[1:] /= h
         hermite[2] /= h

@@ -101,9 +101,8 @@ def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:
         edge = mesh.edges[end]
         y = mesh.places[edge, 1] - mesh.places[edge[[0, -1]], 1].mean()
         across = strip.directions(0.0 if end == "start" else strip.length)[1]
-        larger = int(abs(across[1]) >= abs(across[0]))
         factor[2 * edge], factor[2 * edge + 1] = (0, 0) if strip.clamp == "full" else across
-        master[2 * edge], master[2 * edge + 1] = 2 * edge + larger, 2 * edge + larger
+        master[2 * edge + 1] = 2 * edge
         if strip.clamp == "full":
             continue
         if np.abs(y).min() < 1e-9 * strip.height:
@@ -112,12 +111,12 @@ def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:
         else:
             k = int(np.searchsorted(y, 0.0))
             above = [2 * edge[k], 2 * edge[k] + 1]
-            master[above] = 2 * edge[k - 1] + larger
+            master[above] = 2 * edge[k - 1]
             factor[above] *= y[k] / y[k - 1]
     order = np.lexsort(np.round(mesh.places / strip.height, 9).T[::-1])
     along = (2 * order[:, None] + np.arange(2)).ravel()
-    unknowns = along[(factor[along] != 0) & (master[along] == along)]
-    column = np.full(2 * n, -1)
-    column[unknowns] = np.arange(unknowns.size)
     free = np.flatnonzero(factor)
+    unknowns = along[np.isin(along, master[free])]
+    column = np.empty(2 * n, dtype=int)
+    column[unknowns] = np.arange(unknowns.size)
     return csr_matrix((factor[free], (free, column[master[free]])), shape=(2 * n, unknowns.size))

@@ -18,6 +18,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 
 from fem_reference.contact.contact import Touch
 from fem_reference.contact.end_section import COLUMNS, ROTATION
@@ -78,9 +79,8 @@ def build_border(state: State) -> Border:
             M[contact, :, number] = slip_gradient(touch)
     rates = C.copy()
     rates[[number for number, touch in enumerate(closed) if touch.augmented]] = 0.0
-    A, each = np.zeros((len(blocks), COLUMNS, len(blocks), COLUMNS)), np.arange(len(blocks))
-    A[each, :, each] = np.reshape(blocks, (-1, COLUMNS, COLUMNS))
-    return Border(A=A.reshape(k, k), N=N.reshape(k, len(C)), M=M.reshape(k, len(C)), C=C, rates=rates)
+    A = block_diag(np.zeros((0, 0)), *blocks)
+    return Border(A=A, N=N.reshape(k, len(C)), M=M.reshape(k, len(C)), C=C, rates=rates)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -131,14 +131,10 @@ class Tangent:
         A, N, M, W = self.border.A, self.border.N, self.border.M, self.W
         k, factor = len(A), self.factor
         half = factor.half(R) if R.any() else R
-        if not k:
-            return factor.rest(-half), np.zeros(0)
-        matrix = np.empty((k + len(C), k + len(C)))
-        matrix[:k, :k], matrix[:k, k:] = np.eye(k) - A @ W, -N
-        matrix[k:, :k], matrix[k:, k:] = M.T @ W, C
+        matrix = np.concatenate([np.hstack([np.eye(k) - A @ W, -N]), np.hstack([M.T @ W, C])])
         known = p - factor.product(self.V, half)
         right = np.concatenate([A @ known, -r - M.T @ known])
-        scale = 1 / np.maximum(np.abs(matrix).max(axis=1), np.finfo(float).tiny)
+        scale = 1 / np.abs(matrix).max(axis=1, initial=np.finfo(float).tiny)
         try:
             z = np.linalg.solve(scale[:, None] * matrix, scale * right)
         except np.linalg.LinAlgError:
