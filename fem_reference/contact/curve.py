@@ -50,12 +50,12 @@ class ContactCurve:
         both = np.zeros((self.stations.size, 2, 2))  # factors of points and of slopes, by derivative
         np.add.at(both, k, factors[:2, ::2].T)
         np.add.at(both, k + 1, factors[:2, 1::2].T)
-        return np.asarray(both[:, 0] + self.transposed @ both[:, 1]).T
+        return (both[:, 0] + self.transposed @ both[:, 1]).T
 
     def at(self, zeta: float, X: Floats, D: Floats) -> Floats:
         """Position and first two derivatives ``(3, 2)`` of the curve with points X and slopes D at the stations."""
         k, factors = self.pieces(zeta)
-        return np.asarray(factors.reshape(3, -1) @ np.concatenate([X[k], X[k + 1], D[k], D[k + 1]]))
+        return factors.reshape(3, -1) @ np.concatenate([X[k], X[k + 1], D[k], D[k + 1]])
 
     def pieces(self, zeta: float) -> tuple[Ints, Floats]:
         """Intervals k ``(q,)`` of the averaged places, and factors ``(3, 4, q)`` of points and slopes in the curve and its derivatives."""

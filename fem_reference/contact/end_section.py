@@ -72,7 +72,7 @@ class Pose:
         x, y = self.first_moment
         curvature = np.zeros((COLUMNS, COLUMNS))
         curvature[2:, 2:] = np.array([[2 * x * y, y * y - x * x], [y * y - x * x, -2 * x * y]])
-        return np.asarray(curvature / (x * x + y * y) ** 2)
+        return curvature / (x * x + y * y) ** 2
 
 
 @dataclass(frozen=True, kw_only=True)

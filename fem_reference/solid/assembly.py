@@ -64,7 +64,7 @@ def deformation_gradient(mesh: Discretisation, u: Array, points: Points | None =
     nodal = u.T.take(mesh.cells, axis=1)
     nodal -= nodal[:, :, :1]  # leaves the gradient, and less round-off in it
     H = (nodal.reshape(-1, shapes) @ at.slopes.reshape(-1, shapes).T).reshape(2, 1, elements, 2, -1)
-    F = np.asarray(H[..., 0, :] * at.inverse[0] + H[..., 1, :] * at.inverse[1])
+    F = H[..., 0, :] * at.inverse[0] + H[..., 1, :] * at.inverse[1]
     F[0, 0] += 1
     F[1, 1] += 1
     return F
@@ -74,7 +74,7 @@ def internal_force(mesh: Discretisation, P: Array) -> Array:
     """Internal nodal forces ``(n, 2)``, the integral of ``P . dN/dX``, from stresses ``P`` ``(2, 2, e, q)``."""
     pulled = np.einsum("ijeq,Kjeq->ieKq", P * mesh.weights, mesh.gauss.inverse)
     forces = np.tensordot(pulled, mesh.gauss.slopes, ((2, 3), (0, 1)))
-    return np.asarray(mesh.gather @ forces.reshape(2, -1).T)
+    return mesh.gather @ forces.reshape(2, -1).T
 
 
 def element_entries(mesh: Discretisation, A: Array) -> Array:

@@ -40,12 +40,12 @@ def factorise(band: Floats) -> Factor | None:
         return _indefinite(band)
 
     def triangular(right: Floats, trans: str) -> Floats:
-        return np.asarray(dtbtrs(lower, right, uplo="L", trans=trans)[0]).reshape(right.shape)
+        return dtbtrs(lower, right, uplo="L", trans=trans)[0].reshape(right.shape)
 
     return Factor(
         half=lambda right: triangular(right, "N"),
         rest=lambda half: triangular(half, "T"),
-        product=lambda a, b: np.asarray(a.T @ b),
+        product=lambda a, b: a.T @ b,
         negatives=lambda: 0,
     )
 
@@ -62,12 +62,12 @@ def _indefinite(band: Floats) -> Factor | None:
         return None
 
     def solution(right: Floats) -> Floats:
-        return np.asarray(dgbtrs(lu, w, w, right, pivots)[0]).reshape(right.shape)
+        return dgbtrs(lu, w, w, right, pivots)[0].reshape(right.shape)
 
     return Factor(
         half=lambda right: right,
         rest=solution,
-        product=lambda a, b: np.asarray(a.T @ solution(b)),
+        product=lambda a, b: a.T @ solution(b),
         negatives=lambda: _negatives(band),
     )
 

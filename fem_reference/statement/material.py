@@ -31,7 +31,7 @@ class Law:
     @cached_property
     def elastic(self) -> Array:
         """``dP/dF`` without deformation, ``(2, 2, 2, 2)`` [Pa]."""
-        return np.asarray(self.tangent(np.eye(2)[:, :, None])[..., 0])
+        return self.tangent(np.eye(2)[:, :, None])[..., 0]
 
 
 def lame_constants(youngs_modulus: float, poissons_ratio: float) -> tuple[float, float]:
@@ -46,22 +46,27 @@ def in_plane_lam(lam: float, mu: float, plane: str) -> float:
 
 
 def _contract(A: Array, B: Array) -> Array:
-    return np.asarray((A * B).sum(axis=(0, 1)))
+    return np.einsum("ij...,ij...", A, B)
 
 
 def _times(A: Array, B: Array) -> Array:
     """``A . B`` at every point."""
-    return np.stack([A[:, 0] * B[0, j] + A[:, 1] * B[1, j] for j in range(2)], axis=1)
+    return np.einsum("ij...,jk...->ik...", A, B)
 
 
 def _outer(A: Array, B: Array) -> Array:
     return A[:, :, None, None] * B[None, None]
 
 
+def _everywhere(constant: Array, F: Array) -> Array:
+    """A constant tensor with the point axes of F."""
+    return constant.reshape(constant.shape + (1,) * (F.ndim - 2))
+
+
 def _log_area(F: Array) -> Array:
     """``ln det F``; nan at a folded point, which ends the iteration by name."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(np.log(determinant(F)))
+        return np.log(determinant(F))
 
 
 def st_venant_kirchhoff(lam: float, mu: float, plane: str) -> Law:
@@ -69,21 +74,15 @@ def st_venant_kirchhoff(lam: float, mu: float, plane: str) -> Law:
     lam = in_plane_lam(lam, mu, plane)
 
     def green(F: Array) -> Array:
-        E = _times(F.swapaxes(0, 1), F) / 2
-        for i in range(2):
-            E[i, i] -= 0.5
-        return E
+        return (_times(F.swapaxes(0, 1), F) - _everywhere(np.eye(2), F)) / 2
 
     def second_stress(F: Array) -> Array:
         E = green(F)
-        S = 2 * mu * E
-        for i in range(2):
-            S[i, i] += lam * (E[0, 0] + E[1, 1])
-        return S
+        return 2 * mu * E + lam * (E[0, 0] + E[1, 1]) * _everywhere(np.eye(2), F)
 
     def energy(F: Array) -> Array:
         E = green(F)
-        return np.asarray(lam / 2 * (E[0, 0] + E[1, 1]) ** 2 + mu * _contract(E, E))
+        return lam / 2 * (E[0, 0] + E[1, 1]) ** 2 + mu * _contract(E, E)
 
     def stress(F: Array) -> Array:
         return _times(F, second_stress(F))
@@ -122,7 +121,7 @@ def biot_linear(lam: float, mu: float, plane: str) -> Law:
 
     def energy(F: Array) -> Array:
         _, s = rotation(F)
-        return np.asarray(lam / 2 * (s - 2) ** 2 + mu * (_contract(F, F) - 2 * s + 2))
+        return lam / 2 * (s - 2) ** 2 + mu * (_contract(F, F) - 2 * s + 2)
 
     def stress(F: Array) -> Array:
         R, s = rotation(F)
@@ -131,11 +130,9 @@ def biot_linear(lam: float, mu: float, plane: str) -> Law:
     def tangent(F: Array) -> Array:
         """``2 mu I + lam R R + (lam (s - 2) - 2 mu) dR/dF`` with ``dR/dF = (d(F + cof F)/dF - R R) / s``."""
         R, s = rotation(F)
-        points = (1,) * (F.ndim - 2)
         factor = (lam * (s - 2) - 2 * mu) / s
         A: Array = (lam - factor) * _outer(R, R)
-        A += factor * _DZ_DF.reshape(2, 2, 2, 2, *points)
-        A += 2 * mu * _IDENTITY.reshape(2, 2, 2, 2, *points)
+        A += factor * _everywhere(_DZ_DF, F) + 2 * mu * _everywhere(_IDENTITY, F)
         return A
 
     return Law(energy=energy, stress=stress, tangent=tangent)
@@ -163,11 +160,11 @@ def neo_hookean(lam: float, mu: float, plane: str) -> Law:
     def energy(F: Array) -> Array:
         z = log_stretch(F)
         log_J = _log_area(F) + z
-        return np.asarray(mu / 2 * (_contract(F, F) + np.exp(2 * z) - 3) - mu * log_J + lam / 2 * log_J**2)
+        return mu / 2 * (_contract(F, F) + np.exp(2 * z) - 3) - mu * log_J + lam / 2 * log_J**2
 
     def stress(F: Array) -> Array:
         J = determinant(F)
-        return np.asarray(mu * F + (lam * (_log_area(F) + log_stretch(F)) - mu) * cofactor(F) / J)
+        return mu * F + (lam * (_log_area(F) + log_stretch(F)) - mu) * cofactor(F) / J
 
     def tangent(F: Array) -> Array:
         """``mu I + c F^-T F^-T - (lam ln J - mu) F^-T_il F^-T_kj``, c = lam, condensed: ``lam W_zz0 / (lam + W_zz0)``."""
@@ -177,8 +174,7 @@ def neo_hookean(lam: float, mu: float, plane: str) -> Law:
         free = 2 * mu * np.exp(2 * z)
         c = lam * free / (lam + free) if plane == "stress" else lam
         A: Array = c * both - (lam * (_log_area(F) + z) - mu) * both.swapaxes(1, 3)
-        A += mu * _IDENTITY.reshape(2, 2, 2, 2, *(1,) * (F.ndim - 2))
-        return A
+        return A + mu * _everywhere(_IDENTITY, F)
 
     return Law(energy=energy, stress=stress, tangent=tangent)
 

@@ -67,7 +67,7 @@ class Model:
 
     def displacements(self, unknowns: Floats) -> Floats:
         """Displacements ``(n, 2)`` from the unknowns ``(m,)``."""
-        return np.asarray((self.expansion @ unknowns).reshape(-1, 2))
+        return (self.expansion @ unknowns).reshape(-1, 2)
 
 
 def build(problem: SolidProblem, settings: Settings | None = None) -> Model:

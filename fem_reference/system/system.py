@@ -18,7 +18,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import block_diag
 
 from fem_reference.contact.contact import Touch
 from fem_reference.contact.end_section import COLUMNS, ROTATION
@@ -79,8 +78,9 @@ def build_border(state: State) -> Border:
             M[contact, :, number] = slip_gradient(touch)
     rates = C.copy()
     rates[[number for number, touch in enumerate(closed) if touch.augmented]] = 0.0
-    A = block_diag(np.zeros((0, 0)), *blocks)
-    return Border(A=A, N=N.reshape(k, len(C)), M=M.reshape(k, len(C)), C=C, rates=rates)
+    A, each = np.zeros((len(blocks), COLUMNS, len(blocks), COLUMNS)), np.arange(len(blocks))
+    A[each, :, each] = np.reshape(blocks, (-1, COLUMNS, COLUMNS))
+    return Border(A=A.reshape(k, k), N=N.reshape(k, len(C)), M=M.reshape(k, len(C)), C=C, rates=rates)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -200,7 +200,7 @@ def linearise(state: State) -> Tangent | None:
     factor = factorise(K)
     if factor is None:
         return None
-    U = np.asarray(model.restriction @ np.hstack([*(touch.columns for touch in state.closed), model.columns]))
+    U = model.restriction @ np.hstack([*(touch.columns for touch in state.closed), model.columns])
     V = factor.half(U) if U.size else U
     border = build_border(state)
     if not all(np.all(np.isfinite(part)) for part in (V, border.A, border.N)):

@@ -56,8 +56,7 @@ class Along:
 
     def total(self, load_parameter: float) -> Array:
         """Sum (2,) of all loads along the beams at a load parameter."""
-        total: Array = self.resultants.at(load_parameter).sum(axis=(1, 2))
-        return total
+        return self.resultants.at(load_parameter).sum(axis=(1, 2))
 
     def course(self, elements: Array, part: Array, resultant: Array, resultant_rate: Array) -> Course:
         """What varies at parts (s, p) of the lengths of elements (s,), from resultants (2, d, s) and their rates."""

@@ -190,8 +190,7 @@ class Mesh:
 
     def positions(self, beam: BeamModel, q: Array) -> Array:
         """Current positions (elements + 1, 2) of a beam's nodes."""
-        positions: Array = self.coordinates[beam.nodes] + q.reshape(-1, 3)[beam.nodes, :2]
-        return positions
+        return self.coordinates[beam.nodes] + q.reshape(-1, 3)[beam.nodes, :2]
 
     @cached_property
     def element(self) -> list[Properties]:

@@ -169,8 +169,7 @@ class Numbering(Mesh):
         """
         nodal = self.free % 3 + 3 * (self.free >= 3 * len(self.coordinates))
         contacts = [_CONTACT_KINDS[: pair.target.kind.contact_unknowns] for pair in self.pairs]
-        kind: Array = np.concatenate([nodal, *contacts])
-        return kind
+        return np.concatenate([nodal, *contacts])
 
     @property
     def stick_stiffness(self) -> float:

@@ -128,8 +128,7 @@ def mode_shape(point: Equilibrium) -> tuple[Array, dict[str, Array]] | None:
 def _leftwards(axis: Array, shape: Array) -> Array:
     """Displacements to the left of an axis that is followed from start to end."""
     x, y = np.gradient(axis, axis=0).T
-    left: Array = (x * shape[:, 1] - y * shape[:, 0]) / np.hypot(x, y)
-    return left
+    return (x * shape[:, 1] - y * shape[:, 0]) / np.hypot(x, y)
 
 
 def _side(left: Array) -> float:

@@ -35,8 +35,7 @@ class GroupForces:
     @property
     def ends(self) -> Array:
         """Forces and moments at both ends of the elements, shape (6, e)."""
-        ends: Array = self.nodal[[0, 1, 2, -3, -2, -1]]
-        return ends
+        return self.nodal[[0, 1, 2, -3, -2, -1]]
 
 
 @dataclass(kw_only=True)

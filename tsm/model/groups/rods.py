@@ -232,8 +232,7 @@ class Rods(ElementGroup):
             first = place.first[part.element]
             columns = self._columns(part, dofs, contacts, load, residual)
             inputs[first : first + len(part.inputs)] = part.inputs @ columns
-        inside: Array = (tangent.inner @ inputs[:, :, None])[:, :, 0]
-        return inside
+        return (tangent.inner @ inputs[:, :, None])[:, :, 0]
 
     def _columns(self, part: CutElement, dofs: Array, contacts: Array, *others: float) -> Array:
         """Changes of what the columns of a cut element stand for."""
@@ -260,8 +259,7 @@ class Rods(ElementGroup):
     def _resultant(self, state: State, *, rate: bool = False) -> Array:
         """Resultants (2, r) of the loads along the elements, or their derivatives in the load parameter."""
         resultants, t = self.model.along.resultants, state.load_parameter.real
-        at_end: Array = (resultants.rate(t) if rate else resultants.at(t))[:, :, self.elements].sum(axis=1)
-        return at_end
+        return (resultants.rate(t) if rate else resultants.at(t))[:, :, self.elements].sum(axis=1)
 
     def load_work(self, state: State) -> Any:
         """Work of the loads of a state on the displacements to it: ``[P . u] - int P . (r' - r_0') ds`` with ``P' = q``."""

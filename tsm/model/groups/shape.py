@@ -88,8 +88,7 @@ def turning(entry: Entry) -> Array:
     """Derivatives (s, p) of the angles at the Gauss nodes in the arc position."""
     segments = entry.segments
     moments = rod.moments(segments, entry.field, entry.moment)
-    turn: Array = segments.flexibility[2] * moments + segments.curvature
-    return turn
+    return segments.flexibility[2] * moments + segments.curvature
 
 
 def pieces(group: Rods, shape: RodShape, element: int, count: int) -> Stations:

@@ -292,5 +292,4 @@ def _surface(cut: Cut, selectors: Array) -> Array:
     turn = along @ cut.derivatives[:2] @ selectors / reach
     both = reach * np.outer(along @ selectors[3:5], turn)
     both += pair.steep * np.outer(normal @ selectors[3:5], selectors[5])
-    envelope: Array = reach * (normal @ force) * np.outer(turn, turn) - both - both.T
-    return envelope
+    return reach * (normal @ force) * np.outer(turn, turn) - both - both.T
