@@ -24,9 +24,8 @@ class Body:
     part: slice  # range of the strip's nodes in the model's nodal arrays
     unknowns: slice  # range of its unknowns in the model's
     expansion: csr_matrix  # matrix ``(2 n, m)`` from the unknowns to the displacements, see `clamp`
-    stiffness: Pattern  # sparsity pattern of the stiffness over the unknowns
-    # band of springs on the start's section that make K of a strip without a clamp regular; the border takes them away
-    anchor: Floats | None
+    # sparsity pattern of the stiffness over the unknowns; with the springs of an anchor, which the border takes away
+    stiffness: Pattern
     offset: Floats  # start ``(2,)`` from that of the first strip, so that a distant scene loses no digits [m]
     round_off: float  # round-off of a nodal force [N], see `force_round_off`
 
@@ -36,8 +35,7 @@ class Body:
 
     def band(self, F: Floats) -> Floats:
         """Lower band of the tangent stiffness with the anchor."""
-        K = self.stiffness.band(element_entries(self.mesh, self.law.tangent(F)))
-        return K if self.anchor is None else K + self.anchor
+        return self.stiffness.band(element_entries(self.mesh, self.law.tangent(F)))
 
     def strain_energy(self, F: Floats) -> float:
         """Strain energy [J]."""
@@ -57,8 +55,6 @@ def build_body(strip: Strip, before: Sequence[Body] = ()) -> Body:
     """Discretise a strip and its clamps; its nodes and unknowns follow those of the bodies ``before``."""
     mesh = discretise(strip)
     expansion = clamp(strip, mesh)
-    springs = None if strip.clamped else anchor(strip, mesh, expansion)
-    stiffness = pattern(mesh, expansion, springs)
     law = elastic_law(strip.material, strip.youngs_modulus, strip.poissons_ratio, strip.plane)
     first = before[0].strip if before else strip
     n, m = (before[-1].part.stop, before[-1].unknowns.stop) if before else (0, 0)
@@ -69,8 +65,7 @@ def build_body(strip: Strip, before: Sequence[Body] = ()) -> Body:
         part=slice(n, n + len(mesh.nodes)),
         unknowns=slice(m, m + expansion.shape[1]),
         expansion=expansion,
-        stiffness=stiffness,
-        anchor=None if springs is None else stiffness.band_of(springs),
+        stiffness=pattern(mesh, expansion, None if strip.clamped else anchor(strip, mesh, expansion)),
         offset=np.array(strip.start) - np.array(first.start),
         round_off=force_round_off(strip, mesh, law),
     )
