@@ -52,7 +52,7 @@ class Model(Numbering):
     def bandwidth(self) -> int:
         """Largest distance of two coupled banded equations."""
         widest = 0
-        springs = self.springs.dofs if self.springs else []
+        springs = [self.springs.dofs] if self.springs else []
         for equations in (self.equation[dofs] for dofs in (*(group.dofs for group in self.groups), *springs)):
             rows = np.where(equations < self.banded, equations, -1)
             least = np.where(rows < 0, self.banded, rows).min(axis=0)

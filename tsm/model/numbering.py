@@ -92,24 +92,24 @@ class Numbering(Mesh):
         Raises ValueError if all beams of a joint are hinged to it and nothing else holds its rotation.
         """
         structure = self.structure
-        ground = [
-            (3 * self.end_node(f"{spring.beam}.{spring.end}") + k, stiffness)
+        items = [
+            (3 * self.end_node(f"{spring.beam}.{spring.end}") + k, -1, stiffness)
             for spring in structure.springs
             for k, stiffness in enumerate((spring.x, spring.y, spring.rotation))
             if stiffness
         ]
-        between = [
+        items += [
             (3 * self.joints[node] + 2, 3 * node + 2, hinge.stiffness)
             for hinge in structure.hinges
             if hinge.stiffness
             for node in [self.own_end_node(f"{hinge.beam}.{hinge.end}")]
         ]
-        held = {*self.prescribed, *(dof for dof, _ in ground), *(dof for dof, _, _ in between)}
+        held = {*self.prescribed, *(dof for dof, _, _ in items)}
         for hinge in structure.hinges:
             turn = 3 * self.end_node(f"{hinge.beam}.{hinge.end}") + 2
             if turn not in held and not (self.dofs == turn).any():
                 raise ValueError(f"Hinge({hinge.beam}.{hinge.end}): the joint turns freely")
-        return Springs(ground, between) if ground or between else None
+        return Springs(items) if items else None
 
     def _place_pairs(self, structure: Structure) -> None:
         pins = {pin.name: pin for pin in structure.pins}
@@ -155,8 +155,8 @@ class Numbering(Mesh):
         self.border_dofs = len(border_dofs)
         self.border = len(border_dofs) + self.contact_unknowns
         self.equations = len(self.free)
-        # prescribed ones, slaves: past the last equation
-        self.equation = np.full(self.dof_count, self.equations)
+        # prescribed ones, slaves, and the ground at the end: past the last equation
+        self.equation = np.full(self.dof_count + 1, self.equations)
         self.equation[self.free] = np.arange(self.equations)
         self.element_equations = self.equation[self.dofs]
 

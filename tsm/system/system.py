@@ -80,7 +80,7 @@ class Assembler:
         self.internal = any(group.internal for group in model.groups)
         self.units = Units(model, self.k) if self.internal else None
         banded, last = model.banded, model.equations
-        springs = model.springs.dofs if model.springs else []
+        springs = [model.springs.dofs] if model.springs else []
         maps = [_pairs(model.equation[dofs]) for dofs in (*(group.dofs for group in model.groups), *springs)]
         rows, columns = (np.concatenate(part) for part in zip(*maps, strict=True))
         self.band_size = banded * self.ldab

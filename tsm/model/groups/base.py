@@ -161,7 +161,7 @@ class ElementGroup(ABC):
 
     @abstractmethod
     def section_axes(self, beam: BeamModel, shape: Array) -> Array:
-        """Unit vectors (2, elements, 2) of the axial force at both ends of a beam's elements, from its deformed nodes."""
+        """Unit vectors (elements, 2), complex, of the axial force at both ends of a beam's elements, from its deformed nodes."""
 
     @abstractmethod
     def stations(self, beam: BeamModel, state: State, shape: Array, section_forces: Array) -> Stations:

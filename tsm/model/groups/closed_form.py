@@ -142,9 +142,8 @@ class ClosedFormGroup(ElementGroup):
 
     def section_axes(self, _beam: BeamModel, shape: Array) -> Array:
         """Directions of the chords, at both ends the same."""
-        d = np.diff(shape[:, :2], axis=0)
-        t = d / np.linalg.norm(d, axis=1)[:, None]
-        return np.stack([t, t])
+        d = np.diff(shape[:, :2] @ (1, 1j))[:, None]
+        return np.repeat(d / np.abs(d), 2, axis=1)
 
     def stations(self, beam: BeamModel, _state: State, shape: Array, section_forces: Array) -> Stations:
         """The elements."""

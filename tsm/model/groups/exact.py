@@ -137,8 +137,7 @@ class ExactGroup(Rods):
         """Directions of the sections' normals at both ends of the elements."""
         own = self.model.place[beam.first : beam.last + 1]
         angle = np.append(self.angles[0, own], self.angles[1, own[-1]]) + shape[:, 2]
-        t = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-        return np.stack([t[:-1], t[1:]])
+        return np.exp(1j * np.stack([angle[:-1], angle[1:]], axis=1))
 
     def stations(self, beam: BeamModel, state: State, _shape: Array, _section_forces: Array) -> Stations:
         """Short pieces of the segments."""

@@ -97,9 +97,8 @@ def pieces(group: Rods, shape: RodShape, element: int, count: int) -> Stations:
     for s in range(shape.place.first[element], shape.place.last[element] + 1):
         sigma = np.linspace(0, 1, count + 1)
         at = shape.within(s, sigma)
-        c, sn = np.cos(at.angle), np.sin(at.angle)
-        nx, ny = at.force.T
-        forces = np.stack([nx * c + ny * sn, ny * c - nx * sn, at.moment], axis=1)
+        along = at.force @ (1, 1j) * np.exp(-1j * at.angle)
+        forces = np.stack([along.real, along.imag, at.moment], axis=1)
         arc = shape.arc[s] + sigma * shape.length[s]
         lines.append((arc, at.position, at.angle - group.undeformed_angle(element, arc), forces))
     pairs = np.arange(count)[:, None] + np.arange(2)
