@@ -9,7 +9,7 @@ import numpy as np
 
 from tsm.elements import Integrated
 from tsm.elements.contact_law import Vector
-from tsm.model.groups import GROUPS, ElementGroup, ExactGroup
+from tsm.model.groups import GROUPS, ExactGroup, Group
 from tsm.model.mesh import BeamModel
 from tsm.model.numbering import Numbering
 from tsm.model.pairs import PairModel
@@ -26,13 +26,13 @@ class Model(Numbering):
 
     def __init__(self, structure: Structure) -> None:
         super().__init__(structure)
-        self.groups: list[ElementGroup] = []
+        self.groups: list[Group] = []
         for kind, group in GROUPS.items():
             if len(self.members[kind]):
                 self.groups.append(group(self, len(self.groups), self.members[kind]))
         self.rods = next((group for group in self.groups if isinstance(group, ExactGroup)), None)
 
-    def group_of(self, beam: BeamModel) -> ElementGroup:
+    def group_of(self, beam: BeamModel) -> Group:
         """Group of a beam's elements."""
         return next(group for group in self.groups if group.internal == isinstance(beam.kind, Integrated))
 

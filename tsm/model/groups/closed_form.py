@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -55,7 +54,7 @@ class ClosedFormGroup(ElementGroup):
             contacts.close(k, pair, touch, gradient, block)
         return ClosedFormForces(nodal=force, tangent=tangent)
 
-    def tangent(self, _state: State, forces: ClosedFormForces, _contacts: ContactBlock) -> GroupTangent:
+    def tangent(self, _state: State, forces: Any, _contacts: ContactBlock) -> GroupTangent:
         """Tangent, which is known with the forces."""
         none = np.zeros(self.dofs.shape)
         return GroupTangent(tangent=forces.tangent, condensed_residual=none, by_load=none)
@@ -108,25 +107,23 @@ class ClosedFormGroup(ElementGroup):
         dent = partial(self._dent, pair, state.touches)
         return self.closest(pair, state, owner, xi * target.lengths[owner], dent)
 
-    def curvature(self, k: int, state: State, forces: ClosedFormForces, push: tuple[float, float]) -> float:
+    def curvature(self, k: int, state: State, forces: Any, push: tuple[float, float]) -> float:
         """Curvature from the moment and stretch that the forces at end i and the lever of the contact give."""
         model, pair, touch = self.model, self.model.pairs[k], touch_of(state, k)
         p, x, start = self._at(touch.element, state)
         fx, fy, moment = forces.nodal[:3, model.place[touch.element]].tolist()
-        dx, dy = p.dx0 + x[3] - x[0], p.dy0 + x[4] - x[1]
-        chord, size = math.hypot(dx, dy), math.hypot(*push)
-        normal = -pair.side * dy / chord, pair.side * dx / chord
-        away = (push[0] / size, push[1] / size) if size > 0 else normal
+        force, chord = complex(fx, fy), complex(p.dx0 + x[3] - x[0], p.dy0 + x[4] - x[1])
+        away = complex(*push) or 1j * pair.side * chord
         node = model.node_position(pair, state.q, state.load_parameter)
-        rx, ry = (c + pair.pair.offset * n - s for c, n, s in zip(node, away, start, strict=True))
-        stretch = -(fx * dx + fy * dy) / (chord * p.EA)
-        return float((-moment + rx * fy - ry * fx) / p.EI / (1 + stretch))
+        lever = complex(*node) - complex(*start) + pair.pair.offset * away / abs(away)
+        stretch = -(force * chord.conjugate()).real / (abs(chord) * p.EA)
+        return float(((lever.conjugate() * force).imag - moment) / p.EI / (1 + stretch))
 
     def intervals(self, _elements: int) -> int:
         """Intervals in which an element is drawn."""
         return _POINTS
 
-    def axes(self, beam: BeamModel, state: State, forces: ClosedFormForces, xi: Array) -> Array:
+    def axes(self, beam: BeamModel, state: State, forces: Any, xi: Array) -> Array:
         """Deflected axes of the elements of a beam, shape (elements, m, 2)."""
         model, elements = self.model, slice(beam.first, beam.last + 1)
         x, places = state.q[model.dofs[:, elements]], model.place[elements]

@@ -13,7 +13,7 @@ from tsm.elements.properties import Array
 from tsm.elements.varied import STEP
 from tsm.model.groups.base import Stations
 from tsm.model.groups.layout import layout
-from tsm.model.groups.rods import RodBalance, Rods
+from tsm.model.groups.rods import Rods
 from tsm.model.groups.shape import deflected, pieces, resampled, truncation
 from tsm.model.mesh import BeamModel
 from tsm.model.pairs import PairModel
@@ -112,7 +112,7 @@ class ExactGroup(Rods):
         e, sample = divmod(int(nearest), _SAMPLES)
         return self.closest(pair, state, e, float(xi[sample]) * target.lengths[e])
 
-    def curvature(self, k: int, _state: State, forces: RodBalance, _push: tuple[float, float]) -> float:
+    def curvature(self, k: int, _state: State, forces: Any, _push: tuple[float, float]) -> float:
         """Curvature from the moment behind the contact, natural curvature and the mean stretch."""
         cut = forces.entry.cuts[k]
         angle, nx, ny, Fx, Fy, _, moment, _ = cut.at

@@ -190,7 +190,7 @@ class Rods(ElementGroup):
         inside = float(np.abs(arrival.inside).max())
         return RodBalance(nodal=residual, inside=inside, entry=entry, arrival=arrival)
 
-    def tangent(self, state: State, forces: RodBalance, contacts: ContactBlock) -> RodTangent:
+    def tangent(self, state: State, forces: Any, contacts: ContactBlock) -> RodTangent:
         """Tangent of the elements and of the contacts that cut them."""
         entry = forces.entry
         condensed = rod.condense(entry.segments, entry.field, forces.arrival)

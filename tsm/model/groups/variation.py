@@ -26,7 +26,7 @@ from tsm.elements.varied import STEP
 from tsm.model.groups.cut import Cut
 from tsm.model.groups.layout import COLUMNS, CUT, OWN, chain
 from tsm.model.groups.rods import Entry, RodBalance, Rods
-from tsm.model.groups.shape import plain_shape
+from tsm.model.groups.shape import Station, plain_shape
 from tsm.model.state import State, profile_of
 
 _LONGEST = 7.0
@@ -159,27 +159,26 @@ def _pieces(group: Rods, state: State, balance: RodBalance, transfer: Array | No
 def _divided(group: Rods, state: State, entry: Entry, count: Array) -> tuple[Segments, Array, Array, Array]:
     """Equal pieces of the segments, with their angles and moments at the ends."""
     whole, own = entry.segments, np.repeat(np.arange(len(count)), count)
-    shape, nodes = plain_shape(group, state, entry), whole.table.c
-    inside, ends = [], []
-    for s, parts in enumerate(count.tolist()):
-        sigma = (np.arange(parts)[:, None] + nodes) / parts
-        inside.append(shape.within(s, sigma.ravel()).angle.reshape(sigma.shape))
-        at = shape.within(s, np.arange(parts + 1) / parts)
-        ends.append(np.stack([at.angle[:-1], at.moment[:-1], at.angle[1:]], axis=1))
-    length = whole.length[own] / count[own, None]
-    part = np.arange(len(own)) - (np.cumsum(count) - count)[own]
+    part, parts = np.arange(len(own)) - (np.cumsum(count) - count)[own], count[own, None]
+    shape = plain_shape(group, state, entry)
+
+    def at(places: Array) -> Station:
+        """Stations at places (m,) of every piece."""
+        return shape.within(np.repeat(own, len(places)), ((part[:, None] + places) / parts).ravel())
+
+    start, end, length = at(np.zeros(1)), at(np.ones(1)), whole.length[own] / parts
     segments = Segments(
         flexibility=whole.flexibility[:, own],
         force=whole.constant[:, own],
         length=length,
-        angle=np.concatenate(inside),
+        angle=at(whole.table.c).angle.reshape(len(own), -1),
         constant=whole.constant[:, own],
         owner=whole.owner[own],
         begin=whole.begin[own] + part[:, None] * length,
         curvature=whole.curvature[own],
     )
-    start, moment, end = np.concatenate(ends).T[:, :, None]
-    return group.placed(segments, state.load_parameter), start, moment, end
+    placed = group.placed(segments, state.load_parameter)
+    return placed, start.angle[:, None], start.moment[:, None], end.angle[:, None]
 
 
 def _hessians(
