@@ -9,7 +9,6 @@ condensed at every point.
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -28,11 +27,6 @@ class Law:
     stress: LawFunction  # first Piola-Kirchhoff stress ``P = dW/dF``, shape ``(2, 2, ...)`` [Pa]
     # ``dP/dF``, shape ``(2, 2, 2, 2, ...)``, with ``A[i, j, k, l] = dP[i, j] / dF[k, l]`` [Pa]
     tangent: LawFunction
-
-    @cached_property
-    def elastic(self) -> Array:
-        """``dP/dF`` without deformation, ``(2, 2, 2, 2)`` [Pa]."""
-        return self.tangent(np.eye(2)[:, :, None])[..., 0]
 
 
 def lame_constants(youngs_modulus: float, poissons_ratio: float) -> tuple[float, float]:

@@ -79,15 +79,17 @@ def force_round_off(strip: Strip, mesh: Discretisation, law: Law) -> float:
     """
     sides = np.ptp(mesh.places[mesh.cells[:, :4]], axis=1)
     aspect = float((sides.max(axis=1) / sides.min(axis=1)).max())
-    width = max(strip.width, strip.end_width or 0.0)
-    return 4 * float(np.finfo(float).eps * law.elastic[0, 0, 0, 0]) * width * strip.length * aspect
+    width, modulus = (
+        max(strip.width, strip.end_width or 0.0),
+        float(law.tangent(np.eye(2)[:, :, None])[0, 0, 0, 0, 0]),
+    )
+    return 4 * float(np.finfo(float).eps) * modulus * width * strip.length * aspect
 
 
 def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:
     """Matrix ``(2 n, m)`` from the unknowns, ordered along the strip, to the displacements that the clamps admit.
 
-    Without a node at the middle of the edge, the rod's clamp holds the displacement interpolated there from the two adjacent
-    nodes.
+    The rod's clamp holds the displacement at the middle of the edge, interpolated from the nodes below and above, the latter maybe there.
     """
     n = len(mesh.nodes)
     factor = np.ones(2 * n)
@@ -100,14 +102,11 @@ def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:
         master[2 * edge + 1] = 2 * edge
         if strip.clamp == "full":
             continue
-        if np.abs(y).min() < 1e-9 * strip.height:
-            middle = 2 * edge[np.argmin(np.abs(y))]
-            factor[[middle, middle + 1]] = 0
-        else:
-            k = int(np.searchsorted(y, 0.0))
-            above = [2 * edge[k], 2 * edge[k] + 1]
-            master[above] = 2 * edge[k - 1]
-            factor[above] *= y[k] / y[k - 1]
+        y[np.abs(y) < 1e-9 * strip.height] = 0
+        k = int(np.searchsorted(y, 0.0))
+        above = [2 * edge[k], 2 * edge[k] + 1]
+        master[above] = 2 * edge[k - 1]
+        factor[above] *= y[k] / y[k - 1]
     order = np.lexsort(np.round(mesh.places / strip.height, 9).T[::-1])
     along = (2 * order[:, None] + np.arange(2)).ravel()
     free = np.flatnonzero(factor)

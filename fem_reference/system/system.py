@@ -173,9 +173,7 @@ class Tangent:
         S = np.block([[-A, one, -N], [one, -self.W, np.zeros((k, c))], [-N.T, np.zeros((c, k)), -C]])
         tiny = np.finfo(float).tiny
         units = np.sqrt(np.abs(np.diag(self.W)) + tiny)  # of y; those of z are their inverse
-        forces = 1 / np.maximum(
-            np.abs(np.vstack([units[:, None] * N, np.sqrt(C)])).max(axis=0, initial=0.0), tiny
-        )
+        forces = 1 / np.abs(np.vstack([units[:, None] * N, np.sqrt(C)])).max(axis=0, initial=tiny)
         scale = np.concatenate([units, 1 / units, forces])
         negatives = int((np.linalg.eigvalsh(scale[:, None] * (S + S.T) / 2 * scale) < 0).sum())
         return negatives + self.factor.negatives() - int(k + c)
