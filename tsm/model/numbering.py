@@ -61,9 +61,8 @@ class Numbering(Mesh):
         for support in self.structure.supports:
             name, given = f"{support.beam}.{support.end}", (support.ux, support.uy, support.rotation)
             node, held = self.end_node(name), np.array([value is not None for value in given])
-            rates = np.zeros((self.stages, 3))
-            rates[0] = [value or 0.0 for value in given]
-            rates[1 : 1 + len(support.onward)] = np.reshape(support.onward, (-1, 3))
+            rates, stated = np.zeros((self.stages, 3)), [[value or 0.0 for value in given], *support.onward]
+            rates[: len(stated)] = stated
             self.supports[name] = node, held & [3 * node + k not in self.prescribed for k in range(3)]
             for k in np.flatnonzero(held).tolist():
                 rate = tuple(rates[:, k].tolist())
