@@ -65,22 +65,17 @@ class Mesh:
         self.place = np.where(cut, cut.cumsum(), (~cut).cumsum()) - 1
         self.block = np.where(cut, len(self.coordinates) + self.place, -1)
         self.dof_count = 3 * (len(self.coordinates) + len(own))
-        sections = np.array([(beam.section.EA, beam.section.GA, beam.section.EI) for beam in structure.beams])
-        l0, (EA, GA, EI) = (
-            np.concatenate([beam.lengths for beam in beams]),
-            np.repeat(sections, counts, axis=0).T,
-        )
+        l0 = np.concatenate([beam.lengths for beam in beams])
+        sections = np.array([(b.section.EA, b.section.GA, b.section.EI) for b in structure.beams]).T
+        EA, GA, EI = np.repeat(sections, counts, axis=1)
         dx0, dy0 = np.diff(self.coordinates[self.element_nodes], axis=1)[:, 0].T.copy()
-        self.properties = Properties(
-            dx0, dy0, l0, EA.copy(), EI.copy(), np.where(sheared, 12 * EI / (GA * l0**2), 0.0)
-        )
+        self.properties = Properties(dx0, dy0, l0, EA, EI, np.where(sheared, 12 * EI / (GA * l0**2), 0.0))
         lengths = extents = np.array([beam.length for beam in structure.beams])
         if self.joined:
-            nodes = np.concatenate([self.element_nodes, self.links])
-            extents = joined_extents(
-                nodes, np.array([beam.nodes[0] for beam in beams]), self.coordinates, lengths
-            )
-        self.sizes = sizes_of(lengths, extents, sections[:, 2])
+            starts = np.array([beam.nodes[0] for beam in beams])
+            links = np.concatenate([self.element_nodes, self.links])
+            extents = joined_extents(links, starts, self.coordinates, lengths)
+        self.sizes = sizes_of(lengths, extents, sections[2])
         self.length, self.extent, self.force_scale, self.least_force = self.sizes
 
     def _place_beams(self, beams: tuple[Beam, ...]) -> None:
