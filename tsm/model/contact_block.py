@@ -93,7 +93,7 @@ class ContactBlock:
     def leave_open(self, pair: PairModel) -> None:
         """Decouple the unknowns of an open pair: 1 on the diagonal, zeros elsewhere."""
         if pair.slot >= 0:
-            slots = self.slots(pair)
+            slots = self.border_of(pair)
             self.corner[slots, slots] = 1.0
 
     def enter(self, k: int, pair: PairModel, force: tuple[float, float], rows: Any) -> None:
@@ -112,7 +112,7 @@ class ContactBlock:
         if pair.slot < 0:
             self.stiffest = max(self.stiffest, float(np.abs(block[6:8, 6:8]).max()))
         else:
-            slots, node = self.slots(pair), model.equation[3 * pair.node :][:2]
+            slots, node = self.border_of(pair), model.equation[3 * pair.node :][:2]
             self.couple(slots, model.element_equations[:, e], block[:6, 8:], block[8:, :6])
             if pair.node >= 0:
                 self.couple(slots, node, block[6:8, 8:], block[8:, 6:8])
@@ -134,8 +134,8 @@ class ContactBlock:
         for pair_i, part_i in zip(pairs, parts, strict=True):
             self.residual[pair_i.slots] += gradient[part_i]
             for pair_j, part_j in zip(pairs, parts, strict=True):
-                self.corner[self.slots(pair_i)[:, None], self.slots(pair_j)] += block[part_i, part_j]
+                self.corner[self.border_of(pair_i)[:, None], self.border_of(pair_j)] += block[part_i, part_j]
 
-    def slots(self, pair: PairModel) -> Array:
+    def border_of(self, pair: PairModel) -> Array:
         """Rows and columns of a pair's unknowns in the border."""
         return self.model.border_dofs + pair.slot + np.arange(pair.target.kind.contact_unknowns)
