@@ -1,7 +1,6 @@
 """Solve a problem and collect the histories."""
 
 from collections.abc import Callable
-from functools import partial
 from time import perf_counter
 
 import numpy as np
@@ -17,7 +16,7 @@ from fem_reference.statement.settings import Settings
 from fem_reference.statement.status import Status
 from fem_reference.statement.strip import Strip
 from fem_reference.system.model import Model, build
-from fem_reference.system.state import Reaction, State, reactions, tie_reactions
+from fem_reference.system.state import State, reactions
 
 EVENTS = (Status.LIMIT_POINT, Status.BIFURCATION, Status.LINE_CONTACT, Status.END_CONTACT)
 _SMALL_STRAIN = 0.8
@@ -91,8 +90,8 @@ def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
         contacts={
             pair.contact.name: _contact(states, steps, number) for number, pair in enumerate(model.pairs)
         },
-        supports=_histories(reactions, states, steps[-1].state),
-        springs=_histories(partial(tie_reactions, springs=True), states, steps[-1].state),
+        supports=_histories(0, states, steps[-1].state),
+        springs=_histories(1, states, steps[-1].state),
         tips={strip.name: _tips(strip, states) for strip in model.problem.strips},
         newton_iterations=np.array([step.iterations for step in done], dtype=np.int64),
         cutbacks=sum(step.cutbacks for step in steps),
@@ -154,17 +153,15 @@ def _contact(states: tuple[State, ...], steps: list[Step], number: int) -> Conta
     )
 
 
-def _histories(
-    read: Callable[[State], dict[str, Reaction]], states: tuple[State, ...], last: State
-) -> dict[str, SupportHistory]:
-    """Histories of the forces and moments that are read off states, by end."""
-    rows = [read(state) for state in states]
+def _histories(kind: int, states: tuple[State, ...], last: State) -> dict[str, SupportHistory]:
+    """Histories of supports or springs by end, by their place in `reactions`."""
+    rows = [reactions(state)[kind] for state in states]
     return {
         node: SupportHistory(
             force=np.array([row[node][0] for row in rows]).reshape(-1, 2),
             moment=np.array([row[node][1] for row in rows]),
         )
-        for node in read(last)
+        for node in reactions(last)[kind]
     }
 
 

@@ -43,12 +43,12 @@ class Carrier:
 
     def points(self, u: Floats) -> Floats:
         """Positions ``(m, 2)`` at the nodal displacements ``u`` ``(n, 2)``."""
-        return np.asarray(self.reference + self.rows @ u)
+        return self.reference + self.rows @ u
 
     def columns(self, weights: Floats, directions: Floats) -> Floats:
         """Nodal forces ``(2 n, c)`` of the unit forces ``directions`` ``(c, 2)`` on the points with ``weights`` ``(c, m)``."""
         shares = self.transposed @ weights.T
-        return np.asarray((shares[:, None] * directions.T).reshape(-1, len(directions)))
+        return (shares[:, None] * directions.T).reshape(-1, len(directions))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -77,7 +77,7 @@ class Pair:
         """Position ``(2,)`` of the node at the load parameter ``t``, relative to the origin."""
         if isinstance(self.node, Pin):
             return self.node.position(t) - self.origin
-        return np.asarray(self.node.points(u)[0])
+        return self.node.points(u)[0]
 
     def project(self, u: Floats, t: float) -> Projection:
         """Project the node on the curve at the nodal displacements ``u`` ``(n, 2)``."""
@@ -148,7 +148,7 @@ class Touch:
     def vector(self) -> Floats:
         """Force ``-s lam n + T t`` ``(2,)`` of the node on the strip, in the global frame [N]."""
         normal = self.pair.contact.sign * self.force * self.at.normal
-        return np.asarray(self.tangential * self.at.tangent - normal)
+        return self.tangential * self.at.tangent - normal
 
     @cached_property
     def columns(self) -> Floats:

@@ -30,6 +30,7 @@ _HERMITE = np.array(
     ],
     dtype=float,
 ).reshape(12, 4)
+_POWERS = np.arange(4.0)[:, None]
 """Coefficients of the powers of z in Hermite's cubic polynomials over [0, 1], and in their first two derivatives."""
 
 
@@ -49,12 +50,12 @@ class ContactCurve:
         both = np.zeros((self.stations.size, 2, 2))  # factors of points and of slopes, by derivative
         np.add.at(both, k, factors[:2, ::2].T)
         np.add.at(both, k + 1, factors[:2, 1::2].T)
-        return np.asarray(both[:, 0] + self.transposed @ both[:, 1]).T
+        return (both[:, 0] + self.transposed @ both[:, 1]).T
 
     def at(self, zeta: float, X: Floats, D: Floats) -> Floats:
         """Position and first two derivatives ``(3, 2)`` of the curve with points X and slopes D at the stations."""
         k, factors = self.pieces(zeta)
-        return np.asarray(factors.reshape(3, -1) @ np.concatenate([X[k], X[k + 1], D[k], D[k + 1]]))
+        return factors.reshape(3, -1) @ np.concatenate([X[k], X[k + 1], D[k], D[k + 1]])
 
     def pieces(self, zeta: float) -> tuple[Ints, Floats]:
         """Intervals k ``(q,)`` of the averaged places, and factors ``(3, 4, q)`` of points and slopes in the curve and its derivatives."""
@@ -67,11 +68,7 @@ class ContactCurve:
         k = np.minimum(np.maximum(np.searchsorted(s, inner) - 1, 0), s.size - 2)
         h = s[k + 1] - s[k]
         z = (inner - s[k]) / h
-        powers = np.empty((4, z.size))
-        powers[0], powers[1] = self.kernel, self.kernel * z
-        powers[2] = powers[1] * z
-        powers[3] = powers[2] * z
-        hermite = (_HERMITE @ powers).reshape(3, 4, -1)
+        hermite = (_HERMITE @ (self.kernel * z**_POWERS)).reshape(3, 4, -1)
         hermite[:, 2:] *= h
         hermite[1:] /= h
         hermite[2] /= h

@@ -17,7 +17,7 @@ or moment of the tie on the end.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_matrix, kron
+from scipy.sparse import csr_matrix, identity, kron
 
 from fem_reference.contact.contact import Carrier
 from fem_reference.solid.mesh import Discretisation, edge_weights, section_points
@@ -72,7 +72,7 @@ class Pose:
         x, y = self.first_moment
         curvature = np.zeros((COLUMNS, COLUMNS))
         curvature[2:, 2:] = np.array([[2 * x * y, y * y - x * x], [y * y - x * x, -2 * x * y]])
-        return np.asarray(curvature / (x * x + y * y) ** 2)
+        return curvature / (x * x + y * y) ** 2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,19 +99,19 @@ def end_rows(strip: Strip, mesh: Discretisation, end: str) -> tuple[csr_matrix, 
     y = mesh.places[edge, 1]
     weights = edge_weights(strip.element, y)
     moments = edge_weights(strip.element, y, y - weights @ y)
-    moments = moments * (strip.length / (moments @ y))
-    columns, values = np.tile(edge, 2), np.concatenate([weights, moments])
-    rows = csr_matrix((values, (np.repeat([0, 1], edge.size), columns)), shape=(2, len(mesh.nodes)))
-    return rows, float(y[-1] - y[0])
+    return _rows(strip, y, weights, moments, identity(len(mesh.nodes), format="csr")[edge]), float(np.ptp(y))
 
 
 def inner_rows(strip: Strip, mesh: Discretisation, at: float) -> tuple[csr_matrix, float]:
     """Weights like `end_rows` of the section at the part ``at`` of a strip's length, and its height."""
     points, shares, heights = section_points(strip, mesh.places, mesh.edges, np.array([at * strip.length]))
     y = points[:, 1]
-    moments = shares * (y - shares @ y)
-    moments = moments * (strip.length / (moments @ y))
-    return csr_matrix(np.stack([shares, moments]) @ mesh.basis.probes(points.T)), float(heights[0])
+    return _rows(strip, y, shares, shares * (y - shares @ y), mesh.basis.probes(points.T)), float(heights[0])
+
+
+def _rows(strip: Strip, y: Floats, weights: Floats, moments: Floats, nodes: csr_matrix) -> csr_matrix:
+    """Weights of mean displacement and first moment, the latter L at rest, from those of points at ``y`` that the ``nodes`` ``(p, n)`` carry."""
+    return csr_matrix(np.stack([weights, moments * (strip.length / (moments @ y))]) @ nodes)
 
 
 def anchor(strip: Strip, mesh: Discretisation, expansion: csr_matrix) -> csr_matrix:

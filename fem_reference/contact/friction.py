@@ -65,7 +65,7 @@ def slip_gradient(touch: Touch) -> Floats:
     assert begin is not None, "a contact that rubs has friction"
     zeta, theta, stretch = _motion_gradients(at)
     rolled = touch.pair.contact.sign * touch.pair.radius * theta
-    return np.asarray((begin.stretch + at.stretch) / 2 * zeta + (at.zeta - begin.zeta) / 2 * stretch - rolled)
+    return (begin.stretch + at.stretch) / 2 * zeta + (at.zeta - begin.zeta) / 2 * stretch - rolled
 
 
 def stiffness(touch: Touch) -> Floats:

@@ -143,7 +143,7 @@ def predict(states: tuple[Accepted, ...], t: float) -> State:
     if h and first.state.contact_set == state.contact_set:
         slopes = h * _unknowns(first.rate(first.t, last.t)), h * _unknowns(rate)
         path = cubic((_unknowns(first.state), _unknowns(state)), slopes)
-        found = np.asarray(polyval((t - first.t) / h, path))
+        found[:] = polyval((t - first.t) / h, path)
     state = state.moved(found[:size].reshape(-1, 2), t, found[size:])
     return state.touching(tuple(map(augmented, state.touches)))
 

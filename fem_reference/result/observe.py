@@ -16,7 +16,7 @@ from fem_reference.system.state import State, stored_energy
 def section_means(state: State, strip: str) -> Floats:
     """Section-mean positions ``(m, 2)`` of a strip in the global frame [m]."""
     body = state.model.body(strip)
-    return np.asarray(body.mesh.sections @ (body.mesh.nodes + state.u[body.part]) + body.strip.start)
+    return body.mesh.sections @ (body.mesh.nodes + state.u[body.part]) + body.strip.start
 
 
 def axis_line(result: Result, strip: str, k: int) -> Floats:
@@ -61,7 +61,7 @@ def fibre_stress(result: Result, k: int) -> Floats:
     def along(body: Body, F: Floats, sigma: Floats) -> Floats:
         T, _ = body.strip.directions(body.mesh.places[body.mesh.cells, 0])
         t = np.einsum("ijek,jek->iek", F, T)
-        return np.asarray(np.einsum("iek,ijek,jek->ek", t, sigma, t) / (t**2).sum(axis=0))[None]
+        return np.einsum("iek,ijek,jek->ek", t, sigma, t)[None] / (t**2).sum(axis=0)
 
     return _at_nodes(result, k, along)[:, 0]
 
@@ -167,7 +167,7 @@ def gauss_stations(body: Body) -> Floats:
     face = body.mesh.edges["right"]
     x = body.mesh.places[face[np.isin(face, corners)], 0]
     offsets = (1 + np.array([-1.0, 1.0]) / np.sqrt(3)) / 2
-    return np.asarray((x[:-1, None] + offsets * np.diff(x)[:, None]).ravel())
+    return (x[:-1, None] + offsets * np.diff(x)[:, None]).ravel()
 
 
 def face_strains(result: Result, strip: str, k: int) -> tuple[Floats, dict[str, Floats]]:

@@ -21,24 +21,19 @@ class Pattern:
     # from all element entries, see `element_entries`, to the entries on and below the diagonal
     scatter: csr_matrix
     positions: Ints  # positions of these entries in the raveled band ``(m, width + 1)``, column after column
+    added: Floats  # constant part of these entries
     size: int  # size, width: number of unknowns m, and number of diagonals below the main one
     width: int
 
     def band(self, elements: Array) -> Array:
         """Assemble element entries into the band ``(width + 1, m)`` of the stiffness, in Fortran order."""
         flat = np.zeros(self.size * (self.width + 1), dtype=elements.dtype)
-        flat[self.positions] = self.scatter @ elements
+        flat[self.positions] = self.scatter @ elements + self.added
         return flat.reshape(self.size, self.width + 1).T
-
-    def band_of(self, matrix: csr_matrix) -> Floats:
-        """Band ``(width + 1, m)`` of a symmetric matrix ``(m, m)`` whose pattern lies in this one."""
-        band, lower = np.zeros((self.width + 1, self.size)), tril(matrix).tocoo()
-        band[lower.row - lower.col, lower.col] = lower.data
-        return band
 
 
 def pattern(mesh: Discretisation, expansion: csr_matrix, added: csr_matrix | None = None) -> Pattern:
-    """Pattern of the stiffness over the unknowns of an ``expansion`` with at most one entry a row, and of ``added``."""
+    """Pattern of the stiffness over the unknowns of an ``expansion`` with at most one entry a row, and an ``added`` symmetric one."""
     size = expansion.shape[1]
     given = expansion.tocoo()
     unknown, factor = np.full(expansion.shape[0], -1), np.zeros(expansion.shape[0])
@@ -54,7 +49,9 @@ def pattern(mesh: Discretisation, expansion: csr_matrix, added: csr_matrix | Non
     width = int((last - first).max(initial=0))
     positions, slots = np.unique(first.astype(np.int64) * (width + 1) + last - first, return_inverse=True)
     scatter = csr_matrix((factors, (slots[: kept.size], kept)), shape=(positions.size, rows.size))
-    return Pattern(scatter=scatter, positions=positions, size=size, width=width)
+    constant = np.zeros(positions.size)
+    constant[slots[kept.size :]] = more.data
+    return Pattern(scatter=scatter, positions=positions, added=constant, size=size, width=width)
 
 
 def deformation_gradient(mesh: Discretisation, u: Array, points: Points | None = None) -> Array:
@@ -64,7 +61,7 @@ def deformation_gradient(mesh: Discretisation, u: Array, points: Points | None =
     nodal = u.T.take(mesh.cells, axis=1)
     nodal -= nodal[:, :, :1]  # leaves the gradient, and less round-off in it
     H = (nodal.reshape(-1, shapes) @ at.slopes.reshape(-1, shapes).T).reshape(2, 1, elements, 2, -1)
-    F = np.asarray(H[..., 0, :] * at.inverse[0] + H[..., 1, :] * at.inverse[1])
+    F = H[..., 0, :] * at.inverse[0] + H[..., 1, :] * at.inverse[1]
     F[0, 0] += 1
     F[1, 1] += 1
     return F
@@ -74,7 +71,7 @@ def internal_force(mesh: Discretisation, P: Array) -> Array:
     """Internal nodal forces ``(n, 2)``, the integral of ``P . dN/dX``, from stresses ``P`` ``(2, 2, e, q)``."""
     pulled = np.einsum("ijeq,Kjeq->ieKq", P * mesh.weights, mesh.gauss.inverse)
     forces = np.tensordot(pulled, mesh.gauss.slopes, ((2, 3), (0, 1)))
-    return np.asarray(mesh.gather @ forces.reshape(2, -1).T)
+    return mesh.gather @ forces.reshape(2, -1).T
 
 
 def element_entries(mesh: Discretisation, A: Array) -> Array:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import eigvals_banded
-from scipy.linalg.lapack import dgbtrf, dgbtrs, dpbtrf, dtbtrs
+from scipy.linalg.lapack import dpbtrf, dtbtrs
 from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import splu
 
@@ -40,34 +40,26 @@ def factorise(band: Floats) -> Factor | None:
         return _indefinite(band)
 
     def triangular(right: Floats, trans: str) -> Floats:
-        return np.asarray(dtbtrs(lower, right, uplo="L", trans=trans)[0]).reshape(right.shape)
+        return dtbtrs(lower, right, uplo="L", trans=trans)[0].reshape(right.shape)
 
     return Factor(
         half=lambda right: triangular(right, "N"),
         rest=lambda half: triangular(half, "T"),
-        product=lambda a, b: np.asarray(a.T @ b),
+        product=lambda a, b: a.T @ b,
         negatives=lambda: 0,
     )
 
 
 def _indefinite(band: Floats) -> Factor | None:
     """Factorise a symmetric matrix that is not positive definite; None if it is singular."""
-    (rows, m), w = band.shape, len(band) - 1
-    both = np.zeros((m, 3 * w + 1)).T
-    both[2 * w :] = band
-    for k in range(1, rows):
-        both[2 * w - k, k:] = band[k, : m - k]
-    lu, pivots, failed = dgbtrf(both, w, w, overwrite_ab=1)
-    if failed:
+    try:
+        solution = splu(full(band), permc_spec="NATURAL").solve
+    except RuntimeError:  # SuperLU's word for an exactly singular matrix
         return None
-
-    def solution(right: Floats) -> Floats:
-        return np.asarray(dgbtrs(lu, w, w, right, pivots)[0]).reshape(right.shape)
-
     return Factor(
         half=lambda right: right,
         rest=solution,
-        product=lambda a, b: np.asarray(a.T @ solution(b)),
+        product=lambda a, b: a.T @ solution(b),
         negatives=lambda: _negatives(band),
     )
 

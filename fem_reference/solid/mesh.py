@@ -145,7 +145,7 @@ def edge_weights(element: str, along: Floats, traction: Floats | None = None) ->
     for j in range(0, along.size - step, step):
         part = slice(j, j + step + 1)
         weights[part] += (along[j + step] - along[j]) * mass @ p[part]
-    return np.asarray(weights / (along[-1] - along[0]))
+    return weights / (along[-1] - along[0])
 
 
 _MASS = np.array([[4.0, 2.0, -1.0], [2.0, 16.0, 2.0], [-1.0, 2.0, 4.0]]) / 30
@@ -159,7 +159,7 @@ def gradient_at(mesh: Discretisation, u: Floats, points: Floats) -> Floats:
     slopes, cells = _shape_slopes(mesh.basis.elem, local), mesh.cells[containing]
     J = np.einsum("paj,Kpa->jKp", mesh.nodes[cells], slopes)
     H = np.einsum("pai,Kpa,jKp->ijp", u[cells], slopes, cofactor(J) / determinant(J))
-    return np.asarray(np.eye(2)[:, :, None] + H)
+    return np.eye(2)[:, :, None] + H
 
 
 def section_points(

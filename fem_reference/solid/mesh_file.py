@@ -88,8 +88,7 @@ def _contents(mesh: Any) -> tuple[Floats, Ints]:
     off = np.abs(points[:, 2:]).sum(axis=1) > _ROUND_OFF * np.ptp(points[:, :2], axis=0).max(initial=0.0)
     _require(off, f"node # must have z = 0, it has {points[np.argmax(off), -1]:g}" if off.any() else "")
     quads = list[Ints]()
-    for block in mesh.cells:
-        nodes, kind = np.asarray(block.data), block.type
+    for kind, nodes in mesh.cells_dict.items():
         if not nodes.size:
             continue
         rule = f'cells of type "{kind}" must have nodes below {len(points)}'

@@ -29,4 +29,4 @@ def cofactor(A: Array) -> Array:
 
 def determinant(A: Array) -> Array:
     """Determinants of matrices ``(2, 2, ...)``."""
-    return np.asarray(A[0, 0] * A[1, 1] - A[0, 1] * A[1, 0])
+    return A[0, 0] * A[1, 1] - A[0, 1] * A[1, 0]

@@ -1,13 +1,14 @@
 """Conditions of strips' ends: supports, springs and joints. They act on the end's mean displacement and rotation."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.linalg import null_space
 
 from fem_reference.statement.arrays import Floats
 from fem_reference.statement.checks import Point, require, require_choice, require_distinct, require_finite
-from fem_reference.statement.strip import Strip
 
 ENDS = ("start", "end")
 Motion = tuple[float | None, float | None, float | None]
@@ -133,65 +134,55 @@ class Joint:
         return self.stiffness[self.hinged.index(end)] if self.stiffness else 0.0
 
 
-Holding = tuple[Support | Spring, ...]
-"""What holds end sections."""
-
-
-def require_known_ends(
-    problem: object, strips: tuple[Strip, ...], holding: Holding, joints: tuple[Joint, ...]
-) -> None:
+def require_known_ends(problem: Any) -> None:
     """Require known ends without clamps, one support and one spring at a joint or end, and joints at one position."""
-    positions = {f"{strip.name}.{end}": getattr(strip, end) for strip in strips for end in ENDS}
-    clamps = [f"{strip.name}.{end}" for strip in strips for end in strip.clamped]
-    for condition in holding:
+    positions = {f"{strip.name}.{end}": getattr(strip, end) for strip in problem.strips for end in ENDS}
+    clamps = [f"{strip.name}.{end}" for strip in problem.strips for end in strip.clamped]
+    for condition in (*problem.supports, *problem.springs):
         require(condition, "strip", condition.node in positions, "must name a strip")
         require(condition, "end", condition.node not in clamps, "must not be a clamped end")
-    for joint in joints:
+    first = {end: joint.ends[0] for joint in problem.joints for end in joint.ends}
+    for joint in problem.joints:
         for end in joint.ends:
             fits = end in positions and end not in clamps and positions[end] == positions[joint.ends[0]]
             rule = "must be an end without a clamp, at the position of the first one"
             require(joint, "ends", fits, rule, end)
-    require_distinct(problem, "joints", (end for joint in joints for end in joint.ends))
-    first = {end: joint.ends[0] for joint in joints for end in joint.ends}
-    for name, kind in (("supports", Support), ("springs", Spring)):
-        nodes = (first.get(item.node, item.node) for item in holding if isinstance(item, kind))
-        require_distinct(problem, name, nodes)
+    require_distinct(problem, "joints", (end for joint in problem.joints for end in joint.ends))
+    for field in ("supports", "springs"):
+        require_distinct(
+            problem, field, (first.get(item.node, item.node) for item in getattr(problem, field))
+        )
 
 
-def require_held(
-    problem: object,
-    strips: tuple[Strip, ...],
-    holding: Holding,
-    joints: tuple[Joint, ...],
-    touching: list[tuple[str, Point, Point]],
-) -> None:
+def require_held(problem: Any, touching: Iterable[tuple[str, Point, Point]]) -> None:
     """Require strips that cannot move without strain; ``touching`` has the strip, position and normal of pins that touch."""
-    numbers = {strip.name: number for number, strip in enumerate(strips)}
-    axes: list[tuple[Point, float]] = [((1.0, 0.0), 0.0), ((0.0, 1.0), 0.0), ((0.0, 0.0), 1.0)]
+    strips = {strip.name: strip for strip in problem.strips}
+    names, length = list(strips), problem.strips[0].length
 
-    def row(name: str, place: Point, direction: Point, turn: float = 0.0) -> Floats:
-        """Displacement in a ``direction`` and turn of a strip with the rigid motion ``(a - c y, b + c x)``, from its start."""
-        strip, found = strips[numbers[name]], np.zeros((len(strips), 3))
-        (x, y), (nx, ny) = np.subtract(place, strip.start), direction
-        found[numbers[name]] = nx, ny, (ny * x - nx * y + turn * strips[0].length) / strip.length
-        return found.ravel()
+    def motion(name: str, place: Point) -> Floats:
+        """Displacement x, y and turn of a strip at a place by the rigid motions ``(a - c y, b + c x)`` of all strips, ``(3, k)``."""
+        rows = np.zeros((3, len(names), 3))
+        x, y = np.subtract(place, strips[name].start) / length
+        rows[:, names.index(name)] = [[1, 0, -y], [0, 1, x], [0, 0, 1]]
+        return rows.reshape(3, -1)
 
-    def motion(end: str, component: int) -> Floats:
+    def at(end: str) -> Floats:
         name, side = end.split(".")
-        return row(name, getattr(strips[numbers[name]], side), *axes[component])
+        return motion(name, getattr(strips[name], side))
 
-    held = [(f"{strip.name}.{end}", (0.0, 0.0, 0.0)) for strip in strips for end in strip.clamped]
-    motions: list[tuple[str, Motion]] = [*held, *((item.node, item.motion) for item in holding)]
-    rows = [row(*touch) for touch in touching]
-    rows += [motion(end, k) for end, given in motions for k in range(3) if given[k] is not None]
+    given = [(f"{name}.{end}", (0.0, 0.0, 0.0)) for name in names for end in strips[name].clamped]
+    given += [(item.node, item.motion) for item in (*problem.supports, *problem.springs)]
+    rows = [np.zeros(3 * len(names)), *(normal @ motion(name, place)[:2] for name, place, normal in touching)]
+    rows += [at(end)[k] for end, motion in given for k in range(3) if motion[k] is not None]
     rows += [
-        motion(end, k) - motion(joint.ends[0], k)
-        for joint in joints
+        at(end)[k] - at(joint.ends[0])[k]
+        for joint in problem.joints
         for end in joint.ends[1:]
         for k in range(2 if joint.stiffness_of(end) == 0.0 else 3)
     ]
-    free = null_space(np.array([np.zeros(3 * len(strips)), *rows]), rcond=1e-9).reshape(len(strips), -1)
-    moves = np.abs(free).max(axis=1, initial=0.0) > 1e-6
-    loose = ", ".join(sorted(strip.name for strip, loose in zip(strips, moves, strict=True) if loose))
+    free = np.abs(null_space(np.array(rows), rcond=1e-9)).max(axis=1, initial=0.0)
+    loose = ", ".join(
+        sorted(name for name, moves in zip(names, free.reshape(-1, 3), strict=True) if max(moves) > 1e-6)
+    )
     rule = f"must hold {loose}, with the pins that touch at the start"
-    require(problem, "supports", not loose, rule, tuple(given for _, given in motions))
+    require(problem, "supports", not loose, rule, tuple(motion for _, motion in given))

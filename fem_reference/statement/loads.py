@@ -108,7 +108,7 @@ class LineLoad:
         half = np.diff(ends)[:, None] / 2
         points, weights = (ends[:-1, None] + half * (1 + x)).ravel(), (half * w).ravel()
         per_length = np.polynomial.polynomial.polyval(points / strip.length, np.array(self.force))
-        return np.asarray(_shares(strip, stations, points) @ (per_length * weights).T)
+        return _shares(strip, stations, points) @ (per_length * weights).T
 
 
 Load = PointLoad | LineLoad

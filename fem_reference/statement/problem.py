@@ -1,5 +1,6 @@
 """Problem data: strips, rigid pins on paths, contacts, and the conditions of the strips' ends."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,7 +16,6 @@ from fem_reference.statement.checks import (
     require_positive,
 )
 from fem_reference.statement.conditions import (
-    Holding,
     Joint,
     Spring,
     Support,
@@ -201,9 +201,8 @@ class SolidProblem:
             clamps = {f"{load.strip}.{end}" for end in self.strip(load.strip).clamped}
             free = not isinstance(load, PointLoad) or load.node not in clamps
             require(load, "at", free, "must not be a clamped end")
-        holding: Holding = (*self.supports, *self.springs)
-        require_known_ends(self, self.strips, holding, self.joints)
-        require_held(self, self.strips, holding, self.joints, self._touching())
+        require_known_ends(self)
+        require_held(self, self._touching())
 
     def strip(self, name: str) -> Strip:
         """Return the strip called ``name``."""
@@ -229,9 +228,8 @@ class SolidProblem:
         """Contact stiffness eps of a contact [N/m]."""
         return contact.penalty or default_penalty(self.strip(contact.strip))
 
-    def _touching(self) -> list[tuple[str, Point, Point]]:
+    def _touching(self) -> Iterator[tuple[str, Point, Point]]:
         """Strip, position and normal of every pin that touches at the start. No node may start beyond the touched surface."""
-        found: list[tuple[str, Point, Point]] = []
         for contact in self.contacts:
             strip, pin = self.strip(contact.strip), self.pin(contact.node)
             owner: Pin | Contact = pin or contact
@@ -247,9 +245,8 @@ class SolidProblem:
             rule = f"must not start beyond the {contact.side} {contact.surface} of the strip (gap {gap:.3g})"
             require(owner, field, gap >= -slack or not 0 < axial < strip.length, rule, start)
             if pin and gap <= slack and 0 <= axial <= strip.length:
-                x, y = map(float, strip.directions(axial)[1])
-                found.append((strip.name, pin.path[0], (x, y)))
-        return found
+                x, y = strip.directions(axial)[1].tolist()
+                yield strip.name, pin.path[0], (x, y)
 
 
 def default_penalty(strip: Strip) -> float:

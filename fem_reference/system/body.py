@@ -24,9 +24,8 @@ class Body:
     part: slice  # range of the strip's nodes in the model's nodal arrays
     unknowns: slice  # range of its unknowns in the model's
     expansion: csr_matrix  # matrix ``(2 n, m)`` from the unknowns to the displacements, see `clamp`
-    stiffness: Pattern  # sparsity pattern of the stiffness over the unknowns
-    # band of springs on the start's section that make K of a strip without a clamp regular; the border takes them away
-    anchor: Floats | None
+    # sparsity pattern of the stiffness over the unknowns; with the springs of an anchor, which the border takes away
+    stiffness: Pattern
     offset: Floats  # start ``(2,)`` from that of the first strip, so that a distant scene loses no digits [m]
     round_off: float  # round-off of a nodal force [N], see `force_round_off`
 
@@ -36,8 +35,7 @@ class Body:
 
     def band(self, F: Floats) -> Floats:
         """Lower band of the tangent stiffness with the anchor."""
-        K = self.stiffness.band(element_entries(self.mesh, self.law.tangent(F)))
-        return K if self.anchor is None else K + self.anchor
+        return self.stiffness.band(element_entries(self.mesh, self.law.tangent(F)))
 
     def strain_energy(self, F: Floats) -> float:
         """Strain energy [J]."""
@@ -57,8 +55,6 @@ def build_body(strip: Strip, before: Sequence[Body] = ()) -> Body:
     """Discretise a strip and its clamps; its nodes and unknowns follow those of the bodies ``before``."""
     mesh = discretise(strip)
     expansion = clamp(strip, mesh)
-    springs = None if strip.clamped else anchor(strip, mesh, expansion)
-    stiffness = pattern(mesh, expansion, springs)
     law = elastic_law(strip.material, strip.youngs_modulus, strip.poissons_ratio, strip.plane)
     first = before[0].strip if before else strip
     n, m = (before[-1].part.stop, before[-1].unknowns.stop) if before else (0, 0)
@@ -69,8 +65,7 @@ def build_body(strip: Strip, before: Sequence[Body] = ()) -> Body:
         part=slice(n, n + len(mesh.nodes)),
         unknowns=slice(m, m + expansion.shape[1]),
         expansion=expansion,
-        stiffness=stiffness,
-        anchor=None if springs is None else stiffness.band_of(springs),
+        stiffness=pattern(mesh, expansion, None if strip.clamped else anchor(strip, mesh, expansion)),
         offset=np.array(strip.start) - np.array(first.start),
         round_off=force_round_off(strip, mesh, law),
     )
@@ -84,15 +79,17 @@ def force_round_off(strip: Strip, mesh: Discretisation, law: Law) -> float:
     """
     sides = np.ptp(mesh.places[mesh.cells[:, :4]], axis=1)
     aspect = float((sides.max(axis=1) / sides.min(axis=1)).max())
-    width = max(strip.width, strip.end_width or 0.0)
-    return 4 * float(np.finfo(float).eps * law.elastic[0, 0, 0, 0]) * width * strip.length * aspect
+    width, modulus = (
+        max(strip.width, strip.end_width or 0.0),
+        float(law.tangent(np.eye(2)[:, :, None])[0, 0, 0, 0, 0]),
+    )
+    return 4 * float(np.finfo(float).eps) * modulus * width * strip.length * aspect
 
 
 def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:
     """Matrix ``(2 n, m)`` from the unknowns, ordered along the strip, to the displacements that the clamps admit.
 
-    Without a node at the middle of the edge, the rod's clamp holds the displacement interpolated there from the two adjacent
-    nodes.
+    The rod's clamp holds the displacement at the middle of the edge, interpolated from the nodes below and above, the latter maybe there.
     """
     n = len(mesh.nodes)
     factor = np.ones(2 * n)
@@ -101,23 +98,19 @@ def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:
         edge = mesh.edges[end]
         y = mesh.places[edge, 1] - mesh.places[edge[[0, -1]], 1].mean()
         across = strip.directions(0.0 if end == "start" else strip.length)[1]
-        larger = int(abs(across[1]) >= abs(across[0]))
         factor[2 * edge], factor[2 * edge + 1] = (0, 0) if strip.clamp == "full" else across
-        master[2 * edge], master[2 * edge + 1] = 2 * edge + larger, 2 * edge + larger
+        master[2 * edge + 1] = 2 * edge
         if strip.clamp == "full":
             continue
-        if np.abs(y).min() < 1e-9 * strip.height:
-            middle = 2 * edge[np.argmin(np.abs(y))]
-            factor[[middle, middle + 1]] = 0
-        else:
-            k = int(np.searchsorted(y, 0.0))
-            above = [2 * edge[k], 2 * edge[k] + 1]
-            master[above] = 2 * edge[k - 1] + larger
-            factor[above] *= y[k] / y[k - 1]
+        y[np.abs(y) < 1e-9 * strip.height] = 0
+        k = int(np.searchsorted(y, 0.0))
+        above = [2 * edge[k], 2 * edge[k] + 1]
+        master[above] = 2 * edge[k - 1]
+        factor[above] *= y[k] / y[k - 1]
     order = np.lexsort(np.round(mesh.places / strip.height, 9).T[::-1])
     along = (2 * order[:, None] + np.arange(2)).ravel()
-    unknowns = along[(factor[along] != 0) & (master[along] == along)]
-    column = np.full(2 * n, -1)
-    column[unknowns] = np.arange(unknowns.size)
     free = np.flatnonzero(factor)
+    unknowns = along[np.isin(along, master[free])]
+    column = np.empty(2 * n, dtype=int)
+    column[unknowns] = np.arange(unknowns.size)
     return csr_matrix((factor[free], (free, column[master[free]])), shape=(2 * n, unknowns.size))

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import block_diag, csr_matrix, identity
+from scipy.sparse import block_diag, csr_matrix, identity, kron, vstack
 
 from fem_reference.contact.contact import Carrier, Pair
 from fem_reference.contact.curve import contact_curve
@@ -67,7 +67,7 @@ class Model:
 
     def displacements(self, unknowns: Floats) -> Floats:
         """Displacements ``(n, 2)`` from the unknowns ``(m,)``."""
-        return np.asarray((self.expansion @ unknowns).reshape(-1, 2))
+        return (self.expansion @ unknowns).reshape(-1, 2)
 
 
 def build(problem: SolidProblem, settings: Settings | None = None) -> Model:
@@ -88,8 +88,7 @@ def build(problem: SolidProblem, settings: Settings | None = None) -> Model:
         size = max(float(np.hypot(*forces.sum(axis=0))), abs(load.moment) / length)
         largest[load.stage] = max(largest[load.stage], size)
     expansion = block_diag([body.expansion for body in bodies], format="csr")
-    axes = np.eye(2)
-    columns = [section.carrier.columns(axes.repeat(2, axis=0), np.tile(axes, (2, 1))) for section in sections]
+    carried = [csr_matrix((0, bodies[-1].part.stop)), *(section.carrier.rows for section in sections)]
     distances = [float(np.hypot(*point)) for strip in problem.strips for point in (strip.start, strip.end)]
     return Model(
         problem=problem,
@@ -100,7 +99,7 @@ def build(problem: SolidProblem, settings: Settings | None = None) -> Model:
         restriction=csr_matrix(expansion.T),
         loads=loads,
         sections=sections,
-        columns=np.hstack([np.zeros((2 * bodies[-1].part.stop, 0)), *columns]),
+        columns=kron(vstack(carried), np.eye(2)).T.toarray(),
         ties=tuple(_ties(problem, numbers)),
         moments=moments,
         largest_loads=largest,

@@ -72,7 +72,7 @@ class State:
     @cached_property
     def reduced(self) -> Floats:
         """The `residual` on the unknowns ``(m,)`` [N]."""
-        return np.asarray(self.model.restriction @ self.residual.ravel())
+        return self.model.restriction @ self.residual.ravel()
 
     @property
     def actions(self) -> Floats:
@@ -88,7 +88,7 @@ class State:
     def nodal_forces(self, actions: Floats) -> Floats:
         """Nodal forces ``(n, 2)`` of ``actions`` ``(e, 3)`` on the end sections [N]."""
         along = [pose.gradient @ action for pose, action in zip(self.poses, actions, strict=True)]
-        return np.asarray(self.model.columns @ np.concatenate(along)).reshape(-1, 2)
+        return (self.model.columns @ np.concatenate(along)).reshape(-1, 2)
 
     @property
     def force_scale(self) -> float:
@@ -147,8 +147,11 @@ Reaction = tuple[Floats, float, Floats]
 """Force ``(2,)`` on a strip [N], moment about the held point [N m], and the place of this point ``(2,)`` [m]."""
 
 
-def reactions(state: State) -> dict[str, Reaction]:
-    """Reactions of clamps and supports by end. The point is the middle of a clamped edge, or the mean of a section."""
+def reactions(state: State) -> tuple[dict[str, Reaction], dict[str, Reaction]]:
+    """Reactions of clamps and supports, and of springs to the ground, by end.
+
+    The point is the middle of a clamped edge, or the mean of a section.
+    """
     found = dict[str, Reaction]()
     for body in state.model.bodies:
         for end in body.strip.clamped:
@@ -157,18 +160,18 @@ def reactions(state: State) -> dict[str, Reaction]:
             forces = state.residual[body.part][edge]
             turning = moment(nodes[edge] + state.u[body.part][edge] - middle, forces)
             found[f"{body.strip.name}.{end}"] = forces.sum(axis=0), turning, body.offset + middle
-    return found | tie_reactions(state, springs=False)
-
-
-def tie_reactions(state: State, *, springs: bool) -> dict[str, Reaction]:
-    """Reactions by end, at the sections' mean positions: of supports, or with ``springs`` of ground springs."""
-    forces, places = dict[str, Floats](), dict[str, Floats]()
+    held, sprung = dict[int, Floats](), dict[int, Floats]()
     for tie, value in zip(state.model.ties, state.tie_forces, strict=True):
-        if tie.other is None and (tie.flexibility > 0) == springs:
-            node = state.model.sections[tie.section].node
-            forces.setdefault(node, np.zeros(3))[tie.component] = value
-            places[node] = state.poses[tie.section].position
-    return {node: (found[:2], float(found[ROTATION]), places[node]) for node, found in forces.items()}
+        if tie.other is None:
+            (sprung if tie.flexibility else held).setdefault(tie.section, np.zeros(3))[tie.component] = value
+    supports, springs = (
+        {
+            state.model.sections[n].node: (f[:2], float(f[ROTATION]), state.poses[n].position)
+            for n, f in kind.items()
+        }
+        for kind in (held, sprung)
+    )
+    return found | supports, springs
 
 
 def imbalance(state: State) -> float:
@@ -179,10 +182,7 @@ def imbalance(state: State) -> float:
         loads = nodal[body.part]
         total += loads.sum(axis=0)
         turning += moment(body.offset + body.mesh.nodes + state.u[body.part], loads)
-    for force, free_moment, place in (
-        *reactions(state).values(),
-        *tie_reactions(state, springs=True).values(),
-    ):
+    for force, free_moment, place in (one for kind in reactions(state) for one in kind.values()):
         total += force
         turning += free_moment + moment(place, force)
     for touch in state.closed:

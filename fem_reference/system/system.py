@@ -131,14 +131,10 @@ class Tangent:
         A, N, M, W = self.border.A, self.border.N, self.border.M, self.W
         k, factor = len(A), self.factor
         half = factor.half(R) if R.any() else R
-        if not k:
-            return factor.rest(-half), np.zeros(0)
-        matrix = np.empty((k + len(C), k + len(C)))
-        matrix[:k, :k], matrix[:k, k:] = np.eye(k) - A @ W, -N
-        matrix[k:, :k], matrix[k:, k:] = M.T @ W, C
+        matrix = np.concatenate([np.hstack([np.eye(k) - A @ W, -N]), np.hstack([M.T @ W, C])])
         known = p - factor.product(self.V, half)
         right = np.concatenate([A @ known, -r - M.T @ known])
-        scale = 1 / np.maximum(np.abs(matrix).max(axis=1), np.finfo(float).tiny)
+        scale = 1 / np.abs(matrix).max(axis=1, initial=np.finfo(float).tiny)
         try:
             z = np.linalg.solve(scale[:, None] * matrix, scale * right)
         except np.linalg.LinAlgError:
@@ -177,9 +173,7 @@ class Tangent:
         S = np.block([[-A, one, -N], [one, -self.W, np.zeros((k, c))], [-N.T, np.zeros((c, k)), -C]])
         tiny = np.finfo(float).tiny
         units = np.sqrt(np.abs(np.diag(self.W)) + tiny)  # of y; those of z are their inverse
-        forces = 1 / np.maximum(
-            np.abs(np.vstack([units[:, None] * N, np.sqrt(C)])).max(axis=0, initial=0.0), tiny
-        )
+        forces = 1 / np.abs(np.vstack([units[:, None] * N, np.sqrt(C)])).max(axis=0, initial=tiny)
         scale = np.concatenate([units, 1 / units, forces])
         negatives = int((np.linalg.eigvalsh(scale[:, None] * (S + S.T) / 2 * scale) < 0).sum())
         return negatives + self.factor.negatives() - int(k + c)
@@ -204,7 +198,7 @@ def linearise(state: State) -> Tangent | None:
     factor = factorise(K)
     if factor is None:
         return None
-    U = np.asarray(model.restriction @ np.hstack([*(touch.columns for touch in state.closed), model.columns]))
+    U = model.restriction @ np.hstack([*(touch.columns for touch in state.closed), model.columns])
     V = factor.half(U) if U.size else U
     border = build_border(state)
     if not all(np.all(np.isfinite(part)) for part in (V, border.A, border.N)):

@@ -15,7 +15,7 @@ from comparisons.scene import load_scene
 
 # not public: one iteration, one assembly and one factorisation, which no solution gives apart
 from fem_reference.solid.assembly import deformation_gradient, element_entries
-from fem_reference.solid.factor import factorise
+from fem_reference.solid.factor import factorise, full
 from fem_reference.system.body import build_body
 from tests.benchmarks import plain
 from tests.benchmarks.measure import Gate
@@ -81,7 +81,7 @@ def solution(bench):
     for mesh, bar in (((50, 2), 3.2), ((200, 4), 0.8)):
         problem, name = to_solid(KS, mesh=mesh), f"{mesh[0]}x{mesh[1]}"
         result = fem_reference.solve(problem, T)
-        K = result.model.bodies[0].tangent(result.states[len(result.states) // 2].u)
+        K = full(result.model.bodies[0].band(result.states[len(result.states) // 2].gradients[0]))
         columns = np.random.default_rng(0).standard_normal((K.shape[0], 4))
 
         def general(K=K, columns=columns):

@@ -248,10 +248,7 @@ def test_a_correction_that_grows_is_halved_and_still_converges(monkeypatch):
 def dense_index(state):
     """Negative eigenvalues of ``K - sum lam g'' - sum m theta''`` with springs, over the displacements that constraints admit."""
     model, constraints = state.model, []
-    bands = [
-        body.band(F) - (body.anchor is not None and body.anchor)
-        for body, F in zip(model.bodies, state.gradients, strict=True)
-    ]
+    bands = [body.band(F) for body, F in zip(model.bodies, state.gradients, strict=True)]
     A = block_diag(*(full(band).toarray() for band in bands))
     for touch in state.closed:
         U = model.restriction @ touch.columns
@@ -261,8 +258,8 @@ def dense_index(state):
         else:
             constraints.append(U[:, 0])
     columns = np.split(model.restriction @ model.columns, max(len(model.sections), 1), axis=1)
-    for U, pose, action in zip(columns, state.poses, state.actions, strict=False):
-        A -= action[2] * U @ pose.curvature @ U.T
+    for U, section, pose, action in zip(columns, model.sections, state.poses, state.actions, strict=False):
+        A -= U @ (action[2] * pose.curvature + section.anchor_stiffness * np.eye(4)) @ U.T
     for tie in model.ties:
         gradient = columns[tie.section] @ state.poses[tie.section].gradient[:, tie.component]
         if tie.other is not None:

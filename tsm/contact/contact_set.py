@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from tsm.contact.events import ROUND_OFF, EventKind, over
-from tsm.model.contact import closed, owned, with_touches
+from tsm.model.contact import owned, with_touches
 from tsm.model.groups.shape import undeformed
 from tsm.model.model import Model
 from tsm.model.pairs import PairModel
@@ -61,12 +61,6 @@ def initial_state(model: Model) -> State:
             )
         touches.append(closed_at(pair, seen) if over(model, seen) and seen.gap <= small else None)
     return owned(model, with_touches(model, start, tuple(touches)))
-
-
-def crowded(model: Model, state: State) -> bool:
-    """Whether two nodes touch one element of the paper's, whose matrix knows a single contact."""
-    owners = [touch.element for _, pair, touch in closed(model, state) if pair.slot < 0]
-    return len(set(owners)) < len(owners)
 
 
 def opened(model: Model, state: State, k: int, kind: EventKind, *, alone: bool) -> State:

@@ -43,9 +43,9 @@ def clearance(model: Model, state: State, k: int) -> Clearance:
     reach, radius, steep = abs(pair.reach_at(arc)), pair.pair.radius, way * pair.side * pair.steep
     if away > 2.0 * reach and (touch is not None or state.armed[k]):
         return Clearance(away - reach, beyond=False, arc=arc)
-    (px, py), (tx, ty) = model.group_of(pair.target).end(pair, state, last=last)
-    size = math.hypot(tx, ty)
-    ahead, aside = -way * (px * tx + py * ty) / size, abs(px * ty - py * tx) / size
+    place, tangent = (complex(*of) for of in model.group_of(pair.target).end(pair, state, last=last))
+    along = place * tangent.conjugate() / abs(tangent)
+    ahead, aside = -way * along.real, abs(along.imag)
     beyond = ahead + steep * away > 0.0
     if touch is not None and (not beyond or abs(pair.arc_position(touch) - arc) < reach):
         return Clearance(reach, beyond=False, arc=arc)

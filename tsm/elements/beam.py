@@ -183,5 +183,4 @@ def energy(a: Coefficients, x: Array) -> Array:
     polynomial = a.constant + a.of_mm * mm + a.of_hh * hh
     stretch = (e + polynomial[0]) ** 2 / polynomial[1]
     bending = a.constant[2] * mm + a.constant[3] * hh
-    value: Array = (stretch + bending + a.r4 * mm * mm / 4 + a.r2 * mm * hh / 2) / 2
-    return value
+    return (stretch + bending + a.r4 * mm * mm / 4 + a.r2 * mm * hh / 2) / 2

@@ -82,8 +82,7 @@ class Field(NamedTuple):
     @property
     def slope(self) -> Array:
         """Derivative (s, p) of f by the angle."""
-        slope: Array = self.N * self.turn - self.gq * self.q
-        return slope
+        return self.N * self.turn - self.gq * self.q
 
 
 class Arrival(NamedTuple):
@@ -120,8 +119,7 @@ def field(segments: Segments) -> Field:
 def moments(segments: Segments, at: Field, moment: Array) -> Array:
     """Moments (s, p) at the Gauss nodes."""
     once = segments.table.once
-    at_nodes: Array = moment + segments.length * (at.values[0] @ once.T)
-    return at_nodes
+    return moment + segments.length * (at.values[0] @ once.T)
 
 
 def arrival(segments: Segments, at: Field, start: Array, moment: Array, end: Array) -> Arrival:

@@ -30,5 +30,4 @@ def plain(values: Any) -> Any:
 
 def derivatives(values: Any) -> Array:
     """Derivatives (..., n) of values (..., n + 1)."""
-    rates: Array = np.asarray(values)[..., :-1].imag / STEP
-    return rates
+    return np.asarray(values)[..., :-1].imag / STEP

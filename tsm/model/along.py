@@ -39,25 +39,24 @@ class Along:
         self.start = np.array([beam.direction(a) for beam, a, _ in spans])
         self.end = np.array([beam.direction(b) for beam, _, b in spans])
         self.gauge, self.gyration = np.array([_sections(*span) for span in spans]).transpose(2, 1, 0)
-        sheared = (ELEMENTS[beam.element].sheared for beam, _, _ in spans)
-        ratios = (beam.section.GA / beam.section.EA for beam, _, _ in spans)
-        self.ratio = np.array([r if s else np.inf for r, s in zip(ratios, sheared, strict=True)])
+        self.ratio = np.array(
+            [
+                beam.section.GA / beam.section.EA if ELEMENTS[beam.element].sheared else np.inf
+                for beam, _, _ in spans
+            ]
+        )
         degree = max((len(load.force) for load in loads), default=0)
         resultant = np.zeros((stages, 2, degree, len(spans)))
-        first: dict[str, int] = {}
-        for number, (beam, _, _) in enumerate(spans):
-            first.setdefault(beam.name, number)
+        names = [beam.name for beam, _, _ in spans]
         for load in loads:
-            beam = next(beam for beam in beams if beam.name == load.beam)
-            for element in load.elements(beam):
-                place = first[beam.name] + element
+            first = names.index(load.beam)
+            for place in (first + element for element in load.elements(spans[first][0])):
                 resultant[load.stage, :, : len(load.force), place] += _integral(load, *spans[place])
         self.resultants = Increments(resultant)
 
     def total(self, load_parameter: float) -> Array:
         """Sum (2,) of all loads along the beams at a load parameter."""
-        total: Array = self.resultants.at(load_parameter).sum(axis=(1, 2))
-        return total
+        return self.resultants.at(load_parameter).sum(axis=(1, 2))
 
     def course(self, elements: Array, part: Array, resultant: Array, resultant_rate: Array) -> Course:
         """What varies at parts (s, p) of the lengths of elements (s,), from resultants (2, d, s) and their rates."""

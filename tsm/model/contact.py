@@ -35,6 +35,12 @@ def on_rigid_nodes(model: Model, state: State) -> list[PairModel]:
     return [pair for pair, touch in there if min(touch.xi, 1 - touch.xi) < _AT_NODE]
 
 
+def crowded(model: Model, state: State) -> bool:
+    """Whether two nodes touch one element of the paper's, whose matrix knows a single contact."""
+    owners = [touch.element for _, pair, touch in closed(model, state) if pair.slot < 0]
+    return len(set(owners)) < len(owners)
+
+
 def with_touches(model: Model, state: State, touches: tuple[Touch | None, ...]) -> State:
     """State with other contacts."""
     after = state if touches == state.touches else replace(state, touches=touches)

@@ -69,7 +69,6 @@ class ContactBlock:
         unknowns; of exact elements the rows of the contact, and the columns of element and node.
     ``pushed``: first degrees of freedom of the beam ends that touch, with the reaction (2,) on each.
     ``stiffest``: largest stiffness of a contact whose force follows from the displacements.
-    ``crowded``: whether two nodes touch one element whose matrix knows a single contact.
     """
 
     def __init__(self, model: Numbering) -> None:
@@ -83,7 +82,6 @@ class ContactBlock:
         self.pushed: list[tuple[int, Array]] = []
         self.closed: dict[int, list[tuple[PairModel, Touch]]] = {}
         self.stiffest = 0.0
-        self.crowded = False
 
     def copy(self) -> ContactBlock:
         """What the elements enter at a configuration, for their tangents to be added."""
@@ -95,8 +93,8 @@ class ContactBlock:
     def leave_open(self, pair: PairModel) -> None:
         """Decouple the unknowns of an open pair: 1 on the diagonal, zeros elsewhere."""
         if pair.slot >= 0:
-            slots = self.slots(pair)
-            self.corner[slots, slots] = np.eye(pair.target.kind.contact_unknowns)
+            slots = self.border_of(pair)
+            self.corner[slots, slots] = 1.0
 
     def enter(self, k: int, pair: PairModel, force: tuple[float, float], rows: Any) -> None:
         """Enter force and residuals of a closed pair."""
@@ -113,17 +111,20 @@ class ContactBlock:
         others = self.closed.setdefault(e, [])
         if pair.slot < 0:
             self.stiffest = max(self.stiffest, float(np.abs(block[6:8, 6:8]).max()))
-            self.crowded |= len(others) > 0
         else:
-            slots, eq = self.slots(pair), model.element_equations[:, e]
-            self.right[eq, slots], self.below[slots, eq] = block[:6, 8:], block[8:, :6]
+            slots, node = self.border_of(pair), model.equation[3 * pair.node :][:2]
+            self.couple(slots, model.element_equations[:, e], block[:6, 8:], block[8:, :6])
             if pair.node >= 0:
-                eq = model.equation[3 * pair.node : 3 * pair.node + 2]
-                self.right[eq, slots], self.below[slots, eq] = block[6:8, 8:], block[8:, 6:8]
-            self.corner[slots, slots] += block[8:, 8:]
+                self.couple(slots, node, block[6:8, 8:], block[8:, 6:8])
+            self.corner[slots[:, None], slots] += block[8:, 8:]
             for other, earlier in others:
                 self._share(model.element[e], (other, earlier), (pair, touch))
         others.append((pair, touch))
+
+    def couple(self, slots: Array, equations: Array, columns: Array, rows: Array) -> None:
+        """Add columns and rows of the border between equations of the beams and unknowns of contacts."""
+        self.right[equations[:, None], slots] += columns
+        self.below[slots[:, None], equations] += rows
 
     def _share(self, p: Any, first: tuple[PairModel, Touch], second: tuple[PairModel, Touch]) -> None:
         """Couple two contacts on one element: each force deflects the element at the other contact."""
@@ -133,9 +134,8 @@ class ContactBlock:
         for pair_i, part_i in zip(pairs, parts, strict=True):
             self.residual[pair_i.slots] += gradient[part_i]
             for pair_j, part_j in zip(pairs, parts, strict=True):
-                self.corner[self.slots(pair_i), self.slots(pair_j)] += block[part_i, part_j]
+                self.corner[self.border_of(pair_i)[:, None], self.border_of(pair_j)] += block[part_i, part_j]
 
-    def slots(self, pair: PairModel) -> slice:
+    def border_of(self, pair: PairModel) -> Array:
         """Rows and columns of a pair's unknowns in the border."""
-        start = pair.slot + self.model.border_dofs
-        return slice(start, start + pair.target.kind.contact_unknowns)
+        return self.model.border_dofs + pair.slot + np.arange(pair.target.kind.contact_unknowns)

@@ -13,8 +13,8 @@ from tsm.elements import ClosedForm, ElementType, Integrated
 from tsm.elements.beam import Coefficients
 from tsm.elements.properties import Array, Properties
 from tsm.model.along import Along, gauss_nodes, kind_of
-from tsm.model.scales import Sizes, joined_extents, sizes_of
-from tsm.statement.beam import Beam
+from tsm.model.scales import joined_extents, sizes_of
+from tsm.statement.beam import Beam, Point
 from tsm.statement.structure import Structure
 
 
@@ -46,8 +46,8 @@ class Mesh:
         three degrees of freedom among all threes, -1 without.
     ``gauss_nodes``: fixed number of Gauss nodes of the elements that contacts cut, None where it follows from
         the accuracy. ``along``: what varies along the elements.
-    ``joints``: node of the joint by node of the beam's end behind a hinge; they share their displacements, the
-        ``slaves`` of the end and the ``masters`` of the joint.
+    ``joints``: node of the joint by node of the beam's end behind a hinge, ``links`` (h, 2) the same; they share
+        their displacements, the ``slaves`` of the end and the ``masters`` of the joint.
     ``properties``: constants of the elements. ``length, extent, force_scale, least_force``: see `Sizes`.
     """
 
@@ -55,35 +55,55 @@ class Mesh:
         self.structure, self.stages = structure, structure.stages
         self.along = Along(structure.beams, structure.line_loads, self.stages)
         self._place_beams(structure.beams)
-        self.gauss_nodes = gauss_nodes([(beam.beam, beam.kind) for beam in self.beams.values()])
-        self._sort_elements()
-        sections = np.array(
-            [[getattr(b.section, name) for b in structure.beams] for name in ("EA", "GA", "EI")]
-        )
-        l0 = np.concatenate([beam.lengths for beam in self.beams.values()])
-        self.properties = self._properties(l0, sections)
-        self.sizes = self._sizes(np.array([beam.length for beam in structure.beams]), sections[2])
+        beams = list(self.beams.values())
+        counts = [beam.beam.elements for beam in beams]
+        self.gauss_nodes = gauss_nodes([(beam.beam, beam.kind) for beam in beams])
+        kinds = [(isinstance(beam.kind, Integrated), beam.kind.sheared) for beam in beams]
+        cut, sheared = np.repeat(kinds, counts, axis=0).T
+        own, self.closed = np.flatnonzero(cut), np.flatnonzero(~cut)
+        self.members: dict[type[ElementType], Array] = {ClosedForm: self.closed, Integrated: own}
+        self.place = np.where(cut, cut.cumsum(), (~cut).cumsum()) - 1
+        self.block = np.where(cut, len(self.coordinates) + self.place, -1)
+        self.dof_count = 3 * (len(self.coordinates) + len(own))
+        l0 = np.concatenate([beam.lengths for beam in beams])
+        sections = np.array([(b.section.EA, b.section.GA, b.section.EI) for b in structure.beams]).T
+        EA, GA, EI = np.repeat(sections, counts, axis=1)
+        dx0, dy0 = np.diff(self.coordinates[self.element_nodes], axis=1)[:, 0].T.copy()
+        self.properties = Properties(dx0, dy0, l0, EA, EI, np.where(sheared, 12 * EI / (GA * l0**2), 0.0))
+        lengths = extents = np.array([beam.length for beam in structure.beams])
+        if self.joined:
+            starts = np.array([beam.nodes[0] for beam in beams])
+            links = np.concatenate([self.element_nodes, self.links])
+            extents = joined_extents(links, starts, self.coordinates, lengths)
+        self.sizes = sizes_of(lengths, extents, sections[2])
         self.length, self.extent, self.force_scale, self.least_force = self.sizes
 
     def _place_beams(self, beams: tuple[Beam, ...]) -> None:
         self.beams: dict[str, BeamModel] = {}
-        coordinates: list[tuple[float, float]] = []
-        ends: dict[tuple[float, float], int] = {}
+        coordinates: list[Point] = []
+        ends: dict[Point, int] = {}
+        behind: dict[int, Point] = {}
         hinged = {(hinge.beam, hinge.end) for hinge in self.structure.hinges}
-        behind: dict[int, tuple[float, float]] = {}
         rubbed = {pair.beam for pair in self.structure.contacts if pair.friction}
         elements = 0
+
+        def joint(point: Point) -> int:
+            """Node of all ends at a point."""
+            if ends.setdefault(point, len(coordinates)) == len(coordinates):
+                coordinates.append(point)
+            return ends[point]
+
         for beam in beams:
             nodes = []
             for k, part in enumerate(beam.parts):
-                x, y = beam.point(part)
-                at_end = k in {0, beam.elements}
-                if at_end and (beam.name, "end" if k else "start") in hinged:
-                    at_end, behind[len(coordinates)] = False, (x, y)
-                node = ends.setdefault((x, y), len(coordinates)) if at_end else len(coordinates)
-                if node == len(coordinates):
-                    coordinates.append((x, y))
-                nodes.append(node)
+                point, end = beam.point(part), {0: "start", beam.elements: "end"}.get(k)
+                if end and (beam.name, end) not in hinged:
+                    nodes.append(joint(point))
+                    continue
+                if end:
+                    behind[len(coordinates)] = point
+                nodes.append(len(coordinates))
+                coordinates.append(point)
             arcs = [part * beam.length for part in beam.parts]
             self.beams[beam.name] = BeamModel(
                 beam=beam,
@@ -94,7 +114,12 @@ class Mesh:
                 kind=kind_of(beam, varies=bool(self.along.varies[elements]), rubbed=beam.name in rubbed),
             )
             elements += beam.elements
-        self._place_joints(behind, ends, coordinates)
+        # a joint whose ends are all behind hinges is a node of its own
+        self.joints = {node: joint(point) for node, point in behind.items()}
+        self.links = np.array(list(self.joints.items()), dtype=int).reshape(-1, 2)
+        self.slaves, self.masters = (
+            (3 * self.links[:, :, None] + np.arange(2)).transpose(1, 0, 2).reshape(2, -1)
+        )
         self.coordinates = np.array(coordinates)
         self.element_nodes = np.concatenate(
             [np.stack([beam.nodes[:-1], beam.nodes[1:]], axis=1) for beam in self.beams.values()]
@@ -106,46 +131,6 @@ class Mesh:
             shared[self.slaves] = self.masters
             self.dofs = shared[self.dofs]
         self.element_start = self.coordinates[self.element_nodes[:, 0]].tolist()
-
-    def _place_joints(
-        self,
-        behind: dict[int, tuple[float, float]],
-        ends: dict[tuple[float, float], int],
-        coordinates: list[tuple[float, float]],
-    ) -> None:
-        """Number the joints of the ends behind hinges; a joint that has no other beam is a node of its own."""
-        for place in behind.values():
-            if ends.setdefault(place, len(coordinates)) == len(coordinates):
-                coordinates.append(place)
-        self.joints = {node: ends[place] for node, place in behind.items()}
-        pairs = np.array(list(self.joints.items()), dtype=int).reshape(-1, 2)
-        self.slaves, self.masters = (3 * pairs[:, :, None] + np.arange(2)).transpose(1, 0, 2).reshape(2, -1)
-
-    def _sort_elements(self) -> None:
-        counts = [beam.beam.elements for beam in self.beams.values()]
-        cut = np.repeat([isinstance(beam.kind, Integrated) for beam in self.beams.values()], counts)
-        own, self.closed = np.flatnonzero(cut), np.flatnonzero(~cut)
-        self.members: dict[type[ElementType], Array] = {ClosedForm: self.closed, Integrated: own}
-        self.place = np.where(cut, cut.cumsum(), (~cut).cumsum()) - 1
-        self.block = np.where(cut, len(self.coordinates) + self.place, -1)
-        self.dof_count = 3 * (len(self.coordinates) + len(own))
-
-    def _sizes(self, lengths: Array, EI: Array) -> Sizes:
-        """Sizes from lengths and bending stiffnesses (beams,) of the beams."""
-        if not self.joined:
-            return sizes_of(lengths, lengths, EI)
-        starts = np.array([beam.nodes[0] for beam in self.beams.values()])
-        links = np.array(list(self.joints.items()), dtype=int).reshape(-1, 2)
-        nodes = np.concatenate([self.element_nodes, links])
-        return sizes_of(lengths, joined_extents(nodes, starts, self.coordinates, lengths), EI)
-
-    def _properties(self, l0: Array, sections: Array) -> Properties:
-        """Constants of all elements from their lengths (elements,), and EA, GA and EI (3, beams) of the beams."""
-        counts = [beam.beam.elements for beam in self.beams.values()]
-        EA, GA, EI = np.repeat(sections, counts, axis=1)
-        sheared = np.repeat([beam.kind.sheared for beam in self.beams.values()], counts)
-        dx0, dy0 = np.diff(self.coordinates[self.element_nodes], axis=1)[:, 0].T.copy()
-        return Properties(dx0, dy0, l0, EA, EI, np.where(sheared, 12 * EI / (GA * l0**2), 0.0))
 
     @cached_property
     def whole(self) -> bool:
@@ -190,8 +175,7 @@ class Mesh:
 
     def positions(self, beam: BeamModel, q: Array) -> Array:
         """Current positions (elements + 1, 2) of a beam's nodes."""
-        positions: Array = self.coordinates[beam.nodes] + q.reshape(-1, 3)[beam.nodes, :2]
-        return positions
+        return self.coordinates[beam.nodes] + q.reshape(-1, 3)[beam.nodes, :2]
 
     @cached_property
     def element(self) -> list[Properties]:

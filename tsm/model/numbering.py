@@ -61,9 +61,8 @@ class Numbering(Mesh):
         for support in self.structure.supports:
             name, given = f"{support.beam}.{support.end}", (support.ux, support.uy, support.rotation)
             node, held = self.end_node(name), np.array([value is not None for value in given])
-            rates = np.zeros((self.stages, 3))
-            rates[0] = [value or 0.0 for value in given]
-            rates[1 : 1 + len(support.onward)] = np.reshape(support.onward, (-1, 3))
+            rates, stated = np.zeros((self.stages, 3)), [[value or 0.0 for value in given], *support.onward]
+            rates[: len(stated)] = stated
             self.supports[name] = node, held & [3 * node + k not in self.prescribed for k in range(3)]
             for k in np.flatnonzero(held).tolist():
                 rate = tuple(rates[:, k].tolist())
@@ -92,24 +91,24 @@ class Numbering(Mesh):
         Raises ValueError if all beams of a joint are hinged to it and nothing else holds its rotation.
         """
         structure = self.structure
-        ground = [
-            (3 * self.end_node(f"{spring.beam}.{spring.end}") + k, stiffness)
+        items = [
+            (3 * self.end_node(f"{spring.beam}.{spring.end}") + k, -1, stiffness)
             for spring in structure.springs
             for k, stiffness in enumerate((spring.x, spring.y, spring.rotation))
             if stiffness
         ]
-        between = [
+        items += [
             (3 * self.joints[node] + 2, 3 * node + 2, hinge.stiffness)
             for hinge in structure.hinges
             if hinge.stiffness
             for node in [self.own_end_node(f"{hinge.beam}.{hinge.end}")]
         ]
-        held = {*self.prescribed, *(dof for dof, _ in ground), *(dof for dof, _, _ in between)}
+        held = {*self.prescribed, *(dof for dof, _, _ in items)}
         for hinge in structure.hinges:
             turn = 3 * self.end_node(f"{hinge.beam}.{hinge.end}") + 2
             if turn not in held and not (self.dofs == turn).any():
                 raise ValueError(f"Hinge({hinge.beam}.{hinge.end}): the joint turns freely")
-        return Springs(ground, between) if ground or between else None
+        return Springs(items) if items else None
 
     def _place_pairs(self, structure: Structure) -> None:
         pins = {pin.name: pin for pin in structure.pins}
@@ -155,8 +154,8 @@ class Numbering(Mesh):
         self.border_dofs = len(border_dofs)
         self.border = len(border_dofs) + self.contact_unknowns
         self.equations = len(self.free)
-        # prescribed ones, slaves: past the last equation
-        self.equation = np.full(self.dof_count, self.equations)
+        # prescribed ones, slaves, and the ground at the end: past the last equation
+        self.equation = np.full(self.dof_count + 1, self.equations)
         self.equation[self.free] = np.arange(self.equations)
         self.element_equations = self.equation[self.dofs]
 
@@ -169,8 +168,7 @@ class Numbering(Mesh):
         """
         nodal = self.free % 3 + 3 * (self.free >= 3 * len(self.coordinates))
         contacts = [_CONTACT_KINDS[: pair.target.kind.contact_unknowns] for pair in self.pairs]
-        kind: Array = np.concatenate([nodal, *contacts])
-        return kind
+        return np.concatenate([nodal, *contacts])
 
     @property
     def stick_stiffness(self) -> float:

@@ -23,8 +23,7 @@ def block_order(mesh: Mesh) -> list[int]:
     # an element behind a hinge moves with the joint's node and turns with its own
     nodes = mesh.dofs[[0, 2, 3, 5]] // 3
     blocks = [*nodes, np.where(mesh.block < 0, nodes[0], mesh.block)]
-    links = np.array(list(mesh.joints.items()), dtype=int).reshape(-1, 2).T
-    pairs = np.concatenate([*(np.stack(pair) for pair in combinations(blocks, 2)), links], axis=1)
+    pairs = np.concatenate([*(np.stack(pair) for pair in combinations(blocks, 2)), mesh.links.T], axis=1)
     near = coo_array((np.ones(pairs.shape[1]), tuple(pairs)), shape=(mesh.dof_count // 3,) * 2)
     order: list[int] = reverse_cuthill_mckee((near + near.T).tocsr(), symmetric_mode=True).tolist()
     return order

@@ -50,8 +50,7 @@ def joined_extents(element_nodes: Array, starts: Array, coordinates: Array, leng
     least, most = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
     np.minimum.at(least, part, coordinates)
     np.maximum.at(most, part, coordinates)
-    extents: Array = np.maximum(lengths, np.hypot(*(most - least).T)[part[starts]])
-    return extents
+    return np.maximum(lengths, np.hypot(*(most - least).T)[part[starts]])
 
 
 def units_of(sizes: Sizes) -> tuple[Array, Array]:

@@ -128,8 +128,7 @@ def mode_shape(point: Equilibrium) -> tuple[Array, dict[str, Array]] | None:
 def _leftwards(axis: Array, shape: Array) -> Array:
     """Displacements to the left of an axis that is followed from start to end."""
     x, y = np.gradient(axis, axis=0).T
-    left: Array = (x * shape[:, 1] - y * shape[:, 0]) / np.hypot(x, y)
-    return left
+    return (x * shape[:, 1] - y * shape[:, 0]) / np.hypot(x, y)
 
 
 def _side(left: Array) -> float:
@@ -192,7 +191,7 @@ def _moves(model: Model, state: State) -> bool:
     held = rows(np.arange(len(body)), places)
     equations = [held[model.fixed], held[model.slaves] - held[model.masters]]
     if model.springs is not None:
-        equations += [held[model.springs.ground], held[model.springs.second] - held[model.springs.first]]
+        equations.append(model.springs.stretch(held))
     for _, pair, touch in closed(model, state):
         at = np.array([model.node_position(pair, state.q, state.load_parameter)])
         moved = rows(model.element_nodes[[touch.element], 0], at)[:2]

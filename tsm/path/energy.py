@@ -199,12 +199,10 @@ def spent(track: Track, end: Equilibrium, drive: Drive) -> tuple[Array, list[Equ
         if first is None or last is None or (len(powers) < 5 and length > _SHORT):
             raise RefusedError
         if len(powers) < 5:
-            mean: Array = length * (first + last) / 2
-            return mean
+            return length * (first + last) / 2
         apart = np.abs((_FIVE - _THREE) @ powers).max() * length
         if apart <= _APART * newton.model.force_scale * newton.model.length or length <= least:
-            whole: Array = length * (_FIVE @ powers)
-            return whole
+            return length * (_FIVE @ powers)
         middle = start + length / 2
         late = over(middle, stop, powers[2], last)
         return late + over(start, middle, first, powers[2])

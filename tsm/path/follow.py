@@ -15,10 +15,10 @@ from itertools import count
 
 import numpy as np
 
-from tsm.contact.contact_set import crowded, initial_state, rearm
+from tsm.contact.contact_set import initial_state, rearm
 from tsm.contact.events import Event, EventKind, passes
 from tsm.elements.properties import Array
-from tsm.model.contact import on_rigid_nodes
+from tsm.model.contact import crowded, on_rigid_nodes
 from tsm.model.model import Model
 from tsm.model.state import UNDECIDED, State
 from tsm.path.critical import CriticalKind, critical_point, locate_bifurcation, mechanism

@@ -95,11 +95,11 @@ def _slip_rate(point: Equilibrium, k: int, drive: Drive) -> float:
 
 def _roundness(point: Equilibrium, k: int, _drive: Drive) -> float:
     """Curvature ``theta'/(1 + e)``, ``theta' = m/EI``, by which the beam may still bend round the node, over 1/d."""
-    pair, touch, system = point.model.pairs[k], touch_of(point.state, k), point.system
+    pair, system = point.model.pairs[k], point.system
     group = point.model.group_of(pair.target)
     forces, push = system.groups[group.number], system.forces[k]
-    curvature = -pair.side * group.curvature(k, touch, point.state, forces, push)
-    return 1.0 - abs(pair.reach_at(pair.arc_position(touch))) * curvature
+    curvature = -pair.side * group.curvature(k, point.state, forces, push)
+    return 1.0 - abs(pair.reach_at(pair.arc_position(touch_of(point.state, k)))) * curvature
 
 
 def _gap(point: Equilibrium, k: int, _drive: Drive) -> float:

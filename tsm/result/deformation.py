@@ -39,7 +39,8 @@ def deformation(model: Model, equilibria: Sequence[Equilibrium]) -> Deformation 
     turn, strain = np.zeros((2, len(equilibria)))
     for group in model.groups:
         if group.internal:
-            turn = np.maximum(turn, [_segment_turn(equilibrium, group.number) for equilibrium in equilibria])
+            entries = (one.system.groups[group.number].entry for one in equilibria)  # type: ignore[attr-defined]
+            turn = np.maximum(turn, [np.abs(entry.end - entry.start).max() for entry in entries])
         else:
             turns, strain = _closed_form(model, equilibria, group.number)
             turn = np.maximum(turn, turns)
@@ -49,12 +50,6 @@ def deformation(model: Model, equilibria: Sequence[Equilibrium]) -> Deformation 
         strain=strain,
         bearable=bearable,
     )
-
-
-def _segment_turn(equilibrium: Equilibrium, number: int) -> float:
-    """Largest angle between the ends of a segment of the elements that contacts cut."""
-    entry = equilibrium.system.groups[number].entry  # type: ignore[attr-defined]
-    return float(np.abs(entry.end - entry.start).max())
 
 
 def _closed_form(model: Model, equilibria: Sequence[Equilibrium], number: int) -> tuple[Array, Array]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Any
 
 import numpy as np
@@ -32,9 +33,7 @@ def summary(result: Result) -> str:
             lines.append(f"  {node}: support moment {support.moment[-1]:.9g}")
         for beam, tip in result.tips.items():
             lines.append(f"  {beam}: end at ({tip[-1, 0]:.9g}, {tip[-1, 1]:.9g})")
-    counts: dict[str, int] = {}
-    for event in result.events:
-        counts[event.kind.value] = counts.get(event.kind.value, 0) + 1
+    counts = Counter(event.kind.value for event in result.events)
     if counts:
         lines.append("events: " + ", ".join(f"{number} {kind}" for kind, number in counts.items()))
     return "\n".join(lines)

@@ -210,14 +210,9 @@ class Result:
         place, system = self.model.beams[beam], self.equilibria[k].system
         group = self.model.group_of(place)
         numbers = self.model.place[place.first : place.last + 1]
-        force = system.groups[group.number].ends[:, numbers].T
-        out = np.empty((len(force), 2, 3))
-        for end, t in enumerate(group.section_axes(place, self.shape(beam, k))):
-            f = (2 * end - 1) * force[:, 3 * end : 3 * end + 3]
-            out[:, end, 0] = f[:, 0] * t[:, 0] + f[:, 1] * t[:, 1]
-            out[:, end, 1] = f[:, 1] * t[:, 0] - f[:, 0] * t[:, 1]
-            out[:, end, 2] = f[:, 2]
-        return out
+        x, y, moment = (system.groups[group.number].ends[:, numbers].T.reshape(-1, 2, 3) * [[-1], [1]]).T
+        along = (x + 1j * y).T * group.section_axes(place, self.shape(beam, k)).conj()
+        return np.stack([along.real, along.imag, moment.T], axis=2)
 
 
 def collect(model: Model, steps: list[Step], status: Status, seconds: float) -> Result:

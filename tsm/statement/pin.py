@@ -6,75 +6,12 @@ import math
 from bisect import bisect_left
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import accumulate, pairwise
+from itertools import pairwise
 
 from tsm.statement.beam import LARGEST, Point, check, is_point
-from tsm.statement.stages import stage_of
 
 TURN = 0.5
 """Angle in radians that the path of a pin may turn by within a load step."""
-
-
-@dataclass(frozen=True)
-class Polyline:
-    """A polyline at constant speed, from parameter 0 to 1; a single point is at rest."""
-
-    points: tuple[Point, ...]  # its corners [length]
-
-    @cached_property
-    def _reached(self) -> list[float]:
-        """Distance along the path at every corner, each rounded once."""
-        legs = [math.dist(a, b) for a, b in pairwise(self.points)]
-        if not math.isfinite(sum(legs)):
-            return list(accumulate(legs, initial=0.0))
-        return [math.fsum(legs[:corner]) for corner in range(len(legs) + 1)]
-
-    @property
-    def length(self) -> float:
-        """Length of the polyline."""
-        return self._reached[-1]
-
-    def _leg(self, t: float) -> int:
-        """Number of the leg at a parameter; at a corner, the leg before it."""
-        at = bisect_left(self._reached, t * self.length)
-        return min(max(at, 1), len(self.points) - 1) - 1
-
-    def velocity(self, begin: float, end: float) -> Point:
-        """Mean derivative of the position between two parameters; the derivative if these are equal, at a corner on the leg before it."""
-        if len(self.points) == 1:
-            return (0.0, 0.0)
-        k = self._leg(end)
-        if begin != end and self._reached[k] > min(begin, end) * self.length:
-            return _mean(self.position(begin), self.position(end), end - begin)
-        a, b = self.points[k : k + 2]
-        return _mean(a, b, math.dist(a, b) / self.length)
-
-    @property
-    def corners(self) -> tuple[float, ...]:
-        """Parameters of the inner points."""
-        return tuple(done / self.length for done in self._reached[1:-1])
-
-    @property
-    def turns(self) -> tuple[float, ...]:
-        """Parameters of the corners at which the path has turned by `TURN` since the last of them."""
-        found, turned = [], 0.0
-        legs = pairwise(self.points)
-        for done, ((a, b), (_, c)) in zip(self._reached[1:], pairwise(legs), strict=False):
-            one, other = (math.atan2(q[1] - p[1], q[0] - p[0]) for p, q in ((a, b), (b, c)))
-            turned += abs(math.remainder(other - one, math.tau))
-            if turned >= TURN:
-                found.append(done / self.length)
-                turned = 0.0
-        return tuple(found)
-
-    def position(self, t: float) -> Point:
-        """Position at a parameter in [0, 1]."""
-        if len(self.points) == 1:
-            return self.points[0]
-        k = self._leg(t)
-        a, b = self.points[k : k + 2]
-        part = (t * self.length - self._reached[k]) / math.dist(a, b)
-        return (a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1]))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,22 +39,40 @@ class Pin:
         for field, points in (("path", self.path), *(("onward", points) for points in self.onward)):
             pairs = all(map(is_point, points))
             check(pairs, owner, field, points, f"must hold pairs of finite numbers, of at most {LARGEST:g}")
-        for polyline in self.polylines:
-            apart = all(a != b for a, b in pairwise(polyline.points))
-            check(apart, owner, "path", polyline.points, "must not repeat a point at once")
-
-    @cached_property
-    def polylines(self) -> tuple[Polyline, ...]:
-        """The path in every stage."""
-        parts = [Polyline(self.path)]
-        for points in self.onward:
-            parts.append(Polyline((parts[-1].points[-1], *points)))
-        return tuple(parts)
+        apart = all(a != b for a, b in pairwise(self.points))
+        check(apart, owner, "path", self.points, "must not repeat a point at once")
 
     @property
     def points(self) -> tuple[Point, ...]:
         """Corners of the path through all stages."""
         return (*self.path, *(point for points in self.onward for point in points))
+
+    @cached_property
+    def _reached(self) -> tuple[list[float], list[Point]]:
+        """Load parameters and places of the corners; where the pin rests in a stage, its place at both ends of the stage."""
+        times, places = [0.0], [self.path[0]]
+        for stage, points in enumerate((self.path[1:], *self.onward)):
+            legs = [math.dist(a, b) for a, b in pairwise((places[-1], *points))] or [1.0]
+            length = math.fsum(legs)
+            times += [stage + math.fsum(legs[:done]) / length for done in range(1, len(legs) + 1)]
+            places += points or places[-1:]
+        return times, places
+
+    def _leg(self, load_parameter: float) -> tuple[float, Point, float, Point]:
+        """Load parameter and place at both ends of the leg at a load parameter; at a corner, of the leg before it."""
+        times, places = self._reached
+        k = min(max(bisect_left(times, load_parameter), 1), len(times) - 1)
+        return times[k - 1], places[k - 1], times[k], places[k]
+
+    def position(self, load_parameter: float) -> Point:
+        """Position at a load parameter.
+
+        >>> Pin(name="pin", path=((0.0, 0.0), (2.0, 0.0), (2.0, 2.0))).position(0.75)
+        (2.0, 1.0)
+        """
+        begin, a, end, b = self._leg(load_parameter)
+        part = (load_parameter - begin) / (end - begin)
+        return (a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1]))
 
     def velocity(self, begin: float, end: float) -> Point:
         """Mean derivative of the position between two load parameters; the derivative if these are equal, at a corner on the leg before it.
@@ -125,20 +80,15 @@ class Pin:
         >>> Pin(name="pin", path=((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))).velocity(0.0, 1.0)
         (1.0, 1.0)
         """
-        line, stage = self._at(end)
-        if begin < stage:
-            return _mean(self.position(begin), self.position(end), end - begin)
-        return line.velocity(begin - stage, end - stage)
-
-    def _at(self, load_parameter: float) -> tuple[Polyline, int]:
-        """Path at a load parameter, and its stage."""
-        stage = stage_of(load_parameter, len(self.polylines)) if self.onward else 0
-        return self.polylines[stage], stage
+        first, a, last, b = self._leg(end)
+        if begin != end and min(begin, end) < first:
+            first, a, last, b = begin, self.position(begin), end, self.position(end)
+        return ((b[0] - a[0]) / (last - first), (b[1] - a[1]) / (last - first))
 
     @property
     def corners(self) -> tuple[float, ...]:
         """Load parameters of the inner points of the path in every stage."""
-        return tuple(k + t for k, part in enumerate(self.polylines) for t in part.corners)
+        return tuple(t for t in self._reached[0] if not t.is_integer())
 
     @property
     def turns(self) -> tuple[float, ...]:
@@ -147,17 +97,13 @@ class Pin:
         >>> Pin(name="pin", path=((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))).turns
         (0.5,)
         """
-        return tuple(k + t for k, part in enumerate(self.polylines) for t in part.turns)
-
-    def position(self, load_parameter: float) -> Point:
-        """Position at a load parameter.
-
-        >>> Pin(name="pin", path=((0.0, 0.0), (2.0, 0.0), (2.0, 2.0))).position(0.75)
-        (2.0, 1.0)
-        """
-        line, stage = self._at(load_parameter)
-        return line.position(load_parameter - stage)
-
-
-def _mean(a: Point, b: Point, span: float) -> Point:
-    return ((b[0] - a[0]) / span, (b[1] - a[1]) / span)
+        (times, places), found, turned = self._reached, [], 0.0
+        for t, a, b, c in zip(times[1:], places, places[1:], places[2:], strict=False):
+            one, other = (math.atan2(q[1] - p[1], q[0] - p[0]) for p, q in ((a, b), (b, c)))
+            turned += abs(math.remainder(other - one, math.tau))
+            if t.is_integer():
+                turned = 0.0
+            elif turned >= TURN:
+                found.append(t)
+                turned = 0.0
+        return tuple(found)

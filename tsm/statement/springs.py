@@ -70,42 +70,33 @@ class Spring:
 
 
 class Springs:
-    """Forces, stiffness and energy of the springs of a structure: ``k q`` to the ground, ``k (q_b - q_a)`` between two rotations.
+    """Forces, stiffness and energy of the springs of a structure, ``k (q_b - q_a)``.
 
-    ``ground``: degrees of freedom and stiffnesses of the springs to the ground. ``between``: pairs of
-    rotations and stiffnesses of the springs in hinges.
+    ``items``: degrees of freedom a and b, and stiffness of every spring; b is -1 for the ground.
 
-    ``dofs`` (1, g), (2, h): degrees of freedom of the two kinds.
-    ``values`` (g + 4 h,): stiffness matrices of the two kinds, row by row.
+    ``dofs`` (2, n): degrees of freedom. ``values`` (4 n,): stiffness matrices, row by row.
     """
 
-    def __init__(
-        self, ground: Sequence[tuple[int, float]], between: Sequence[tuple[int, int, float]]
-    ) -> None:
-        self.ground = np.array([dof for dof, _ in ground], dtype=int)
-        self.ground_stiffness = np.array([stiffness for _, stiffness in ground])
-        self.first, self.second = np.array([item[:2] for item in between], dtype=int).reshape(-1, 2).T
-        self.stiffness = np.array([item[2] for item in between])
-        self.dofs = [self.ground[None], np.stack([self.first, self.second])]
-        signs = np.array([1.0, -1.0, -1.0, 1.0])
-        self.values = np.concatenate([self.ground_stiffness, np.outer(signs, self.stiffness).ravel()])
+    def __init__(self, items: Sequence[tuple[int, int, float]]) -> None:
+        self.dofs, self.stiffness = np.array([item[:2] for item in items]).T, np.array([k for *_, k in items])
+        self.values = np.outer((1.0, -1.0, -1.0, 1.0), self.stiffness).ravel()
+
+    def stretch(self, q: Array) -> Array:
+        """Changes ``q_b - q_a`` (n, ...) of values over the degrees of freedom, none of the ground."""
+        first, second = np.concatenate([q, 0 * q[:1]])[self.dofs]
+        return second - first
 
     def forces(self, q: Array) -> Array:
         """Return the residual over all degrees of freedom from their displacements `q`, or its rate from the rates of these."""
-        nodal = np.zeros_like(q)
-        np.add.at(nodal, self.ground, self.ground_stiffness * q[self.ground])
-        moment = self.stiffness * (q[self.second] - q[self.first])
-        np.add.at(nodal, self.first, -moment)
-        np.add.at(nodal, self.second, moment)
-        return nodal
+        nodal, pull = np.zeros(len(q) + 1), self.stiffness * self.stretch(q)
+        np.add.at(nodal, self.dofs, [-pull, pull])
+        return nodal[:-1]
 
     def energy(self, q: Array) -> float:
         """Energy of the springs."""
-        turned = q[self.second] - q[self.first]
-        return float(self.ground_stiffness @ q[self.ground] ** 2 + self.stiffness @ turned**2) / 2
+        return float(self.stiffness @ self.stretch(q) ** 2) / 2
 
     def noise(self, extent: float, force: float) -> float:
         """Round-off of the residual in parts of `force`, for displacements up to `extent` and rotations up to 1."""
-        units = np.where(self.ground % 3 == 2, 1.0 / extent, extent)
-        largest = (self.ground_stiffness * units).max(initial=0.0)
-        return 4 * _EPS * float(max(largest, self.stiffness.max(initial=0.0) / extent)) / force
+        units = np.where(self.dofs[0] % 3 == 2, 1.0 / extent, extent)
+        return 4 * _EPS * float((self.stiffness * units).max()) / force

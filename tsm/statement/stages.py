@@ -31,13 +31,11 @@ class Increments:
     def at(self, load_parameter: float) -> Array:
         """Quantities at a load parameter."""
         stage = stage_of(load_parameter, len(self.rows))
-        there: Array = self.before[stage] + (load_parameter - stage) * self.rows[stage]
-        return there
+        return self.before[stage] + (load_parameter - stage) * self.rows[stage]
 
     def rate(self, load_parameter: float) -> Array:
         """Derivatives in the load parameter; where a stage ends, during that stage."""
-        there: Array = self.rows[stage_of(load_parameter, len(self.rows))]
-        return there
+        return self.rows[stage_of(load_parameter, len(self.rows))]
 
     def change(self, begin: float, end: float) -> Array:
         """Changes between two load parameters."""

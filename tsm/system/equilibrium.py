@@ -94,7 +94,7 @@ class Equilibrium:
         motion, rods = dofs[model.free], model.rods
         if rods:
             tangent = self.system.tangent.groups[rods.number]
-            motion = np.concatenate([motion, rods.turning(self.state, tangent, dofs, contacts)])
+            motion = np.concatenate([motion, rods.inside(tangent, dofs, contacts).ravel()])
         return Rates(rates, dofs, contacts, motion)
 
     def _rates_to(self, t: float) -> Rates | None:

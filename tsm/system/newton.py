@@ -7,11 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from tsm.elements.properties import Array
-from tsm.model.contact import owned
-from tsm.model.groups import Change
+from tsm.model.contact import crowded, owned
 from tsm.model.model import Model
 from tsm.model.scales import ROUND_OFF, SHARP, TURN, WAY, largest, units_of
-from tsm.model.state import State
+from tsm.model.state import State, profile_of
 from tsm.statement.settings import Settings
 from tsm.statement.status import Status
 from tsm.system.equilibrium import Equilibrium
@@ -188,7 +187,7 @@ class Newton:
             rods = self.model.rods
             if rods and rods.inaccurate(system.groups[rods.number], self.integration_tolerance):
                 return Status.INACCURATE
-            return Status.TWO_CONTACTS if system.crowded else Status.CONVERGED
+            return Status.TWO_CONTACTS if crowded(self.model, system.state) else Status.CONVERGED
         if left:
             return None
         return Status.PING_PONG if _alternates(owners) else Status.ITERATION_LIMIT
@@ -253,8 +252,9 @@ class Newton:
         dofs[model.free], dofs[model.fixed] = dq, model.motions.change(begin, end)
         profile, rods = None, model.rods
         if rods:
-            change = Change(dofs, dz, float(residual), factor, end - begin)
-            profile = rods.changed(state, system.tangent.groups[rods.number], change)
+            tangent, profile = system.tangent.groups[rods.number], profile_of(state)
+            inside = rods.inside(tangent, dofs, dz, end - begin, float(residual))
+            profile = replace(profile, angle=profile.angle + factor * inside)
         taken = (factor * dz).tolist()
         touches = tuple(
             touch and (pair.moved(touch, taken[pair.slots]) if pair.slot >= 0 else touch)

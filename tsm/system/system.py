@@ -46,7 +46,6 @@ class Linearisation:
     residual: Array
     forces: dict[int, tuple[float, float]]  # force on the beam of every closed pair
     noise: float  # round-off of the residual by contact stiffness, ``4 eps k_c L``
-    crowded: bool  # whether two nodes touch one element of the paper's, which knows one contact only
     groups: tuple[GroupForces, ...]  # forces of the element groups
     state: State  # the configuration
     assemble: Callable[[], Bordered] = field(repr=False)
@@ -81,7 +80,7 @@ class Assembler:
         self.internal = any(group.internal for group in model.groups)
         self.units = Units(model, self.k) if self.internal else None
         banded, last = model.banded, model.equations
-        springs = model.springs.dofs if model.springs else []
+        springs = [model.springs.dofs] if model.springs else []
         maps = [_pairs(model.equation[dofs]) for dofs in (*(group.dofs for group in model.groups), *springs)]
         rows, columns = (np.concatenate(part) for part in zip(*maps, strict=True))
         self.band_size = banded * self.ldab
@@ -119,7 +118,6 @@ class Assembler:
             residual=np.concatenate([nodal[model.free], contacts.residual]),
             forces=contacts.forces,
             noise=4 * _EPS * contacts.stiffest * model.length,
-            crowded=contacts.crowded,
             groups=groups,
             state=state,
             assemble=partial(self._tangent, state, groups, contacts, drag),

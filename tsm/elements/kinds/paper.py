@@ -64,14 +64,13 @@ def euler_bernoulli(p: Properties, xi: Any) -> Array:
     l0, k = p.l0, p.EI / p.l0
     a, b = xi * l0, (1 - xi) * l0
     iy, jy = l0 * l0 / (a * a * b), l0 * l0 / (a * b * b)
-    K: Array = k * np.array(
+    return k * np.array(
         [
             [4 + 3 * b / a, -1, -3 * iy],
             [-1, 4 + 3 * a / b, 3 * jy],
             [-3 * iy, 3 * jy, 3 * iy * jy],
         ]
     )
-    return K
 
 
 def timoshenko(p: Properties, xi: Any) -> Array:
@@ -88,14 +87,13 @@ def timoshenko(p: Properties, xi: Any) -> Array:
     kc = p.EI / (l0 * omega)
     ij = 9 * Psi * (l0 * l0 - z) - omega
     iy, jy = -3 * l0 * (b * l0 + 6 * Psi), 3 * l0 * (a * l0 + 6 * Psi)
-    K: Array = kc * np.array(
+    return kc * np.array(
         [
             [4 * omega + 3 * z * b * b - square, ij, iy],
             [ij, 4 * omega + 3 * z * a * a - square, jy],
             [iy, jy, 3 * l0 * l0 * (l0 * l0 + 12 * Psi) / z],
         ]
     )
-    return K
 
 
 def _omega(p: Properties, xi: Any) -> Any:
@@ -114,14 +112,13 @@ def cantilever(p: Properties, xi: Any) -> Array:
     jc = -(a + 3 * b) / (a * b**3)
     jt = -(a + 2 * b) / (l0 * b * b)
     ct = l0 / (a * b * b)
-    K: Array = k * np.array(
+    return k * np.array(
         [
             [(a + 4 * b) / (l0 * b**3), jc, jt],
             [jc, l0**3 / (a * b) ** 3, ct],
             [jt, ct, (3 * a + 4 * b) / (3 * l0 * b)],
         ]
     )
-    return K
 
 
 def transformation(p: Properties, xi: Any) -> Array:
@@ -143,8 +140,7 @@ def cantilever_as_printed(p: Properties, xi: Any) -> Array:
     a length, and the others have a length too much.
     """
     misprint = [[p.l0, 1, p.l0], [1, p.l0, -1 / p.l0], [p.l0, -1 / p.l0, p.l0]]
-    K: Array = np.array(misprint) * cantilever(p, xi)
-    return K
+    return np.array(misprint) * cantilever(p, xi)
 
 
 def timoshenko_as_printed(p: Properties, xi: Any) -> Array:

@@ -6,18 +6,16 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from tsm.elements.contact_law import Vector
 from tsm.elements.properties import Array
-from tsm.model.contact_block import ContactBlock
-from tsm.model.mesh import BeamModel
 from tsm.model.numbering import Numbering
 from tsm.model.pairs import PairModel
 from tsm.model.projection import Projection, arc_position, overshoot, slide
-from tsm.model.state import State, Touch
+from tsm.model.state import State
 
 _STEPS, _PROJECTED = 30, 1e-14
 """Newton steps of a projection at most, and the step, in lengths of an element, at which the closest point is found."""
@@ -35,8 +33,7 @@ class GroupForces:
     @property
     def ends(self) -> Array:
         """Forces and moments at both ends of the elements, shape (6, e)."""
-        ends: Array = self.nodal[[0, 1, 2, -3, -2, -1]]
-        return ends
+        return self.nodal[[0, 1, 2, -3, -2, -1]]
 
 
 @dataclass(kw_only=True)
@@ -51,16 +48,6 @@ class GroupTangent:
     )
 
 
-class Change(NamedTuple):
-    """Change of a configuration."""
-
-    dofs: Array  # change of all degrees of freedom; shape (dofs,)
-    contacts: Array  # change of the contacts' unknowns; shape (contact unknowns,)
-    residual: float  # part of the residual that the change removes
-    factor: float  # part of the change that is taken
-    load: float  # change of the load parameter
-
-
 class Stations(NamedTuple):
     """Short lines along a beam. Neighbours share no point: section forces may jump between them."""
 
@@ -71,7 +58,15 @@ class Stations(NamedTuple):
 
 
 class ElementGroup(ABC):
-    """Elements of a model with the same kind of equations.
+    """Elements of a model with the same kind of equations: what both kinds share. Each states the following of its own.
+
+    ``forces, tangent``: residual and tangent at a state; those of the contacts are entered in their block.
+    ``energy``: strain energy of elements and contacts in equilibrium.
+    ``project``: closest point of a deflected beam to a pair's node, with the dents of the contacts that are closed.
+    ``curvature``: of the axis at a closed pair, on which a force acts, positive where the beam bends to the left.
+    ``axes, intervals``: deflected axes (elements, m, 2) at parts (m,) of the elements, and parts for a picture.
+    ``section_axes, stations``: for section forces: unit vectors (elements, 2), complex, at both ends of the elements;
+        short lines along a beam.
 
     ``elements`` (e,) are numbered globally. ``dofs`` (n, e): degrees of freedom of the elements.
 
@@ -87,22 +82,6 @@ class ElementGroup(ABC):
         self.model, self.number, self.elements = model, number, elements
         self.dofs = model.dofs[:, elements]
         self.pairs = [(k, pair) for k, pair in enumerate(model.pairs) if pair.cuts == self.internal]
-
-    @abstractmethod
-    def forces(self, state: State, contacts: ContactBlock) -> GroupForces:
-        """Forces at a configuration; the residuals of the contacts are entered in their block."""
-
-    @abstractmethod
-    def tangent(self, state: State, forces: Any, contacts: ContactBlock) -> GroupTangent:
-        """Tangent where the forces are known; the tangents of the contacts are entered in their block."""
-
-    @abstractmethod
-    def energy(self, state: State) -> float:
-        """Strain energy of elements and contacts in equilibrium."""
-
-    @abstractmethod
-    def project(self, pair: PairModel, state: State) -> Projection:
-        """Closest point of the deflected axis to the pair's node, with the dents of the contacts that are closed."""
 
     @abstractmethod
     def point(self, element: int, arc: float, state: State) -> tuple[Vector, Vector, Vector]:
@@ -157,27 +136,3 @@ class ElementGroup(ABC):
             height = math.copysign(math.hypot(px, py), height)
         gap = pair.side * (height - pair.reach_at(arc))
         return Projection(element, place, float(gap), overshoot(target, arc))
-
-    @abstractmethod
-    def direction(self, touch: Touch, q: Array) -> tuple[float, float]:
-        """Direction of the beam at a contact, to which its force is normal; of any length."""
-
-    @abstractmethod
-    def curvature(self, k: int, touch: Touch, state: State, forces: Any, push: tuple[float, float]) -> float:
-        """Curvature of the axis at closed pair k, on which `push` acts, positive where the beam bends to the left."""
-
-    @abstractmethod
-    def intervals(self, elements: int) -> int:
-        """Intervals in which an element is drawn, in a beam of so many elements."""
-
-    @abstractmethod
-    def axes(self, beam: BeamModel, state: State, forces: Any, xi: Array) -> Array:
-        """Deflected axes of the elements of a beam, shape (elements, m, 2), at parts xi (m,) of their lengths."""
-
-    @abstractmethod
-    def section_axes(self, beam: BeamModel, shape: Array) -> Array:
-        """Unit vectors (2, elements, 2) of the axial force at both ends of a beam's elements, from its deformed nodes."""
-
-    @abstractmethod
-    def stations(self, beam: BeamModel, state: State, shape: Array, section_forces: Array) -> Stations:
-        """Short lines along a beam, from its deformed nodes and the section forces at the ends of its elements."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -20,7 +19,7 @@ from tsm.model.groups.base import ElementGroup, GroupForces, GroupTangent, Stati
 from tsm.model.mesh import BeamModel
 from tsm.model.pairs import PairModel
 from tsm.model.projection import Projection, nearest_chord
-from tsm.model.state import State, Touch
+from tsm.model.state import State, Touch, touch_of
 
 _POINTS = 10
 """Intervals in which an element is drawn."""
@@ -55,7 +54,7 @@ class ClosedFormGroup(ElementGroup):
             contacts.close(k, pair, touch, gradient, block)
         return ClosedFormForces(nodal=force, tangent=tangent)
 
-    def tangent(self, _state: State, forces: ClosedFormForces, _contacts: ContactBlock) -> GroupTangent:
+    def tangent(self, _state: State, forces: Any, _contacts: ContactBlock) -> GroupTangent:
         """Tangent, which is known with the forces."""
         none = np.zeros(self.dofs.shape)
         return GroupTangent(tangent=forces.tangent, condensed_residual=none, by_load=none)
@@ -108,33 +107,23 @@ class ClosedFormGroup(ElementGroup):
         dent = partial(self._dent, pair, state.touches)
         return self.closest(pair, state, owner, xi * target.lengths[owner], dent)
 
-    def direction(self, touch: Touch, q: Array) -> tuple[float, float]:
-        """Chord of the touched element."""
-        i, j = self.model.element_nodes[touch.element]
-        coordinates = self.model.coordinates
-        dx, dy = coordinates[j] - coordinates[i] + q[3 * j : 3 * j + 2] - q[3 * i : 3 * i + 2]
-        return dx, dy
-
-    def curvature(
-        self, k: int, touch: Touch, state: State, forces: ClosedFormForces, push: tuple[float, float]
-    ) -> float:
+    def curvature(self, k: int, state: State, forces: Any, push: tuple[float, float]) -> float:
         """Curvature from the moment and stretch that the forces at end i and the lever of the contact give."""
-        model, pair, (p, x, start) = self.model, self.model.pairs[k], self._at(touch.element, state)
+        model, pair, touch = self.model, self.model.pairs[k], touch_of(state, k)
+        p, x, start = self._at(touch.element, state)
         fx, fy, moment = forces.nodal[:3, model.place[touch.element]].tolist()
-        dx, dy = p.dx0 + x[3] - x[0], p.dy0 + x[4] - x[1]
-        chord, size = math.hypot(dx, dy), math.hypot(*push)
-        normal = -pair.side * dy / chord, pair.side * dx / chord
-        away = (push[0] / size, push[1] / size) if size > 0 else normal
+        force, chord = complex(fx, fy), complex(p.dx0 + x[3] - x[0], p.dy0 + x[4] - x[1])
+        away = complex(*push) or 1j * pair.side * chord
         node = model.node_position(pair, state.q, state.load_parameter)
-        rx, ry = (c + pair.pair.offset * n - s for c, n, s in zip(node, away, start, strict=True))
-        stretch = -(fx * dx + fy * dy) / (chord * p.EA)
-        return float((-moment + rx * fy - ry * fx) / p.EI / (1 + stretch))
+        lever = complex(*node) - complex(*start) + pair.pair.offset * away / abs(away)
+        stretch = -(force * chord.conjugate()).real / (abs(chord) * p.EA)
+        return float(((lever.conjugate() * force).imag - moment) / p.EI / (1 + stretch))
 
     def intervals(self, _elements: int) -> int:
         """Intervals in which an element is drawn."""
         return _POINTS
 
-    def axes(self, beam: BeamModel, state: State, forces: ClosedFormForces, xi: Array) -> Array:
+    def axes(self, beam: BeamModel, state: State, forces: Any, xi: Array) -> Array:
         """Deflected axes of the elements of a beam, shape (elements, m, 2)."""
         model, elements = self.model, slice(beam.first, beam.last + 1)
         x, places = state.q[model.dofs[:, elements]], model.place[elements]
@@ -150,9 +139,8 @@ class ClosedFormGroup(ElementGroup):
 
     def section_axes(self, _beam: BeamModel, shape: Array) -> Array:
         """Directions of the chords, at both ends the same."""
-        d = np.diff(shape[:, :2], axis=0)
-        t = d / np.linalg.norm(d, axis=1)[:, None]
-        return np.stack([t, t])
+        d = np.diff(shape[:, :2] @ (1, 1j))[:, None]
+        return np.repeat(d / np.abs(d), 2, axis=1)
 
     def stations(self, beam: BeamModel, _state: State, shape: Array, section_forces: Array) -> Stations:
         """The elements."""

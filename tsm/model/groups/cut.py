@@ -45,7 +45,6 @@ class Section(NamedTuple):
 class Cut:
     """A contact at the end of a segment."""
 
-    s: int  # number of the segment
     pair: PairModel
     touch: Touch
     section: Section
@@ -144,20 +143,13 @@ def cut_element(element: int, cuts: dict[int, Cut], transfer: Array) -> CutEleme
 def enter(part: CutElement, group: ElementGroup, contacts: ContactBlock) -> None:
     """Enter the tangent of the contacts that cut an element."""
     model, dofs, tangent = group.model, group.dofs[:, part.element], part.tangent
-    eq = model.equation[dofs]
-    own = [(model.pairs[k], slice(OWN + CUT * n, OWN + CUT * (n + 1))) for n, k in enumerate(part.pairs)]
-    for k, (pair, rows) in zip(part.pairs, own, strict=True):
-        slots = contacts.slots(pair)
-        contacts.right[eq, slots], contacts.below[slots, eq] = tangent[:OWN, rows], tangent[rows, :OWN]
-        contacts.condensed_residual[pair.slots] = tangent[rows, -1]
-        contacts.by_load[pair.slots] = tangent[rows, -2]
-        for other, columns in own:
-            contacts.corner[slots, contacts.slots(other)] = tangent[rows, columns]
-        block = _BLOCK.copy()
-        block[8:, :6] = tangent[rows, _NODAL]
+    slots = np.array(part.slots) + model.border_dofs
+    contacts.couple(slots, model.equation[dofs], tangent[:OWN, OWN:-2], tangent[OWN:, :OWN])
+    contacts.corner[slots[:, None], slots] = tangent[OWN:, OWN:-2]
+    contacts.by_load[part.slots], contacts.condensed_residual[part.slots] = tangent[OWN:, -2:].T
+    for n, k in enumerate(part.pairs):
+        node, block = model.pairs[k].node, _BLOCK.copy()
+        block[8:, :6] = tangent[OWN + CUT * n :][:CUT, _NODAL]
         contacts.blocks[k] = int(group.elements[part.element]), block
-        if pair.node >= 0:
-            for i in range(2):
-                equation = model.equation[3 * pair.node + i]
-                contacts.right[equation, slots.start + i] += 1
-                contacts.below[slots.start + i, equation] -= 1
+        if node >= 0:
+            contacts.couple(slots[CUT * n :][:2], model.equation[3 * node :][:2], np.eye(2), -np.eye(2))

@@ -11,14 +11,14 @@ from tsm.elements import rod
 from tsm.elements.contact_law import Vector
 from tsm.elements.properties import Array
 from tsm.elements.varied import STEP
-from tsm.model.groups.base import Change, Stations
+from tsm.model.groups.base import Stations
 from tsm.model.groups.layout import layout
-from tsm.model.groups.rods import RodBalance, Rods
+from tsm.model.groups.rods import Rods
 from tsm.model.groups.shape import deflected, pieces, resampled, truncation
 from tsm.model.mesh import BeamModel
 from tsm.model.pairs import PairModel
 from tsm.model.projection import Projection
-from tsm.model.state import Profile, State, Touch, profile_of
+from tsm.model.state import State, profile_of
 
 MOST_NODES = 256
 """Largest number of Gauss nodes of a segment."""
@@ -37,12 +37,6 @@ _POINTS, _LINES = 100, 60
 
 class ExactGroup(Rods):
     """The exact elements of a model."""
-
-    def changed(self, state: State, tangent: Any, change: Change) -> Profile:
-        """Angles inside a state after a change."""
-        profile = profile_of(state)
-        angle = profile.angle + change.factor * self.inside(tangent, state, change)
-        return Profile(cuts=profile.cuts, angle=angle)
 
     def turned(self, one: State, other: State, like: State) -> Array:
         """Differences of the angles at the Gauss nodes."""
@@ -118,16 +112,11 @@ class ExactGroup(Rods):
         e, sample = divmod(int(nearest), _SAMPLES)
         return self.closest(pair, state, e, float(xi[sample]) * target.lengths[e])
 
-    def direction(self, touch: Touch, _q: Array) -> tuple[float, float]:
-        """Direction of the section's normal at the contact."""
-        return math.cos(touch.angle), math.sin(touch.angle)
-
-    def curvature(
-        self, k: int, _touch: Touch, _state: State, forces: RodBalance, _push: tuple[float, float]
-    ) -> float:
+    def curvature(self, k: int, _state: State, forces: Any, _push: tuple[float, float]) -> float:
         """Curvature from the moment behind the contact, natural curvature and the mean stretch."""
-        cut, c, s = forces.entry.cuts[k], *self.direction(forces.entry.cuts[k].touch, forces.nodal)
-        _, nx, ny, Fx, Fy, _, moment, _ = cut.at
+        cut = forces.entry.cuts[k]
+        angle, nx, ny, Fx, Fy, _, moment, _ = cut.at
+        c, s = math.cos(angle), math.sin(angle)
         axial = (nx - Fx / 2) * c + (ny - Fy / 2) * s
         if cut.section.course is not None:
             Px, Py = cut.section.course.resultant[:, 0, 0]
@@ -148,8 +137,7 @@ class ExactGroup(Rods):
         """Directions of the sections' normals at both ends of the elements."""
         own = self.model.place[beam.first : beam.last + 1]
         angle = np.append(self.angles[0, own], self.angles[1, own[-1]]) + shape[:, 2]
-        t = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-        return np.stack([t[:-1], t[1:]])
+        return np.exp(1j * np.stack([angle[:-1], angle[1:]], axis=1))
 
     def stations(self, beam: BeamModel, state: State, _shape: Array, _section_forces: Array) -> Stations:
         """Short pieces of the segments."""

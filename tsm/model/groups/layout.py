@@ -31,6 +31,7 @@ class Layout(NamedTuple):
     owner: Array  # element of every segment, counted over the exact elements; shape (s,)
     first: Array  # first, last: first and last segment of every element; shape (r,)
     last: Array
+    cuts: tuple[tuple[int, int], ...]  # segment that ends at a contact, and the contact's pair; in order
 
 
 @lru_cache(maxsize=256)
@@ -40,7 +41,9 @@ def layout(count: int, cuts: Cuts) -> Layout:
     for element, pairs in cuts:
         segments[element] += len(pairs)
     last = np.cumsum(segments) - 1
-    return Layout(np.repeat(np.arange(count), segments), last - segments + 1, last)
+    first = last - segments + 1
+    flat = tuple((s, k) for element, pairs in cuts for s, k in enumerate(pairs, int(first[element])))
+    return Layout(np.repeat(np.arange(count), segments), first, last, flat)
 
 
 @lru_cache(maxsize=16)

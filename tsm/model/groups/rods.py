@@ -20,7 +20,7 @@ from tsm.elements.properties import Array
 from tsm.elements.rod import Arrival, Course, Field, Segments
 from tsm.elements.varied import STEP
 from tsm.model.contact_block import ContactBlock
-from tsm.model.groups.base import Change, ElementGroup, GroupForces, GroupTangent
+from tsm.model.groups.base import ElementGroup, GroupForces, GroupTangent
 from tsm.model.groups.cut import Cut, CutElement, Section, cut_element, enter, seen
 from tsm.model.groups.layout import COLUMNS, FIXED, OWN, ROWS, Layout, layout
 from tsm.model.numbering import Numbering
@@ -42,7 +42,7 @@ class Entry(NamedTuple):
     moment: Array
     gain: Array  # moment at the end minus moment at the start; shape (s,)
     vector: Array  # vector from start to end; shape (2, s)
-    cuts: dict[int, Cut]  # the contacts, by pair; without friction, once forces are asked for
+    cuts: dict[int, Cut]  # the contacts, by pair
 
 
 @dataclass(kw_only=True)
@@ -57,6 +57,7 @@ class RodBalance(GroupForces):
 class RodTangent(GroupTangent):
     """Tangent of the exact elements."""
 
+    place: Layout  # elements of the segments
     cut: tuple[CutElement, ...]  # elements with contacts, whose first nine rows and columns are above too
     inner: Array  # derivatives of the angles inside by the inputs of the segments; shape (s, p, i)
     transfer: Array  # derivatives of their outputs, see `rod.Condensed`; shape (s, 4, i)
@@ -108,19 +109,14 @@ class Rods(ElementGroup):
         place = layout(len(self.length), profile.cuts)
         own = place.owner
         q, constants = state.q[self.dofs[:, own]], self.constants[:, own]
-        length, begin = constants[2].astype(q.dtype), np.zeros(len(own), q.dtype)
+        until, begin = constants[2].astype(q.dtype), np.zeros(len(own), q.dtype)
         force, start, end, moment = q[3:5, :, None], q[2] + constants[0], q[8] + constants[1], q[5]
-        for element, pairs in profile.cuts:
-            s = int(place.first[element])
-            for k in pairs:
-                touch = touch_of(state, k)
-                begin[s + 1] = touch.xi * self.length[element]
-                length[s] = begin[s + 1] - begin[s]
-                end[s] = start[s + 1] = touch.angle
-                s += 1
-                force[0, s, 0] = force[0, s - 1, 0] - touch.force[0]
-                force[1, s, 0] = force[1, s - 1, 0] - touch.force[1]
-            length[s] = self.length[element] - begin[s]
+        for s, k in place.cuts:
+            touch = touch_of(state, k)
+            until[s] = begin[s + 1] = touch.xi * self.length[own[s]]
+            end[s] = start[s + 1] = touch.angle
+            force[:, s + 1, 0] = force[:, s, 0] - touch.force
+        length = until - begin
         segments = Segments(
             flexibility=constants[4:, :, None],
             force=force,
@@ -135,12 +131,10 @@ class Rods(ElementGroup):
         field = rod.field(segments)
         gain, *vector = field.sums * length
         cuts: dict[int, Cut] = {}
-        for element, pairs in profile.cuts:
-            for s, k in enumerate(pairs, int(place.first[element])):
-                moment[s + 1] = moment[s] + gain[s]
-                if touch_of(state, k).grip is not None:
-                    cuts[k] = self._cut(state, k, s, segments, moment[s + 1])
-                    moment[s + 1] = moment[s + 1] - cuts[k].couple
+        for s, k in place.cuts:
+            before = moment[s] + gain[s]
+            cuts[k] = self._cut(state, k, s, segments, before)
+            moment[s + 1] = before - cuts[k].couple
         start, end, moment = (part[:, None] for part in (start, end, moment))
         return Entry(place, segments, field, start, end, moment, gain, np.array(vector), cuts)
 
@@ -162,7 +156,7 @@ class Rods(ElementGroup):
         at = (
             touch.angle, *segments.constant[:, s, 0].tolist(), *touch.force, pair.arc_position(touch), moment, t
         )  # fmt: skip
-        return Cut(s, pair, touch, section, at, *seen(pair, section, at, at), self.model.stick_stiffness)
+        return Cut(pair, touch, section, at, *seen(pair, section, at, at), self.model.stick_stiffness)
 
     def forces(self, state: State, contacts: ContactBlock) -> RodBalance:
         """Residual of the elements and of the contacts that cut them."""
@@ -181,24 +175,22 @@ class Rods(ElementGroup):
         if self.varies:
             residual[6:8] -= self._resultant(state)
         residual[8] = entry.moment[last, 0] + entry.gain[last]
-        for element, pairs in profile_of(state).cuts:
-            x, y = (self.near[:, element] + q[:2, element]).tolist()
-            for s, k in enumerate(pairs, int(first[element])):
-                if k not in entry.cuts:
-                    entry.cuts[k] = self._cut(state, k, s, entry.segments, entry.moment[s + 1, 0])
-                cut = entry.cuts[k]
-                dx, dy = entry.vector[:, cut.s].tolist()
-                x, y = x + dx, y + dy
-                cx, cy = self.model.node_position(cut.pair, state.q, state.load_parameter)
-                px, py, row = cut.pair.rows(cut.touch.grip, cut.touch.force, cut.here, cut.unit)
-                contacts.enter(
-                    k, cut.pair, cut.touch.force, (x - cx + px, y - cy + py, row, arrival.end_residual[cut.s])
-                )
-                residual[3:5, element] += entry.vector[:, cut.s + 1]
+        at = self.near + q[:2]
+        for s, k in entry.place.cuts:
+            cut, element = entry.cuts[k], entry.place.owner[s]
+            at[:, element] += entry.vector[:, s]
+            (x, y), (cx, cy) = (
+                at[:, element],
+                self.model.node_position(cut.pair, state.q, state.load_parameter),
+            )
+            px, py, row = cut.pair.rows(cut.touch.grip, cut.touch.force, cut.here, cut.unit)
+            rows = (x - cx + px, y - cy + py, row, arrival.end_residual[s])
+            contacts.enter(k, cut.pair, cut.touch.force, rows)
+            residual[3:5, element] += entry.vector[:, s + 1]
         inside = float(np.abs(arrival.inside).max())
         return RodBalance(nodal=residual, inside=inside, entry=entry, arrival=arrival)
 
-    def tangent(self, state: State, forces: RodBalance, contacts: ContactBlock) -> RodTangent:
+    def tangent(self, state: State, forces: Any, contacts: ContactBlock) -> RodTangent:
         """Tangent of the elements and of the contacts that cut them."""
         entry = forces.entry
         condensed = rod.condense(entry.segments, entry.field, forces.arrival)
@@ -222,25 +214,29 @@ class Rods(ElementGroup):
             by_load[6:8] = -self._resultant(state, rate=True)
         return RodTangent(
             tangent=tangent.reshape(len(first), -1).T, condensed_residual=condensed_residual, by_load=by_load,
-            cut=tuple(cut), inner=condensed.inner, transfer=condensed.transfer,
+            place=entry.place, cut=tuple(cut), inner=condensed.inner, transfer=condensed.transfer,
         )  # fmt: skip
 
-    def inside(self, tangent: RodTangent, state: State, change: Change) -> Array:
-        """Change (s, p) of the inner angles with all other unknowns; `residual` is 1 to remove the residual inside."""
-        place, x = layout(len(self.length), profile_of(state).cuts), change.dofs[self.dofs]
-        inputs = np.zeros((len(place.owner), tangent.inner.shape[2]))
-        inputs[:, :5] = x[COLUMNS][:, place.owner].T
-        inputs[:, 6], inputs[:, 8:] = change.residual, change.load
-        for part in tangent.cut:
-            own = (x[:, part.element], change.contacts[part.slots], [change.load, change.residual])
-            first = place.first[part.element]
-            inputs[first : first + len(part.inputs)] = part.inputs @ np.concatenate(own)
-        inside: Array = (tangent.inner @ inputs[:, :, None])[:, :, 0]
-        return inside
+    def inside(
+        self, tangent: Any, dofs: Array, contacts: Array, load: float = 1.0, residual: float = 0.0
+    ) -> Array:
+        """Changes (s, p) of the inner angles with all degrees of freedom, the contacts' unknowns and the load parameter; by default rates.
 
-    def turning(self, state: State, tangent: Any, dofs: Array, contacts: Array) -> Array:
-        """Rates of the angles at the Gauss nodes."""
-        return self.inside(tangent, state, Change(dofs, contacts, 0.0, 1.0, 1.0)).ravel()
+        ``residual``: 1 to remove the residual inside, too.
+        """
+        place = tangent.place
+        inputs = np.zeros((len(place.owner), tangent.inner.shape[2]))
+        inputs[:, :5] = dofs[self.dofs[COLUMNS]][:, place.owner].T
+        inputs[:, 6], inputs[:, 8:] = residual, load
+        for part in tangent.cut:
+            first = place.first[part.element]
+            columns = self._columns(part, dofs, contacts, load, residual)
+            inputs[first : first + len(part.inputs)] = part.inputs @ columns
+        return (tangent.inner @ inputs[:, :, None])[:, :, 0]
+
+    def _columns(self, part: CutElement, dofs: Array, contacts: Array, *others: float) -> Array:
+        """Changes of what the columns of a cut element stand for."""
+        return np.concatenate([dofs[self.dofs[:, part.element]], contacts[part.slots], others])
 
     def traction(self, k: int, forces: Any) -> Traction:
         """Force and place of a contact with friction."""
@@ -250,8 +246,7 @@ class Rods(ElementGroup):
     def slip_rate(self, k: int, tangent: Any, dofs: Array, contacts: Array) -> float:
         """Slip rate of a contact."""
         part = next(part for part in tangent.cut if k in part.pairs)
-        own = (dofs[self.dofs[:, part.element]], contacts[part.slots], [1.0, 0.0])
-        return float(part.slip[k] @ np.concatenate(own))
+        return float(part.slip[k] @ self._columns(part, dofs, contacts, 1.0, 0.0))
 
     def energy(self, state: State) -> float:
         """Strain energy of the elements; contacts have none."""
@@ -264,8 +259,7 @@ class Rods(ElementGroup):
     def _resultant(self, state: State, *, rate: bool = False) -> Array:
         """Resultants (2, r) of the loads along the elements, or their derivatives in the load parameter."""
         resultants, t = self.model.along.resultants, state.load_parameter.real
-        at_end: Array = (resultants.rate(t) if rate else resultants.at(t))[:, :, self.elements].sum(axis=1)
-        return at_end
+        return (resultants.rate(t) if rate else resultants.at(t))[:, :, self.elements].sum(axis=1)
 
     def load_work(self, state: State) -> Any:
         """Work of the loads of a state on the displacements to it: ``[P . u] - int P . (r' - r_0') ds`` with ``P' = q``."""
@@ -286,12 +280,11 @@ class Rods(ElementGroup):
     def load_power(self, state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> float:
         """Work of the loads at rates of all unknowns: a complex step of `load_work`, which holds the loads."""
         step, profile = 1j * STEP, profile_of(state)
-        inside = self.turning(state, tangent, dofs, contacts).reshape(profile.angle.shape)
         touches = tuple(
             touch and pair.moved(touch, (step * contacts[pair.slots]).tolist())
             for pair, touch in zip(self.model.pairs, state.touches, strict=True)
         )
-        angle = Profile(cuts=profile.cuts, angle=profile.angle + step * inside)
+        angle = Profile(cuts=profile.cuts, angle=profile.angle + step * self.inside(tangent, dofs, contacts))
         t: Any = state.load_parameter + step
         moved = replace(state, load_parameter=t, q=state.q + step * dofs, touches=touches, profile=angle)
         return float(self.load_work(moved).imag / STEP)

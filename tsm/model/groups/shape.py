@@ -69,11 +69,10 @@ def plain_shape(group: Rods, state: State, entry: Entry | None = None) -> RodSha
     """Polynomials through what is known at the Gauss nodes."""
     entry = entry or group.enter(state)
     segments, field, place = entry.segments, entry.field, entry.place
-    x, y = (group.near + state.q[group.dofs[:2]])[:, place.owner]
-    for element, _ in profile_of(state).cuts:
-        for s in range(place.first[element], place.last[element]):
-            x[s + 1], y[s + 1] = x[s] + entry.vector[0, s], y[s] + entry.vector[1, s]
-    start = np.stack([x, y, entry.start[:, 0], entry.moment[:, 0]])
+    at = (group.near + state.q[group.dofs[:2]])[:, place.owner]
+    for s, _ in place.cuts:
+        at[:, s + 1] = at[:, s] + entry.vector[:, s]
+    start = np.stack([*at, entry.start[:, 0], entry.moment[:, 0]])
     rates = np.stack([*field.values[1:], turning(entry), field.values[0]])
     force = segments.constant[:, :, 0]
     if segments.course is not None:
@@ -89,8 +88,7 @@ def turning(entry: Entry) -> Array:
     """Derivatives (s, p) of the angles at the Gauss nodes in the arc position."""
     segments = entry.segments
     moments = rod.moments(segments, entry.field, entry.moment)
-    turn: Array = segments.flexibility[2] * moments + segments.curvature
-    return turn
+    return segments.flexibility[2] * moments + segments.curvature
 
 
 def pieces(group: Rods, shape: RodShape, element: int, count: int) -> Stations:
@@ -99,9 +97,8 @@ def pieces(group: Rods, shape: RodShape, element: int, count: int) -> Stations:
     for s in range(shape.place.first[element], shape.place.last[element] + 1):
         sigma = np.linspace(0, 1, count + 1)
         at = shape.within(s, sigma)
-        c, sn = np.cos(at.angle), np.sin(at.angle)
-        nx, ny = at.force.T
-        forces = np.stack([nx * c + ny * sn, ny * c - nx * sn, at.moment], axis=1)
+        along = at.force @ (1, 1j) * np.exp(-1j * at.angle)
+        forces = np.stack([along.real, along.imag, at.moment], axis=1)
         arc = shape.arc[s] + sigma * shape.length[s]
         lines.append((arc, at.position, at.angle - group.undeformed_angle(element, arc), forces))
     pairs = np.arange(count)[:, None] + np.arange(2)
@@ -116,9 +113,8 @@ def _profile(
     """State whose angles inside are those of a function of elements (m,) and arc positions (m,) within them."""
     place = layout(len(group.length), cuts)
     begin, end = np.zeros(len(place.owner)), group.length[place.owner]
-    for element, pairs in cuts:
-        for s, k in enumerate(pairs, int(place.first[element])):
-            end[s] = begin[s + 1] = touch_of(state, k).xi * group.length[element]
+    for s, k in place.cuts:
+        end[s] = begin[s + 1] = touch_of(state, k).xi * group.length[place.owner[s]]
     at = begin[:, None] + (end - begin)[:, None] * collocation(order).c
     angle = angle_at(np.repeat(place.owner, order), at.ravel()).reshape(at.shape)
     return replace(state, profile=Profile(cuts=cuts, angle=angle))

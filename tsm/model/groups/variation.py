@@ -26,7 +26,7 @@ from tsm.elements.varied import STEP
 from tsm.model.groups.cut import Cut
 from tsm.model.groups.layout import COLUMNS, CUT, OWN, chain
 from tsm.model.groups.rods import Entry, RodBalance, Rods
-from tsm.model.groups.shape import plain_shape
+from tsm.model.groups.shape import Station, plain_shape
 from tsm.model.state import State, profile_of
 
 _LONGEST = 7.0
@@ -37,6 +37,8 @@ _MOST = 300
 """Largest number of pieces of all segments; beyond it the modes are counted by a bound."""
 _SHORT = 1e-4
 """Length over the element's below which a segment keeps its moment as an unknown, to avoid a division by a length near zero or negative."""
+_ADJOINT = np.array([[1.0, -1.0], [-1.0, 1.0]])
+"""Signs of the adjoint of a symmetric matrix of two rows, whose diagonal is exchanged."""
 _PULL = np.zeros((OWN, OWN))
 """Derivatives of ``n . (r_j - r_i)``, and a unit for the moment, which has been eliminated."""
 _PULL[[3, 4, 6, 7], [6, 7, 3, 4]] = 1
@@ -122,14 +124,10 @@ def variation(group: Rods, state: State, balance: RodBalance, transfer: Array | 
 
 def _without_force(tangent: Array) -> Array:
     """Eliminate the rows 3 and 4 of matrices (..., n, n); a unit matrix takes their place."""
-    of_force = tangent[..., 3:5, :].copy()
-    xx, xy, yy = of_force[..., 0, 3], of_force[..., 0, 4], of_force[..., 1, 4]
-    adjoint = np.empty_like(of_force[..., 3:5])
-    adjoint[..., 0, 0], adjoint[..., 1, 1] = yy, xx
-    adjoint[..., 0, 1] = adjoint[..., 1, 0] = -xy
-    adjoint /= (xx * yy - xy * xy)[..., None, None]
+    of_force, inside = tangent[..., 3:5, :].copy(), tangent[..., 3:5, 3:5]
+    inverse = inside[..., ::-1, ::-1] * _ADJOINT / np.linalg.det(inside)[..., None, None]
     of_force[..., 3:5] = 0.0
-    tangent = tangent - np.swapaxes(of_force, -1, -2) @ (adjoint @ of_force)
+    tangent = tangent - np.swapaxes(of_force, -1, -2) @ (inverse @ of_force)
     tangent[..., 3:5, :] = tangent[..., :, 3:5] = 0.0
     tangent[..., 3, 3] = tangent[..., 4, 4] = 1.0
     return tangent
@@ -161,27 +159,26 @@ def _pieces(group: Rods, state: State, balance: RodBalance, transfer: Array | No
 def _divided(group: Rods, state: State, entry: Entry, count: Array) -> tuple[Segments, Array, Array, Array]:
     """Equal pieces of the segments, with their angles and moments at the ends."""
     whole, own = entry.segments, np.repeat(np.arange(len(count)), count)
-    shape, nodes = plain_shape(group, state, entry), whole.table.c
-    inside, ends = [], []
-    for s, parts in enumerate(count.tolist()):
-        sigma = (np.arange(parts)[:, None] + nodes) / parts
-        inside.append(shape.within(s, sigma.ravel()).angle.reshape(sigma.shape))
-        at = shape.within(s, np.arange(parts + 1) / parts)
-        ends.append(np.stack([at.angle[:-1], at.moment[:-1], at.angle[1:]], axis=1))
-    length = whole.length[own] / count[own, None]
-    part = np.arange(len(own)) - (np.cumsum(count) - count)[own]
+    part, parts = np.arange(len(own)) - (np.cumsum(count) - count)[own], count[own, None]
+    shape = plain_shape(group, state, entry)
+
+    def at(places: Array) -> Station:
+        """Stations at places (m,) of every piece."""
+        return shape.within(np.repeat(own, len(places)), ((part[:, None] + places) / parts).ravel())
+
+    start, end, length = at(np.zeros(1)), at(np.ones(1)), whole.length[own] / parts
     segments = Segments(
         flexibility=whole.flexibility[:, own],
         force=whole.constant[:, own],
         length=length,
-        angle=np.concatenate(inside),
+        angle=at(whole.table.c).angle.reshape(len(own), -1),
         constant=whole.constant[:, own],
         owner=whole.owner[own],
         begin=whole.begin[own] + part[:, None] * length,
         curvature=whole.curvature[own],
     )
-    start, moment, end = np.concatenate(ends).T[:, :, None]
-    return group.placed(segments, state.load_parameter), start, moment, end
+    placed = group.placed(segments, state.load_parameter)
+    return placed, start.angle[:, None], start.moment[:, None], end.angle[:, None]
 
 
 def _hessians(
@@ -292,5 +289,4 @@ def _surface(cut: Cut, selectors: Array) -> Array:
     turn = along @ cut.derivatives[:2] @ selectors / reach
     both = reach * np.outer(along @ selectors[3:5], turn)
     both += pair.steep * np.outer(normal @ selectors[3:5], selectors[5])
-    envelope: Array = reach * (normal @ force) * np.outer(turn, turn) - both - both.T
-    return envelope
+    return reach * (normal @ force) * np.outer(turn, turn) - both - both.T
