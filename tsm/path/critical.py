@@ -22,7 +22,6 @@ from tsm.model.contact import closed
 from tsm.model.model import Model
 from tsm.model.state import State
 from tsm.statement.status import RefusedError
-from tsm.system.axis import axis_line
 from tsm.system.equilibrium import Equilibrium
 from tsm.system.stability import IDLE, mode, softness
 from tsm.system.system import Drive
@@ -90,7 +89,7 @@ def locate_bifurcation(
     if nearest[1] <= small:
         return nearest[0]
     try:
-        root = find_root(lambda t: evaluate(solve(t)), *ends, small=small, apart=apart)
+        root = find_root(lambda t: evaluate(solve(t).sharpened()), *ends, small=small, apart=apart)
     except RefusedError:
         # beside a singular tangent, the residual that Newton's method leaves is a large motion along the mode
         root = nearest[0] if nearest[1] <= _BESIDE else None
@@ -112,14 +111,13 @@ def mode_shape(point: Equilibrium) -> tuple[Array, dict[str, Array]] | None:
     Returns the change of the unknowns that moves some point of an axis by 1, and the displacements (m, 2) of
     the axes; None without a single mode.
     """
-    newton, model, state = point.newton, point.model, point.state
+    newton = point.newton
     soft = mode(newton.assembler, point.system)
     if soft is None:
         return None
-    moved = newton.update(state, soft[0] * _SHIFT, point.system)
-    system = newton.assembler.linearise(moved)
-    axes = {beam: axis_line(model, point.system, beam)[1] for beam in model.beams}
-    shapes = {beam: axis_line(model, system, beam)[1] - axis for beam, axis in axes.items()}
+    moved = point.with_state(newton.update(point.state, soft[0] * _SHIFT, point.system))
+    axes = {beam: point.axis_line(beam)[1] for beam in point.model.beams}
+    shapes = {beam: moved.axis_line(beam)[1] - axis for beam, axis in axes.items()}
     most = max(float(np.abs(shape).max()) for shape in shapes.values()) or 1.0
     most *= _side(np.concatenate([_leftwards(axes[beam], shape) for beam, shape in shapes.items()]))
     return soft[0] * (_SHIFT / most), {beam: shape / most for beam, shape in shapes.items()}

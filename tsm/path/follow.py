@@ -27,7 +27,7 @@ from tsm.path.energy import rolled, spent
 from tsm.path.fall import Fall
 from tsm.path.friction import grips, regripped
 from tsm.path.margins import Margin, Search, broken, margins
-from tsm.path.path import FOLD, SMALLEST, Track, allowed
+from tsm.path.path import FOLD, LONGEST, SMALLEST, Track, allowed
 from tsm.path.step import NEAR, Step, ends
 from tsm.statement.settings import Settings
 from tsm.statement.stages import stage_of
@@ -94,6 +94,7 @@ class Follower:
                         break
                     if self._try_step(attempt):
                         yield self._record(requested=self.track.last.t == target and target in asked)
+            self.track.last.release()
         except StopError as stop:
             if stop.met is not None:
                 self.log.note_end(self.model, *stop.met)
@@ -111,12 +112,12 @@ class Follower:
         """Take a step or fall from a limit point; False if refused."""
         if attempt == _MOST_ATTEMPTS:
             raise StopError(Status.STEP_LIMIT)
-        left, step = self.target - self.track.last.t, min(self.step, self.track.room())
+        step = self.track.room(min(self.step, self.target - self.track.last.t))
         try:
-            self._take(step, left)
+            self._take(step)
         except RefusedError as refused:
             self.log.cutbacks += 1
-            self.step = min(self.step, step, left) * refused.part
+            self.step = step * refused.part
             if self.step >= SMALLEST:
                 return False
             if on_held_end(self.model, self.track.last.state):
@@ -129,12 +130,13 @@ class Follower:
             self._meet_limit_point()
         return True
 
-    def _take(self, step: float, left: float) -> None:
-        """Advance the load parameter by `step`, or to the target if no more than that is `left`."""
+    def _take(self, step: float) -> None:
+        """Advance the load parameter by a step, or to the target if no more is left."""
         if step < SMALLEST:
             raise RefusedError
         self._turn_corner()
-        self._reach(self.target if left <= step * (1 + 1e-6) else self.track.last.t + step)
+        last = self.track.last.t
+        self._reach(self.target if self.target - last <= step * (1 + 1e-6) else last + step)
 
     def _turn_corner(self) -> None:
         """Restart the path at a corner: at the start, at a corner of a pin's path, or where a stage begins.
@@ -168,12 +170,7 @@ class Follower:
     def _record(self, status: Status = Status.CONVERGED, *, requested: bool = False) -> Step:
         """The step that ends here; the log starts anew."""
         log, last, stage = self.log, self.track.last, 1 + stage_of(self.target, self.model.stages)
-        log.equilibrium, log.index, log.status, log.requested = (
-            last,
-            last.index,
-            status,
-            requested,
-        )
+        log.equilibrium, log.index, log.status, log.requested = last, last.index, status, requested
         if stage > 1:
             log.events = [replace(event, stage=stage) for event in log.events]
         self.log = Step(equilibrium=last, spent=log.spent)
@@ -206,7 +203,7 @@ class Follower:
         last, start = self.track.last, self.track.predicted(t)
         reached = self._converged(start, last.state)
         reached.behind = self.track.unexplained(last, reached)
-        if self.track.strays(start, reached.state):
+        if self.newton.apart(start if last.on_chords else last.state, reached.state) > LONGEST:
             raise RefusedError
         return reached
 
@@ -223,6 +220,8 @@ class Follower:
     def _advance(self, reached: Equilibrium) -> None:
         """Accept a point, or meet the bifurcation before it; refuse a step that may have left the path."""
         last, track = self.track.last, self.track
+        if reached.index != track.index:
+            reached = reached.sharpened()
         unexplained = max(reached.behind, track.unexplained(reached, reached))
         if 0 <= reached.index != track.index and (reached.index > track.index or last.index == track.index):
             if unexplained > _STRAIGHT:
@@ -250,7 +249,7 @@ class Follower:
     def _begin(self, point: Equilibrium) -> None:
         """Make a point the last of the path, and the first one with its contacts."""
         self.track.history = []
-        self._accept(point)
+        self._accept(point.sharpened())
 
     def _meet_bifurcation(self, reached: Equilibrium) -> None:
         """At a bifurcation within a step, end the path, turn to the stable branch, or accept the point beyond."""

@@ -161,12 +161,6 @@ def margins(point: Equilibrium, drive: Drive) -> list[Margin]:
     return point.margins[drive]
 
 
-def applied(point: Equilibrium, state: State, margin: Margin, *, alone: bool) -> State:
-    """State after an event at a point; `alone` if no contact takes over. Raises StopError where the path ends."""
-    watch = next(watch for watch in WATCHES if watch.kind is margin.kind)
-    return watch.apply(point, state, margin, alone)
-
-
 def least_push(newton: Newton, k: int) -> float:
     """Tensile contact force that is round-off: of the touched beam, which may be far softer than others, unless a beam's end touches it."""
     pair = newton.model.pairs[k]

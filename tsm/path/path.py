@@ -33,13 +33,15 @@ SMALLEST = 1e-12
 """Floor of the load step, as a part of the whole load."""
 _SAFE = 0.8
 """Safety factor: next step over the step that the tangents would still allow."""
-_LONGEST = 1.0
+LONGEST = 1.0
 """Longest step whatever its tangents are, in largest Newton steps (0.3 L, 0.7 rad); the farthest equilibrium
 from its prediction where no tangent is usable. With 2 instead of 1, one random pin in a hundred ends on another branch."""
-_PROMISED = 0.8
-"""Longest step at the last speed, in the same measure: most of the longer ones would be refused."""
-_MEMORY = 4
-"""Points in the prediction, a polynomial in the load parameter through their states and usable tangents."""
+_PROMISED, _FIRST, _SHORT = 0.8, 0.4, 0.3
+"""Longest step at the last speed, in the same measure, and part of both bounds that its prediction may reach; longest from
+a state before which none is known; longest that is tried without a look at its prediction. Most longer ones would be refused."""
+_LEAST, _MOST, _NEAR = 6, 9, 2
+"""Data of the prediction, a polynomial through values of the last states, and slopes by their own tangents: at least
+and at most so many, two more after every prediction from which no more than two iterations led to equilibrium."""
 SHORTEST = 1e-6
 """Step of the load parameter below which the tangent alone predicts: the others would be round-off."""
 FOLD = 100.0
@@ -57,9 +59,13 @@ class Track:
         # of the last point that has one
         self.index = max(point.index, 0) if point.converged else 0
         self.history = [_Known(point.state, _values(point.model, point.state))]
+        self.memory = _LEAST
 
     def accept(self, point: Equilibrium) -> None:
         """Make a point the last of the path."""
+        if self.history and self.last.nearby:  # a slope that serves at the end of the path only
+            self.history[-1] = self.history[-1]._replace(slope=None)
+        self.memory = min(self.memory + 2, _MOST) if point.iterations <= _NEAR else _LEAST
         self.history = [*self._remembered(point), _Known(point.state, _values(point.model, point.state))]
         self.before, self.last = self.last, point
         self.before.release()
@@ -71,8 +77,11 @@ class Track:
         The path has a kink where a contact passes from element to element, and one state before it serves where there is no other.
         """
         kept: list[_Known] = []
-        for known in reversed(self.history[1 - _MEMORY :]):
-            if kept and _owners(known.state) != _owners(point.state) and not point.on_chords:
+        data = 2  # value and slope of the point
+        for known in reversed(self.history):
+            data += 1 if known.slope is None else 2
+            passed = _owners(known.state) != _owners(point.state) and not point.on_chords
+            if data > self.memory or (kept and passed):
                 break
             if known.state.load_parameter < point.t:
                 kept.append(known)
@@ -94,30 +103,32 @@ class Track:
         return self.newton.prescribed(_through(last.model, used, t), t)
 
     def unexplained(self, by: Equilibrium, reached: Equilibrium) -> float:
-        """Part of the step to a point that the tangent at one of its ends does not explain; 0 where none is usable. It may not be large."""
-        last, newton = self.last, self.newton
-        rates = None if last.on_chords else by.rates(newton.assembler.drive(last.t, reached.t))
-        if rates is None:
-            return 0.0
-        step = newton.motion(last.state, reached.state, by.state)
-        size, left = newton.size(step), newton.size(step - (reached.t - last.t) * rates.motion)
-        part = left / size if min(left, size) > RESOLVED else 0.0
+        """Part of the step to a point that the tangent at one of its ends does not explain. It may not be large."""
+        _, part = self._explained(by, reached.state)
         if part > _FOLLOWED:
             raise RefusedError(part=allowed(part))
         return part
 
-    def strays(self, predicted: State, reached: State) -> bool:
-        """Whether an equilibrium lies too far away, or too far from its prediction where no tangent is usable."""
-        start = predicted if self.last.on_chords else self.last.state
-        return self.newton.apart(start, reached) > _LONGEST
+    def _explained(self, by: Equilibrium, state: State) -> tuple[float, float]:
+        """Size of the motion to a state, and the part that the tangent at a point does not explain; 0 where none is usable."""
+        last, newton, step = self.last, self.newton, state.load_parameter - self.last.t
+        rates = None if last.on_chords else by.rates(newton.assembler.drive(last.t, state.load_parameter))
+        if rates is None:
+            return 0.0, 0.0
+        motion = newton.motion(last.state, state, by.state)
+        size, left = newton.size(motion), newton.size(motion - step * rates.motion)
+        return size, left / size if min(left, size) > RESOLVED else 0.0
 
-    def room(self) -> float:
-        """Longest step that the last two speeds promise to follow; infinite where they promise nothing."""
-        one, two = self.before, self.last
-        short = _PROMISED / two.speed if two.speed < FOLD and not two.on_chords else math.inf
-        if len(self.history) < 2 or one.t >= two.t or not two.speed > _GROWING * one.speed:
-            return short
-        return min(short, _ROOM * (self.limit() - two.t) or math.inf)
+    def room(self, step: float) -> float:
+        """The step, or the part of it that the last two speeds, the tangent and the prediction promise to follow."""
+        one, two, known = self.before, self.last, len(self.history) > 1
+        if known and one.t < two.t and two.speed > _GROWING * one.speed:
+            step = min(step, _ROOM * (self.limit() - two.t) or step)
+        if two.on_chords or two.speed >= FOLD or step * two.speed <= _SHORT:
+            return step
+        step = min(step, (_PROMISED if known else _FIRST) / two.speed)
+        size, part = self._explained(two, self.predicted(two.t + step)) if known else (0.0, 0.0)
+        return step * max(0.5, _PROMISED / max(_PROMISED, size / LONGEST, part / _FOLLOWED))
 
     def limit(self) -> float:
         """Load parameter of the limit point ahead, by the speeds of the path at the last two points: near it ``a/sqrt(t_c - t)``."""

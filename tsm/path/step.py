@@ -13,7 +13,7 @@ from tsm.elements.properties import Array
 from tsm.model.model import Model
 from tsm.model.state import State, touch_of
 from tsm.path.critical import CriticalPoint
-from tsm.path.margins import Margin, applied
+from tsm.path.margins import WATCHES, Margin
 from tsm.statement.status import Status
 from tsm.system.equilibrium import Equilibrium
 
@@ -78,7 +78,7 @@ class Step:
         k, touches = margin.pair, margin.kind is EventKind.TOUCH
         if not touches and state.touches[k] is not None:
             self.note(margin.kind, point, state, k)
-        after = applied(point, state, margin, alone=alone)
+        after = next(w.apply for w in WATCHES if w.kind is margin.kind)(point, state, margin, alone)
         if touches and after.touches[k] is not None:
             self.note(margin.kind, point, after, k)
         return after

@@ -18,7 +18,6 @@ from tsm.path.step import Step
 from tsm.result import present
 from tsm.result.deformation import Deformation, deformation
 from tsm.statement.status import Status
-from tsm.system.axis import axis_line
 from tsm.system.equilibrium import Equilibrium
 from tsm.system.system import Assembler
 
@@ -188,8 +187,7 @@ class Result:
         xy : ndarray, shape (m, 2)
             Deformed position.
         """
-        here = self.equilibria[k]
-        return axis_line(self.model, here.system, beam, points_per_element)
+        return self.equilibria[k].axis_line(beam, points_per_element)
 
     def stations(self, beam: str, k: int) -> Stations:
         """Lines along a beam at accepted load parameter k: its elements, or short pieces of the segments of exact ones."""

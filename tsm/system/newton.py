@@ -25,6 +25,8 @@ _START, _CLOSE = 1e-2, 1e-9
 _RISE, _SHORTEST = 10.0, 0.1
 """Merit test of exact elements. An iteration that raises the residual tenfold is halved, at most three times. A stricter test refuses
 iterations that would converge."""
+_NEARBY = 1e-3
+"""Largest residual before the last step at which tangent and rates of exact elements serve after it too."""
 _NEAR = 1.0
 """Residual below which the number of Gauss nodes may be raised."""
 _CARRIED = 16 * float(np.finfo(float).eps)
@@ -37,11 +39,7 @@ _CRITICAL = 1e-6
 
 
 def _scales(model: Model) -> tuple[Array, Array, float]:
-    """Factors that make residuals comparable, reciprocals of the largest step, over all unknowns, and scaled round-off of the residual.
-
-    Forces are counted in ``EI/L^2``, positions in L/1000. Round-off is ``4 eps (EA L/l0 + EI/l0^2)`` for an
-    element in closed form, and ``4 eps`` of the node positions where positions are equations.
-    """
+    """Factors that make residuals comparable, reciprocals of the largest step, over all unknowns, and scaled round-off of the residual."""
     sharp = np.where(np.isin(np.arange(10), (0, 1, 2, 8)), 1.0, SHARP)
     # the forces of a long frame of short beams are those of its extent
     residual = 1 / (units_of(model.sizes._replace(force_scale=model.least_force))[1] * sharp)
@@ -62,8 +60,8 @@ class Newton:
     The norm is the largest scaled entry of the residual: forces over ``EI/L^2``, moments over ``EI/L``,
     positions over L/1000. L is the longest beam, so that no scale can vanish. An iteration has converged if
     its norm is below `tolerance`. It has also converged if the last two norms are below the round-off of the
-    residual, ``4 eps (EA L/l0 + EI/l0^2)``, and ``4 eps k_c L`` for a contact of stiffness k_c, or the
-    round-off of the forces that the beams carry.
+    residual, ``4 eps (EA L/l0 + EI/l0^2)`` in closed form, ``4 eps`` of the node positions where they are
+    equations, ``4 eps k_c L`` for a contact of stiffness k_c, or the round-off of the forces that the beams carry.
     """
 
     def __init__(self, model: Model, settings: Settings) -> None:
@@ -74,7 +72,8 @@ class Newton:
         self.scale, self.per_step, self.noise = _scales(model)
         if model.springs is not None:
             self.noise = max(self.noise, model.springs.noise(model.extent, model.least_force))
-        self.longest = _LONGEST_WHOLE if model.whole else _LONGEST
+        # friction asks for rates as accurate as its events
+        self.carries = self.assembler.internal and not model.rubbed
 
     def apart(self, one: State, other: State) -> float:
         """Size of the motion from one state to another, the one measure of how far they are apart."""
@@ -115,6 +114,7 @@ class Newton:
         """
         state, past, part = start, 0.0, 0.0
         taken: tuple[State, Array, Linearisation] | None = None
+        nearby: tuple[Linearisation, Array] | None = None
         residuals: list[float] = []
         owners: list[tuple[int, ...]] = []
         fallback: Equilibrium | None = None
@@ -131,7 +131,7 @@ class Newton:
                 owners.append(tuple(touch.element for touch in state.touches if touch is not None))
                 more = self.with_more_nodes(state, system, residuals) if left else None
                 if more is not None:
-                    state, taken = more, None
+                    state, taken, nearby = more, None, None
                     continue
                 status = self._status(system, residuals, owners, left)
                 step = (
@@ -144,13 +144,15 @@ class Newton:
                     iterations=iteration,
                     residuals=tuple(residuals),
                     system=system,
+                    nearby=nearby if owners[-2:-1] == owners[-1:] else None,
                 )
                 if step is None:
                     return here
                 fallback = None if status is None else here
                 past = _PAST if past or _alternates(owners) else 0.0
-                (change, load), part = step, 1.0
+                (change, load, rate), part = step, 1.0
                 taken = state, change, system
+                nearby = (system, rate) if self.carries and residual <= _NEARBY else None
             assert taken is not None, "a part of a step is of a step"
             t = taken[0].load_parameter + part * load
             state = self.update(*taken, t=t, residual=True, part=part, past=past)
@@ -158,24 +160,22 @@ class Newton:
 
     def _closer(
         self, system: Linearisation, residuals: list[float], status: Status
-    ) -> tuple[Array, float] | None:
+    ) -> tuple[Array, float, Array] | None:
         """Step from a start within the tolerance, which leaves the square of its error; None where the tangent is nearly singular."""
         if status is not Status.CONVERGED or len(residuals) > 1 or residuals[-1] <= _START * self.tolerance:
             return None
         step = self._step(system, None)
         return step if step is not None and largest(step[0], self.per_step) <= _CLOSE else None
 
-    def _step(self, system: Linearisation, across: Array | None) -> tuple[Array, float] | None:
-        """Newton step of the unknowns and of the load parameter, None if the tangent is singular."""
-        if across is None:
-            solved = self.assembler.solve(system)
-            return None if solved is None else (solved[:, 0], 0.0)
-        solved = self.assembler.solve(system, -self.assembler.rate(system))
+    def _step(self, system: Linearisation, across: Array | None) -> tuple[Array, float, Array] | None:
+        """Newton step of the unknowns and of the load parameter, and rates of the unknowns; None if the tangent is singular."""
+        more = [-self.assembler.rate(system)] if self.carries or across is not None else []
+        solved = self.assembler.solve(system, *more)
         if solved is None:
             return None
-        back, rate = solved.T
-        load = -float(across @ back) / float(across @ rate)
-        return back + load * rate, load
+        back, rate = solved[:, 0], solved[:, -1]
+        load = 0.0 if across is None else -float(across @ back) / float(across @ rate)
+        return back + load * rate, load, rate
 
     def _status(
         self, system: Linearisation, residuals: list[float], owners: list[tuple[int, ...]], left: int
@@ -238,8 +238,8 @@ class Newton:
         """
         model = self.model
         dq, dz = step[: model.equations], step[model.equations :]
-        size = largest(step, self.per_step)
-        factor = part * (self.longest / size if size > self.longest else 1.0)
+        size, longest = largest(step, self.per_step), _LONGEST_WHOLE if model.whole else _LONGEST
+        factor = part * (longest / size if size > longest else 1.0)
         begin, end = state.load_parameter, state.load_parameter if t is None else t
         if end != begin:
             state = self.prescribed(state, end)

@@ -6,9 +6,7 @@ from tsm.elements.contact_law import ContactLaw
 from tsm.elements.element_type import ClosedForm, Integrated
 
 LAW = ContactLaw(
-    response=mixed_contact.response,
-    energy=mixed_contact.energy,
-    cross=mixed_contact.cross_compliance,
+    response=mixed_contact.response, energy=mixed_contact.energy, cross=mixed_contact.cross_compliance
 )
 """The contact law whose force and arc position are unknowns."""
 
