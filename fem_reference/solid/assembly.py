@@ -28,7 +28,9 @@ class Pattern:
     def band(self, elements: Array) -> Array:
         """Assemble element entries into the band ``(width + 1, m)`` of the stiffness, in Fortran order."""
         flat = np.zeros(self.size * (self.width + 1), dtype=elements.dtype)
-        flat[self.positions] = self.scatter @ elements + self.added
+        values = self.scatter @ elements
+        values += self.added
+        flat[self.positions] = values
         return flat.reshape(self.size, self.width + 1).T
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import eigvals_banded
-from scipy.linalg.lapack import dpbtrf, dtbtrs
+from scipy.linalg.lapack import dgbtrf, dgbtrs, dpbtrf, dtbtrs
 from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import splu
 
@@ -52,10 +52,18 @@ def factorise(band: Floats) -> Factor | None:
 
 def _indefinite(band: Floats) -> Factor | None:
     """Factorise a symmetric matrix that is not positive definite; None if it is singular."""
-    try:
-        solution = splu(full(band), permc_spec="NATURAL").solve
-    except RuntimeError:  # SuperLU's word for an exactly singular matrix
+    (rows, m), w = band.shape, len(band) - 1
+    both = np.zeros((m, 3 * w + 1)).T
+    both[2 * w :] = band
+    for k in range(1, rows):
+        both[2 * w - k, k:] = band[k, : m - k]
+    lu, pivots, failed = dgbtrf(both, w, w, overwrite_ab=1)
+    if failed:
         return None
+
+    def solution(right: Floats) -> Floats:
+        return dgbtrs(lu, w, w, right, pivots)[0].reshape(right.shape)
+
     return Factor(
         half=lambda right: right,
         rest=solution,

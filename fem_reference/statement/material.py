@@ -1,15 +1,15 @@
 r"""Hyperelastic laws in plane stress and plane strain: energy, stress and tangent.
 
 Every law is a function of the deformation gradient in the plane, ``F``: tensor axes first, any number of point axes
-after. Those here are isotropic, so that two invariants of F decide. ``lam`` and ``mu`` are Lame's constants. A law whose stress is linear in a strain measure is exact in plane stress
+after. ``lam`` and ``mu`` are Lame's constants. A law whose stress is linear in a strain measure is exact in plane stress
 with ``lam`` replaced by ``2 lam mu / (lam + 2 mu) = E nu / (1 - nu^2)``, since the transverse stress vanishes at the
 transverse strain ``-lam / (lam + 2 mu)`` times the trace in the plane. For a nonlinear law the transverse stretch is
 condensed at every point.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -28,6 +28,11 @@ class Law:
     # ``dP/dF``, shape ``(2, 2, 2, 2, ...)``, with ``A[i, j, k, l] = dP[i, j] / dF[k, l]`` [Pa]
     tangent: LawFunction
 
+    @cached_property
+    def elastic(self) -> Array:
+        """``dP/dF`` without deformation, ``(2, 2, 2, 2)`` [Pa]."""
+        return self.tangent(np.eye(2)[:, :, None])[..., 0]
+
 
 def lame_constants(youngs_modulus: float, poissons_ratio: float) -> tuple[float, float]:
     """Return ``lam = E nu / ((1 + nu) (1 - 2 nu))`` and ``mu = E / (2 (1 + nu))`` [Pa]."""
@@ -40,10 +45,17 @@ def in_plane_lam(lam: float, mu: float, plane: str) -> float:
     return 2 * lam * mu / (lam + 2 * mu) if plane == "stress" else lam
 
 
-_PERMUTATION = np.array([[0.0, 1.0], [-1.0, 0.0]])
-_IDENTITY, _TURNED = (a[:, None, :, None] * a[None, :, None, :] for a in (np.eye(2), _PERMUTATION))
-"""Derivatives of F and of its cofactors by F."""
-Values = tuple[Any, ...]
+def _contract(A: Array, B: Array) -> Array:
+    return np.einsum("ij...,ij...", A, B)
+
+
+def _times(A: Array, B: Array) -> Array:
+    """``A . B`` at every point."""
+    return np.einsum("ij...,jk...->ik...", A, B)
+
+
+def _outer(A: Array, B: Array) -> Array:
+    return A[:, :, None, None] * B[None, None]
 
 
 def _everywhere(constant: Array, F: Array) -> Array:
@@ -51,83 +63,120 @@ def _everywhere(constant: Array, F: Array) -> Array:
     return constant.reshape(constant.shape + (1,) * (F.ndim - 2))
 
 
-def isotropic(values: Callable[[Array, Array], Values]) -> Law:
-    """Law with the energy ``W(I, J)``, ``I = F:F`` and ``J = det F``, as every isotropic one: ``P = 2 W_I F + W_J cof F``.
-
-    ``values``: W, W_I, W_J, W_II, W_IJ and W_JJ at I and J.
-    """
-
-    def at(F: Array) -> Values:
-        return values(np.einsum("ij...,ij...", F, F), determinant(F))
-
-    def stress(F: Array) -> Array:
-        _, by_I, by_J, *_ = at(F)
-        return 2 * by_I * F + by_J * cofactor(F)
-
-    def tangent(F: Array) -> Array:
-        (_, by_I, by_J, II, IJ, JJ), C = at(F), cofactor(F)
-        changes = 4 * II * F + 2 * IJ * C, 2 * IJ * F + JJ * C  # of 2 W_I and of W_J, by F
-        A: Array = 2 * by_I * _everywhere(_IDENTITY, F) + by_J * _everywhere(_TURNED, F)
-        for direction, change in zip((F, C), changes, strict=True):
-            A += direction[:, :, None, None] * change
-        return A
-
-    return Law(energy=lambda F: at(F)[0], stress=stress, tangent=tangent)
+def _log_area(F: Array) -> Array:
+    """``ln det F``; nan at a folded point, which ends the iteration by name."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.log(determinant(F))
 
 
 def st_venant_kirchhoff(lam: float, mu: float, plane: str) -> Law:
-    """``W = lam (tr E)^2 / 2 + mu E:E`` with Green's strain ``E = (F^T F - I) / 2``, ``4 E:E = I^2 - 2 J^2 - 2 I + 2``."""
+    """``W = lam (tr E)^2 / 2 + mu E:E`` with Green's strain ``E = (F^T F - I) / 2``."""
     lam = in_plane_lam(lam, mu, plane)
 
+    def green(F: Array) -> Array:
+        return (_times(F.swapaxes(0, 1), F) - _everywhere(np.eye(2), F)) / 2
+
+    def second_stress(F: Array) -> Array:
+        E = green(F)
+        return 2 * mu * E + lam * (E[0, 0] + E[1, 1]) * _everywhere(np.eye(2), F)
+
     def energy(F: Array) -> Array:
-        """From E, which leaves small strains their digits."""
-        E = (np.einsum("ki...,kj...->ij...", F, F) - _everywhere(np.eye(2), F)) / 2
-        return lam / 2 * (E[0, 0] + E[1, 1]) ** 2 + mu * np.einsum("ij...,ij...", E, E)
+        E = green(F)
+        return lam / 2 * (E[0, 0] + E[1, 1]) ** 2 + mu * _contract(E, E)
 
-    def values(I: Array, J: Array) -> Values:  # noqa: E741 - the invariant's letter
-        return np.nan, lam / 4 * (I - 2) + mu / 2 * (I - 1), -mu * J, lam / 4 + mu / 2, 0.0, -mu
+    def stress(F: Array) -> Array:
+        return _times(F, second_stress(F))
 
-    return replace(isotropic(values), energy=energy)
+    def tangent(F: Array) -> Array:
+        """``lam F_ij F_kl + mu (F_il F_kj + (F F^T)_ik delta_jl) + delta_ik S_jl``."""
+        FF = _outer(F, F)
+        A: Array = mu * FF.swapaxes(1, 3)
+        FF *= lam
+        A += FF
+        b, S = mu * _times(F, F.swapaxes(0, 1)), second_stress(F)
+        for n in range(2):
+            A[:, n, :, n] += b
+            A[n, :, n, :] += S
+        return A
+
+    return Law(energy=energy, stress=stress, tangent=tangent)
+
+
+_PERMUTATION = np.array([[0.0, 1.0], [-1.0, 0.0]])
+_IDENTITY = np.eye(2)[:, None, :, None] * np.eye(2)[None, :, None, :]
+_DZ_DF = _IDENTITY + _PERMUTATION[:, None, :, None] * _PERMUTATION[None, :, None, :]
 
 
 def biot_linear(lam: float, mu: float, plane: str) -> Law:
-    """``W = lam (tr U - 2)^2 / 2 + mu |U - I|^2``, linear in Biot's strain ``U - I``; ``tr U = s = sqrt(I + 2 J)``."""
+    """``W = lam (tr U - 2)^2 / 2 + mu |U - I|^2``, linear in Biot's strain ``U - I``.
+
+    In closed form with ``tr U = s = sqrt(F:F + 2 det F)`` and the rotation ``R = (F + cof F) / s``.
+    """
     lam = in_plane_lam(lam, mu, plane)
 
-    def values(I: Array, J: Array) -> Values:  # noqa: E741
-        s = np.sqrt(I + 2 * J)
-        slope = (lam * (s - 2) - 2 * mu) / s
-        second = (lam - slope) / s**2
-        W = lam / 2 * (s - 2) ** 2 + mu * (I - 2 * s + 2)
-        return W, mu + slope / 2, slope, second / 4, second / 2, second
+    def rotation(F: Array) -> tuple[Array, Array]:
+        Z = F + cofactor(F)
+        s = np.sqrt(Z[0, 0] ** 2 + Z[1, 0] ** 2)
+        return Z / s, s
 
-    return isotropic(values)
+    def energy(F: Array) -> Array:
+        _, s = rotation(F)
+        return lam / 2 * (s - 2) ** 2 + mu * (_contract(F, F) - 2 * s + 2)
+
+    def stress(F: Array) -> Array:
+        R, s = rotation(F)
+        return 2 * mu * F + (lam * (s - 2) - 2 * mu) * R
+
+    def tangent(F: Array) -> Array:
+        """``2 mu I + lam R R + (lam (s - 2) - 2 mu) dR/dF`` with ``dR/dF = (d(F + cof F)/dF - R R) / s``."""
+        R, s = rotation(F)
+        factor = (lam * (s - 2) - 2 * mu) / s
+        A: Array = (lam - factor) * _outer(R, R)
+        A += factor * _everywhere(_DZ_DF, F) + 2 * mu * _everywhere(_IDENTITY, F)
+        return A
+
+    return Law(energy=energy, stress=stress, tangent=tangent)
 
 
 def neo_hookean(lam: float, mu: float, plane: str) -> Law:
-    """``W = mu (F:F + e^(2 z) - 3) / 2 - mu ln j + lam (ln j)^2 / 2``, ``j = e^z det F``, transverse stretch ``e^z``.
+    """``W = mu (F:F + e^(2 z) - 3) / 2 - mu ln J + lam (ln J)^2 / 2``, ``J = e^z det F``, transverse stretch ``e^z``.
 
-    Plane strain has z = 0; in plane stress ``dW/dz = mu (e^(2 z) - 1) + lam ln j = 0`` at every point.
+    Plane strain has z = 0; in plane stress ``dW/dz = mu (e^(2 z) - 1) + lam ln J = 0`` at every point.
     """
 
-    def values(I: Array, J: Array) -> Values:  # noqa: E741
-        with np.errstate(
-            divide="ignore", invalid="ignore"
-        ):  # nan at a folded point ends the iteration by name
-            log_area = np.log(J)
+    def log_stretch(F: Array) -> Array:
+        log_area = _log_area(F)
         z = 0 * log_area
-        for _ in range(_CONDENSATION_STEPS if plane == "stress" else 0):
-            free = 2 * mu * np.exp(2 * z)
-            step = (free / 2 - mu + lam * (log_area + z)) / (free + lam)
+        if plane == "strain":
+            return z
+        for _ in range(_CONDENSATION_STEPS):
+            squared = np.exp(2 * z)
+            step = (mu * (squared - 1) + lam * (log_area + z)) / (2 * mu * squared + lam)
             z = z - step
             if not np.abs(step).max(initial=0.0) > 1e-15:
                 break
-        log_j, free = log_area + z, 2 * mu * np.exp(2 * z)
-        slope, c = lam * log_j - mu, lam * free / (lam + free) if plane == "stress" else lam
-        W = (mu * (I - 3) + free / 2) / 2 - mu * log_j + lam / 2 * log_j**2
-        return W, mu / 2, slope / J, 0.0, 0.0, (c - slope) / J**2
+        return z
 
-    return isotropic(values)
+    def energy(F: Array) -> Array:
+        z = log_stretch(F)
+        log_J = _log_area(F) + z
+        return mu / 2 * (_contract(F, F) + np.exp(2 * z) - 3) - mu * log_J + lam / 2 * log_J**2
+
+    def stress(F: Array) -> Array:
+        J = determinant(F)
+        return mu * F + (lam * (_log_area(F) + log_stretch(F)) - mu) * cofactor(F) / J
+
+    def tangent(F: Array) -> Array:
+        """``mu I + c F^-T F^-T - (lam ln J - mu) F^-T_il F^-T_kj``, c = lam, condensed: ``lam W_zz0 / (lam + W_zz0)``."""
+        J, z = determinant(F), log_stretch(F)
+        inverse = cofactor(F) / J
+        both = _outer(inverse, inverse)
+        free = 2 * mu * np.exp(2 * z)
+        c = lam * free / (lam + free) if plane == "stress" else lam
+        A: Array = c * both - (lam * (_log_area(F) + z) - mu) * both.swapaxes(1, 3)
+        return A + mu * _everywhere(_IDENTITY, F)
+
+    return Law(energy=energy, stress=stress, tangent=tangent)
 
 
 _CONDENSATION_STEPS = 50

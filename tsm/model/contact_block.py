@@ -94,7 +94,7 @@ class ContactBlock:
         """Decouple the unknowns of an open pair: 1 on the diagonal, zeros elsewhere."""
         if pair.slot >= 0:
             slots = self.border_of(pair)
-            self.corner[slots, slots] = 1.0
+            self.corner[slots, slots] = np.eye(pair.target.kind.contact_unknowns)
 
     def enter(self, k: int, pair: PairModel, force: tuple[float, float], rows: Any) -> None:
         """Enter force and residuals of a closed pair."""
@@ -116,15 +116,15 @@ class ContactBlock:
             self.couple(slots, model.element_equations[:, e], block[:6, 8:], block[8:, :6])
             if pair.node >= 0:
                 self.couple(slots, node, block[6:8, 8:], block[8:, 6:8])
-            self.corner[slots[:, None], slots] += block[8:, 8:]
+            self.corner[slots, slots] += block[8:, 8:]
             for other, earlier in others:
                 self._share(model.element[e], (other, earlier), (pair, touch))
         others.append((pair, touch))
 
-    def couple(self, slots: Array, equations: Array, columns: Array, rows: Array) -> None:
+    def couple(self, slots: slice, equations: Array, columns: Array, rows: Array) -> None:
         """Add columns and rows of the border between equations of the beams and unknowns of contacts."""
-        self.right[equations[:, None], slots] += columns
-        self.below[slots[:, None], equations] += rows
+        self.right[equations, slots] += columns
+        self.below[slots, equations] += rows
 
     def _share(self, p: Any, first: tuple[PairModel, Touch], second: tuple[PairModel, Touch]) -> None:
         """Couple two contacts on one element: each force deflects the element at the other contact."""
@@ -134,8 +134,9 @@ class ContactBlock:
         for pair_i, part_i in zip(pairs, parts, strict=True):
             self.residual[pair_i.slots] += gradient[part_i]
             for pair_j, part_j in zip(pairs, parts, strict=True):
-                self.corner[self.border_of(pair_i)[:, None], self.border_of(pair_j)] += block[part_i, part_j]
+                self.corner[self.border_of(pair_i), self.border_of(pair_j)] += block[part_i, part_j]
 
-    def border_of(self, pair: PairModel) -> Array:
+    def border_of(self, pair: PairModel) -> slice:
         """Rows and columns of a pair's unknowns in the border."""
-        return self.model.border_dofs + pair.slot + np.arange(pair.target.kind.contact_unknowns)
+        start = pair.slot + self.model.border_dofs
+        return slice(start, start + pair.target.kind.contact_unknowns)

@@ -143,13 +143,16 @@ def cut_element(element: int, cuts: dict[int, Cut], transfer: Array) -> CutEleme
 def enter(part: CutElement, group: ElementGroup, contacts: ContactBlock) -> None:
     """Enter the tangent of the contacts that cut an element."""
     model, dofs, tangent = group.model, group.dofs[:, part.element], part.tangent
-    slots = np.array(part.slots) + model.border_dofs
-    contacts.couple(slots, model.equation[dofs], tangent[:OWN, OWN:-2], tangent[OWN:, :OWN])
-    contacts.corner[slots[:, None], slots] = tangent[OWN:, OWN:-2]
+    eq = model.equation[dofs]
+    own = [(model.pairs[k], slice(OWN + CUT * n, OWN + CUT * (n + 1))) for n, k in enumerate(part.pairs)]
     contacts.by_load[part.slots], contacts.condensed_residual[part.slots] = tangent[OWN:, -2:].T
-    for n, k in enumerate(part.pairs):
-        node, block = model.pairs[k].node, _BLOCK.copy()
-        block[8:, :6] = tangent[OWN + CUT * n :][:CUT, _NODAL]
+    for k, (pair, rows) in zip(part.pairs, own, strict=True):
+        slots, block = contacts.border_of(pair), _BLOCK.copy()
+        contacts.couple(slots, eq, tangent[:OWN, rows], tangent[rows, :OWN])
+        for other, columns in own:
+            contacts.corner[slots, contacts.border_of(other)] = tangent[rows, columns]
+        block[8:, :6] = tangent[rows, _NODAL]
         contacts.blocks[k] = int(group.elements[part.element]), block
-        if node >= 0:
-            contacts.couple(slots[CUT * n :][:2], model.equation[3 * node :][:2], np.eye(2), -np.eye(2))
+        if pair.node >= 0:
+            node = model.equation[3 * pair.node :][:2]
+            contacts.couple(slice(slots.start, slots.start + 2), node, np.eye(2), -np.eye(2))

@@ -37,8 +37,6 @@ _MOST = 300
 """Largest number of pieces of all segments; beyond it the modes are counted by a bound."""
 _SHORT = 1e-4
 """Length over the element's below which a segment keeps its moment as an unknown, to avoid a division by a length near zero or negative."""
-_ADJOINT = np.array([[1.0, -1.0], [-1.0, 1.0]])
-"""Signs of the adjoint of a symmetric matrix of two rows, whose diagonal is exchanged."""
 _PULL = np.zeros((OWN, OWN))
 """Derivatives of ``n . (r_j - r_i)``, and a unit for the moment, which has been eliminated."""
 _PULL[[3, 4, 6, 7], [6, 7, 3, 4]] = 1
@@ -124,10 +122,14 @@ def variation(group: Rods, state: State, balance: RodBalance, transfer: Array | 
 
 def _without_force(tangent: Array) -> Array:
     """Eliminate the rows 3 and 4 of matrices (..., n, n); a unit matrix takes their place."""
-    of_force, inside = tangent[..., 3:5, :].copy(), tangent[..., 3:5, 3:5]
-    inverse = inside[..., ::-1, ::-1] * _ADJOINT / np.linalg.det(inside)[..., None, None]
+    of_force = tangent[..., 3:5, :].copy()
+    xx, xy, yy = of_force[..., 0, 3], of_force[..., 0, 4], of_force[..., 1, 4]
+    adjoint = np.empty_like(of_force[..., 3:5])
+    adjoint[..., 0, 0], adjoint[..., 1, 1] = yy, xx
+    adjoint[..., 0, 1] = adjoint[..., 1, 0] = -xy
+    adjoint /= (xx * yy - xy * xy)[..., None, None]
     of_force[..., 3:5] = 0.0
-    tangent = tangent - np.swapaxes(of_force, -1, -2) @ (inverse @ of_force)
+    tangent = tangent - np.swapaxes(of_force, -1, -2) @ (adjoint @ of_force)
     tangent[..., 3:5, :] = tangent[..., :, 3:5] = 0.0
     tangent[..., 3, 3] = tangent[..., 4, 4] = 1.0
     return tangent
