@@ -56,8 +56,7 @@ class History:
         self._signs: dict[Phase, int] = {}
         self._holds: dict[Phase, Hold] = {}
         self._reached: dict[Phase, Hold] = {}
-        self._followed: set[tuple[Phase, float]] = set()
-        """Where sticks began, the places up to which they were followed, and from where they were."""
+        """Where sticks began, and the places up to which they were followed."""
         changes = [phase.begin for own in self.phases.values() for phase in own[1:]]
         times = sorted([0.0, *changes, *corners(scene), float(np.max(response.load_parameter, initial=0.0))])
         self._cuts = [t for t, after in pairwise([*times, math.inf]) if after > t + SAME]
@@ -116,14 +115,14 @@ class History:
 
     def _roll(self, phase: Phase, first: float, last: float) -> None:
         """Follow the contacts that stick between two neighbouring changes, as far as this has not been done."""
-        if (phase, first) in self._followed:
+        if self._reached[phase].load_parameter > last - SAME:
             return
         middle = (first + last) / 2.0
         grips = self.around(middle, until=first)
         sticking = {pair: self._phase_at(pair, middle) for pair, grip in grips.items() if not grip.slip}
         begins = {pair: self._reached[item] for pair, item in sticking.items()}
         begin = max(item.load_parameter for item in begins.values())
-        if begin >= last:
+        if begin > last - SAME:
             return
         closed = self.closed(middle)
         began = [self._begins[item] for item in sticking.values() if item in self._begins]
@@ -136,7 +135,6 @@ class History:
             raise UnknownFrictionError(f"no equilibria in stick were found up to load parameter {last:.6g}")
         for pair, item in sticking.items():
             self._holds[item], self._reached[item] = rolled[0][pair], rolled[1][pair]
-            self._followed.add((item, first))
 
     def _sign(self, phase: Phase) -> int:
         """Sign of a slip between two load parameters: the one that the slip rate has, too, in the middle of it."""
@@ -189,13 +187,9 @@ class History:
         """Return an equilibrium from which the beginning of a phase is sought, in the state before: near an answer, or where that state began."""
         t, found, before = phase.begin, None, phase.before
         closed = self.closed(t) | {phase.spec.pair}
-        later = before is not None and before.before is not None
-        try:
+        with suppress(UnknownFrictionError):
             found = reach(self.near(t, closed, state), t, state)
-        except UnknownFrictionError:
-            if not later:
-                raise
-        if before is not None and later and (found is None or not found.found):
+        if before is not None and before.before is not None and (found is None or not found.found):
             began = self.begin(before)
             found = reach(began, t, state) if closed == began.closed.keys() else None
         return _found_at(found, phase, t)
