@@ -15,7 +15,7 @@ from comparisons.referee.grip import LOOSE, Grip
 from comparisons.referee.layout import lay_out
 from comparisons.referee.newton import correct, newton_step, switched, undeformed
 from comparisons.referee.rod import largest
-from comparisons.referee.state import Change, Equilibrium, SearchStatus, located
+from comparisons.referee.state import Change, Equilibrium, located
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
@@ -45,7 +45,8 @@ _STEPS = 300
 _SAME = 1e-6
 """Largest difference between the end of the followed path and the second equilibrium."""
 _MEET, _MEETING = 1e-4, 0.02
-"""Largest distances in the load parameter, over the interval, and in place between the ends of two branches that meet there."""
+"""Largest distances in the load parameter, over the interval, and in place between the ends of two branches that meet there, or of contacts
+before and behind the place where they pass each other."""
 _PLACES = np.linspace(0.0, 1.0, 33)
 """Fractions of a part at which rotations are compared."""
 _SWITCHED, _STAYS = ("touch", "release"), ("slip", "stick")
@@ -135,8 +136,9 @@ def way_to(
         return []
     for t, event in marks:
         now, stopped = _followed(now, t)
-        while stopped and (behind := _passed(now, t)).found:
-            now, stopped = _followed(behind, t)
+        for _ in now.closed:
+            behind = _passed(now, t) if stopped else None
+            now, stopped = (now, stopped) if behind is None else _followed(behind, t)
         if event and not stopped:
             after = next((later for later, _ in marks if later > t), end)
             now = _changed(now, event, held((t + after) / 2.0) if held else {}, t + _LEAVING * (after - t))
@@ -146,14 +148,15 @@ def way_to(
     return found
 
 
-def _passed(now: Equilibrium, end: float) -> Equilibrium:
-    """Return the equilibrium behind the place where two contacts pass each other on a beam; none is found where they do not."""
-    layout, little = now.layout, _LEAVING * (end - now.load_parameter)
-    ahead = now.z + little * tangent(now, _LITTLE * little)[0]
-    if np.diff(layout.extents(ahead)).min() >= 0.0:
-        return replace(now, status=SearchStatus.NO_EQUILIBRIUM)
-    arcs = {touch.spec.pair: float(ahead[touch.arc]) * layout.length for touch in layout.touches}
-    return switched(now, arcs, layout.grips, now.load_parameter + little)
+def _passed(now: Equilibrium, end: float) -> Equilibrium | None:
+    """Return the equilibrium behind the place where two contacts pass each other on a beam; None where they do not."""
+    layout, left = now.layout, end - now.load_parameter
+    ahead = now.z + _LEAVING * left * tangent(now, _LITTLE * left)[0]
+    if np.diff(layout.extents(ahead)).min() < 0.0 and largest((ahead - now.z)[layout.arcs]) < _MEETING:
+        arcs = {touch.spec.pair: float(ahead[touch.arc]) * layout.length for touch in layout.touches}
+        behind = switched(now, arcs, layout.grips, now.load_parameter + _LEAVING * left)
+        return behind if behind.found and _kind(behind) == _kind(now) else None
+    return None
 
 
 def _from_the_start(response: Response) -> Iterator[ContactEvent]:
