@@ -18,7 +18,6 @@ from comparisons.referee.passing import changes, history_of, misstated, passages
 from comparisons.referee.path import changes_of, departures
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import Scene
-from comparisons.scene.keys import SPECIAL, unstated
 
 ALLOWED = 5e-2
 """Default of the largest difference allowed to an answer; ten straight elements of a beam that bends to a half circle need it."""
@@ -46,12 +45,6 @@ def certify(
         Largest difference allowed; the default is `default_allowance`.
     """
     began = perf_counter()
-    unknown = unstated(scene, "the referee", SPECIAL)
-    if unknown is not None:
-        allowed = ALLOWED if allowance is None else allowance
-        return Certificate(
-            verdict=Verdict.NOT_JUDGED, reason=unknown, allowance=allowed, judged=(), path=(), seconds=0.0
-        )
     if not isinstance(response.axis_line, SampledAxes):
         response = replace(response, axis_line=cache(response.axis_line))
     allowed = default_allowance(response, scene) if allowance is None else allowance

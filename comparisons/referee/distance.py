@@ -35,7 +35,9 @@ NONE = 1e-9
 _TIE = 1e-6
 """Relative difference of sizes of which the first is told, so that round-off chooses no name."""
 _POINTS = 401
-"""Points of an axis between which the feet of an open contact's node are sought."""
+"""Points of an axis between which the feet of a node are sought."""
+_HALVINGS = 24
+"""Number of times that an interval of arc positions around a foot is halved."""
 LOCAL = 1.5
 """Distance from contacts, loads and ends, over the height, within which the section forces of a solid are not compared."""
 _SHARPEST = 1.4
@@ -172,19 +174,34 @@ def _holds(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple[str
             yield f"the spring at {node}", total, (*own.force[k], own.moment[k])
 
 
+def feet(exact: Equilibrium, spec: ContactSpec) -> tuple[Array, Array]:
+    """Arc positions where a pair's node is nearest to the curve of touching nodes, and its distances from the axis there, positive on its side."""
+    face, arcs = face_of(exact.scene, spec), np.linspace(0.0, exact.scene.beam(spec.beam).length, _POINTS)
+
+    def seen(arcs: Array) -> tuple[NDArray[np.bool_], Array]:
+        there = exact.shape(spec.beam, arcs)
+        away = exact.place(spec.node) - there.position
+        far = np.hypot(*away.T)
+        sided = np.where(face.left * cross(there.tangent, away) < 0.0, -far, far)
+        return np.asarray(np.einsum("mi,mi->m", away, there.tangent) + face.slope * far >= 0.0), sided
+
+    ahead = seen(arcs)[0]
+    nearest = np.flatnonzero(ahead[:-1] & ~ahead[1:])
+    low, high = arcs[nearest], arcs[nearest + 1]
+    for _ in range(_HALVINGS if len(nearest) else 0):
+        middle = (low + high) / 2.0
+        ahead = seen(middle)[0]
+        low, high = np.where(ahead, middle, low), np.where(ahead, high, middle)
+    return low, seen(low)[1]
+
+
 def gap_off(exact: Equilibrium, spec: ContactSpec, gap: float) -> float:
     """Difference of a stated gap from the exact one; an open pair may be stated at any foot of its node, or at none."""
     if spec.pair in exact.contacts:
         return _size(abs(gap))
-    arcs = np.linspace(0.0, exact.scene.beam(spec.beam).length, _POINTS)
-    there = exact.shape(spec.beam, arcs)
-    away = exact.place(spec.node) - there.position
-    ahead = np.einsum("mi,mi->m", away, there.tangent)
-    feet = np.flatnonzero((ahead[:-1] >= 0.0) & (ahead[1:] <= 0.0))
-    face = face_of(exact.scene, spec)
-    across = cross(there.tangent, away) / np.hypot(*there.tangent.T)
-    true = face.left * across - face.reach(arcs)
-    return float(np.min(np.abs(gap - true[feet]), initial=math.inf)) if len(feet) else 0.0
+    arcs, away = feet(exact, spec)
+    true = away - face_of(exact.scene, spec).reach(arcs)
+    return float(np.min(np.abs(gap - true), initial=math.inf)) if len(arcs) else 0.0
 
 
 def _section_differences(

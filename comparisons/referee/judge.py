@@ -6,11 +6,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from comparisons.answer import ContactHistory, Response
 from comparisons.referee.certificate import Judgement, Verdict
-from comparisons.referee.distance import Distance, Scales, distance
+from comparisons.referee.distance import Distance, Scales, distance, feet
 from comparisons.referee.grip import UnknownFrictionError
 from comparisons.referee.guess import answer_state, idle_at_an_end, pull_allowed
 from comparisons.referee.newton import equilibrium
@@ -22,8 +21,6 @@ from comparisons.scene import ContactSpec, Scene
 if TYPE_CHECKING:
     from comparisons.referee.friction import History
 
-Array = NDArray[np.float64]
-
 PLACE = 1e-3
 """Largest violation of constraints by an answer's axis, over the length; a larger one means another load parameter."""
 ROUGH = 5e-2
@@ -34,10 +31,6 @@ LAST_PLACES = 1e-9
 """Largest relative difference between the size of a contact force and the norm of its components."""
 INSIDE = 1e-9
 """Largest accepted penetration over the beam's length, for the round-off of the models' contacts."""
-_POINTS = 201
-"""Points of an axis between which the least gaps are sought."""
-_ROUNDS = 8
-"""Number of times that an interval of arc positions shrinks to a fifth."""
 
 
 class Trial(NamedTuple):
@@ -175,7 +168,7 @@ def inadmissible(exact: Equilibrium) -> Iterator[str]:
                 yield f"the contact force of {spec.pair} pulls, {contact.push:.3g}"
             if not 0.0 <= contact.arc_position <= beam.length:
                 yield f"{spec.pair} is closed beyond the end of its beam"
-        gap, arc = least_gap(exact, spec)
+        gap, arc = _least_gap(exact, spec)
         if gap < -INSIDE * beam.length:
             what = "the round pin" if scene.radius(spec) else "the node"
             yield f"{what} of {spec.pair} is {-gap / beam.length:.2g} L inside the beam at arc position {arc:.4g}"
@@ -199,34 +192,14 @@ def _rooms(exact: Equilibrium, spec: ContactSpec) -> Iterator[tuple[str, float]]
             yield end, math.hypot(along, max(across - half, 0.0)) - radius
 
 
-def least_gap(exact: Equilibrium, spec: ContactSpec) -> tuple[float, float]:
+def _least_gap(exact: Equilibrium, spec: ContactSpec) -> tuple[float, float]:
     """Return the smallest gap of a pair on its side of the beam, and its arc position; infinite without a closest point."""
     # at a contact the axis has a kink 2 a by shear; at the distance d a round pin penetrates by a d - (1/offset - curvature) d^2/2,
     # and only penetration beyond a d, which means line contact, counts
-    beam, node = exact.scene.beam(spec.beam), exact.place(spec.node)
-    side, offset, steep, _ = face_of(exact.scene, spec)
-    if offset == 0.0:
-        return np.inf, np.nan
-    arcs, contact, half = np.linspace(0.0, beam.length, _POINTS), exact.contacts.get(spec.pair), 0.0
+    face, contact = face_of(exact.scene, spec), exact.contacts.get(spec.pair)
+    arcs, away = feet(exact, spec) if face.start else (np.empty(0), np.empty(0))
+    gaps = np.abs(away) - face.reach(arcs)
     if contact is not None:
-        arcs = np.sort(np.append(arcs, contact.arc_position))
         half = angle(*exact.tangents(exact.layout.touch(spec.pair))) / 2.0
-    away = np.hypot(*(exact.shape(spec.beam, arcs).position - node).T) - steep * arcs
-    least = np.flatnonzero((away[1:-1] <= away[:-2]) & (away[1:-1] <= away[2:])) + 1
-    best, place = np.inf, np.nan
-    for k in least[away[least] < offset + 2.0 * beam.length / _POINTS]:
-        low, high = arcs[k - 1], arcs[k + 1]
-        for _ in range(_ROUNDS):
-            own = np.linspace(low, high, 11)
-            away = np.hypot(*(exact.shape(spec.beam, own).position - node).T) - steep * own
-            nearest = int(np.argmin(away))
-            low, high = own[max(nearest - 1, 0)], own[min(nearest + 1, 10)]
-        arc = float(low + high) / 2.0
-        there = exact.shape(spec.beam, np.array([arc]))
-        out = node - there.position[0]
-        gap = math.hypot(*out) - offset - steep * arc
-        if contact is not None:
-            gap += half * abs(arc - contact.arc_position)
-        if (contact is None or side * cross(there.tangent[0], out) > 0.0) and gap < best:
-            best, place = gap, arc
-    return best, place
+        gaps = np.where(away > 0.0, gaps + half * np.abs(arcs - contact.arc_position), np.inf)
+    return min(zip(gaps.tolist(), arcs.tolist(), strict=True), default=(math.inf, math.nan))

@@ -76,9 +76,9 @@ def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
     return best
 
 
-def switched(now: Equilibrium, arcs: Mapping[str, float], grips: Mapping[str, Grip]) -> Equilibrium:
-    """Return the equilibrium next to another one at its load parameter, with contacts at the arc positions `arcs`, held by `grips`."""
-    layout, before = lay_out(now.scene, now.load_parameter, arcs, grips), now.layout
+def switched(now: Equilibrium, arcs: Mapping[str, float], grips: Mapping[str, Grip], t: float) -> Equilibrium:
+    """Return the equilibrium next to another one at load parameter t, with contacts at the arc positions `arcs`, held by `grips`."""
+    layout, before = lay_out(now.scene, t, arcs, grips), now.layout
     z = np.zeros(layout.unknowns)
     for touch in layout.touches:
         z[touch.arc] = arcs[touch.spec.pair] / layout.length

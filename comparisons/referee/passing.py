@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import cache, lru_cache
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -35,8 +36,8 @@ SAMPLES = 101
 """Positions of a node between two load parameters at which its side of the beam is determined."""
 _CLOSED = ("pass-through", "slip", "stick")
 """Kinds of events at which a contact stays closed."""
-_STEPS, _SAME = 32, 1e-6
-"""Steps in which a path is followed where a node gets behind a beam, and largest distance of its end from the equilibrium there."""
+_STEPS = 32
+"""Steps in which a path is followed where a node gets behind a beam."""
 _UNSURE, _NEARLY = 0.5, 0.1
 """Distance of a crossing from the beam's end, over the node's path, within which chords do not tell whether the node passes around the end,
 and those of a followed path do not of a node that ends beyond it."""
@@ -103,13 +104,6 @@ def changes(response: Response, scene: Scene) -> Iterator[str]:
                 yield f"{spec.pair} {what} without an event up to load parameter {times[k + 1]:.6g}"
 
 
-class _Place(NamedTuple):
-    """Gap of a node from the curve of touching nodes, which goes on straight beyond the ends, and distance inside the nearer end."""
-
-    gap: float
-    inside: float
-
-
 class _Pair:
     """A node that may pass through the deflected axis of a beam."""
 
@@ -127,34 +121,41 @@ class _Pair:
         for k, t in enumerate(map(float, self.response.load_parameter)):
             if t >= contact.slip_off:
                 break
-            last, now = now, self.moment(k)
+            last, now, held = now, self.moment(k), bool(closed[k])
             if closed[k + 1]:
                 continue
-            depth, before = self.depth(last, now, bool(closed[k])), self.place(now).inside
-            if depth < -_UNSURE or (closed[k] and not stated and before < 0.0):
+            depth = self.depth(last, now, held)
+            if depth < -_UNSURE or (held and not stated and self.place(now)[1] < 0.0):
                 continue
             way = self.follow(k)
-            if self.passes(last, way, bool(closed[k])) if way else depth > _UNSURE and not closed[k]:
+            if self.passes(way, held) if way else depth > _UNSURE and not held:
                 return Passage(self.spec.pair, t, certain=True)
             if not way:
                 unsure = unsure or Passage(self.spec.pair, t, certain=False)
         return unsure
 
-    def passes(self, begin: _Moment, way: list[Equilibrium], before: bool) -> bool:
+    def passes(self, way: list[Equilibrium], before: bool) -> bool:
         """Whether the node, first at the pair's side or closed, passes through the beam on a way, and does not return."""
         arcs, through = self.response.axis_line(self.spec.beam, 0)[0], False
-        for exact in way:
-            line = exact.shape(self.spec.beam, arcs).position
-            end = _Moment(exact.load_parameter, line, exact.place(self.spec.node))
+        steps = [
+            _Moment(
+                exact.load_parameter,
+                exact.shape(self.spec.beam, arcs).position,
+                np.asarray(exact.place(self.spec.node)),
+            )
+            for exact in way
+        ]
+        for begin, end in pairwise(steps):
             gap, inside = self.place(end)
             through = through or self.depth(begin, end, before) >= (_NEARLY if inside < 0.0 else 0.0)
-            begin, before = end, gap >= -self.near
+            before = gap >= -self.near
             through = through and not before
         return through
 
     def depth(self, begin: _Moment, end: _Moment, before: bool) -> float:
         """How far inside the beam's ends the node gets from `before` the beam behind it, over its path; -inf if it does not."""
-        if self.place(end).gap >= -self.near:
+        gap, _ = self.place(begin)
+        if self.place(end)[0] >= -self.near:
             return -math.inf
         parts, touched = np.linspace(0.0, 1.0, SAMPLES), np.concatenate([begin.line, end.line])
         nodes = (1.0 - parts)[:, None] * begin.node + parts[:, None] * end.node
@@ -164,14 +165,14 @@ class _Pair:
         moved = (nodes[-1] - nodes[0]) - (end.line - begin.line)
         way = np.hypot(*moved[[0, -1]].T).max() + self.near
         apart = np.maximum(nodes.min(axis=0) - touched.max(axis=0), touched.min(axis=0) - nodes.max(axis=0))
-        gap = self.place(begin).gap
-        deep, before = -math.inf, before or gap >= -self.near
-        if apart.max() > self.reach(begin.line).max() + _UNSURE * way:
-            return deep
+        widest = max(self.face.reach(arc) for arc in (0.0, self.scene.beam(self.spec.beam).length))
+        if apart.max() > widest + _UNSURE * way:
+            return -math.inf
         # a node whose nearest point becomes another one does not cross the beam
         most = (
             np.hypot(*np.diff(nodes, axis=0).T).max() + np.hypot(*(end.line - begin.line).T).max() / SAMPLES
         )
+        deep, before = -math.inf, before or gap >= -self.near
         for u, node in zip(parts[1:], nodes[1:], strict=True):
             last, (gap, inside) = gap, self.place(_Moment(u, (1.0 - u) * begin.line + u * end.line, node))
             behind = gap < -self.near
@@ -187,34 +188,20 @@ class _Pair:
             arc, line = self.response.axis_line(beam, max(k, 0))
             return arc, line if k >= 0 else axis_at_rest(self.scene.beam(beam), arc)
 
-        t, (beam, _, end) = (
-            float(self.response.load_parameter[k]) if k >= 0 else 0.0,
-            self.spec.node.partition("."),
-        )
-        if not end:
-            node = np.array(self.scene.pin(beam).position(t))
-        else:
-            tip = k >= 0 and end == self.scene.tip(beam)
-            node = self.response.tips[beam][k] if tip else end_of(self.spec.node, axis)
-        return _Moment(t, axis(self.spec.beam)[1], np.asarray(node))
+        t, node = float(self.response.load_parameter[k]) if k >= 0 else 0.0, self.spec.node
+        place = end_of(node, axis) if "." in node else np.array(self.scene.pin(node).position(t))
+        return _Moment(t, axis(self.spec.beam)[1], place)
 
-    def place(self, now: _Moment) -> "_Place":
-        """Where the node is."""
+    def place(self, now: _Moment) -> tuple[float, float]:
+        """Gap of the node from the curve of touching nodes, which goes on straight beyond the ends, and distance inside the nearer end."""
         line = now.line
         nearest = int(np.argmin(np.hypot(*(line - now.node).T)))
         first, last = max(nearest - 1, 0), min(nearest + 1, len(line) - 1)
         tangent, away = line[last] - line[first], now.node - line[nearest]
         tangent = tangent / np.hypot(*tangent)
-        along = float(tangent @ away)
-        gap = self.face.left * cross(tangent, away) - self.reach(line)[nearest] - self.face.slope * along
         arcs = np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))
-        return _Place(gap, min(arcs[nearest] + along, arcs[-1] - arcs[nearest] - along))
-
-    def reach(self, line: Array) -> Array:
-        """Distances (m,) at which the node touches at the points of an axis."""
-        if not self.face.slope:
-            return np.full(len(line), self.face.start)
-        return np.asarray(self.face.reach(np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))))
+        arc = float(arcs[nearest] + tangent @ away)
+        return float(self.face.left * cross(tangent, away) - self.face.reach(arc)), min(arc, arcs[-1] - arc)
 
 
 def _followed(response: Response, scene: Scene, k: int) -> list[Equilibrium]:
@@ -234,7 +221,7 @@ def _followed(response: Response, scene: Scene, k: int) -> list[Equilibrium]:
         way = way_to(response, begin, end.load_parameter, held, _STEPS) if found else []
     except UnknownFrictionError:
         return []
-    return way if way and same(way[-1], end, _SAME) else []
+    return way if way and same(way[-1], end) else []
 
 
 def misstated(

@@ -1,6 +1,6 @@
 """The path of equilibria: steps from one to another, and whether two are on one branch, by steps too short to jump to another branch."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from operator import itemgetter
@@ -45,13 +45,14 @@ _STEPS = 300
 _SAME = 1e-6
 """Largest difference between the end of the followed path and the second equilibrium."""
 _MEET, _MEETING = 1e-4, 0.02
-"""Largest distances in the load parameter, over the interval, and in place between the ends of two branches that meet there."""
+"""Largest distances in the load parameter, over the interval, and in place between the ends of two branches that meet there, or of contacts
+before and behind the place where they pass each other."""
 _PLACES = np.linspace(0.0, 1.0, 33)
 """Fractions of a part at which rotations are compared."""
 _SWITCHED, _STAYS = ("touch", "release"), ("slip", "stick")
 """Kinds of events without a jump at which a contact closes or opens, and at which it stays closed."""
 _LEAVING = 1e-3
-"""Part of the way from a touch to the next change behind which the contact has a force."""
+"""Part of the way to the next change, behind which a contact that touches has a force, and two that pass each other are apart."""
 
 PASSES = "pass-through"
 
@@ -98,55 +99,46 @@ def tangent(now: Equilibrium, little: float) -> Change:
 
 def departures(response: Response, states: Mapping[int, Equilibrium]) -> Iterator[str]:
     """Yield reasons why equilibria, by number, are not on the path from rest, which is followed from each to the next through the events."""
-    # not where a contact slips off, friction changes its direction, or two contacts pass each other on a beam
+    # not where a contact slips off, or friction changes its direction
     closed = [
         {pair for pair, item in response.contacts.items() if item.force[k] != 0.0}
         for k in range(len(response.load_parameter))
     ]
-    now, begin = None, -1
+    now, begin = None, 0
     for k, there in states.items():
         now = now or at_rest(there.scene)
-        if now.found:
-            t = there.load_parameter
-            events = _events_between(response, now.load_parameter, t)
-            same = all(closed[i] == now.closed.keys() for i in range(max(begin, 0), k + 1))
-            ways = [now] if same and not events else _on_the_way(now, events, (), t, None)
-            for way in (item for item in ways[-1:] if _alike(item, there)):
-                # beyond an event that is stated within an allowance only, a path that is not found tells nothing
-                if way is now or not _followed(way, t, there)[1]:
-                    yield from filter(None, [departs(way, there)])
+        stated = response.events is not None or all(own == now.closed.keys() for own in closed[begin : k + 1])
+        for way in way_to(response, now, there.load_parameter, steps=0)[-1:] if stated else ():
+            # beyond an event that is stated within an allowance only, a path that is not found tells nothing
+            if _alike(way, there) and (way is now or not _followed(way, there.load_parameter, there)[1]):
+                yield from filter(None, [departs(way, there)])
         now, begin = there, k
-
-
-def _events_between(response: Response, after: float, until: float) -> list[ContactEvent]:
-    """Events at which contacts open, close, stick or slip."""
-    return [event for event in changes_of(response) if after <= event.load_parameter <= until]
 
 
 def way_to(
     response: Response, begin: Equilibrium, end: float, held: Held | None = None, steps: int = 1
 ) -> list[Equilibrium]:
-    """Follow the path from rest, or an equilibrium that an answer states, through its events: see `_on_the_way`."""
-    start = begin.load_parameter
-    events = [*(_from_the_start(response) if start == 0.0 else ()), *_events_between(response, start, end)]
-    return _on_the_way(begin, events, np.linspace(start, end, steps + 1)[1:].tolist(), end, held)
+    """Follow the path from rest, or an equilibrium that an answer states, through its events; return what is behind these and steps.
 
-
-def _on_the_way(
-    now: Equilibrium, events: Sequence[ContactEvent], stops: Sequence[float], end: float, held: Held | None
-) -> list[Equilibrium]:
-    """Return the equilibria at stops and behind events up to a load parameter; none where a contact jumps, or no path leads on.
-
-    `held` says how friction holds the contacts between two events; without it the path is not followed where contacts rub.
+    Nothing where a contact jumps, or no path leads on. `held` says how friction holds the contacts between two events; without it the path
+    is not followed where contacts rub.
     """
-    kinds = (*_SWITCHED, *_STAYS) if held else _SWITCHED
-    if (now.layout.grips and not held) or any(event.kind not in kinds for event in events):
-        return []
-    found: list[Equilibrium] = []
-    marks: list[tuple[float, ContactEvent | None]] = [(t, None) for t in stops]
+    now, found, start = begin, [begin], begin.load_parameter
+    events = [event for event in changes_of(response) if start <= event.load_parameter <= end]
+    events = [*(_from_the_start(response) if start == 0.0 else ()), *events]
+    marks: list[tuple[float, ContactEvent | None]] = [
+        (t, None) for t in np.linspace(start, end, steps + 1)[1:].tolist()
+    ]
     marks = sorted([*marks, *((event.load_parameter, event) for event in events)], key=itemgetter(0))
+    kinds = (*_SWITCHED, *_STAYS) if held else _SWITCHED
+    rubs = bool(marks and now.layout.grips and not held)
+    if rubs or not now.found or any(event.kind not in kinds for event in events):
+        return []
     for t, event in marks:
         now, stopped = _followed(now, t)
+        for _ in now.closed:
+            behind = _passed(now, t) if stopped else None
+            now, stopped = (now, stopped) if behind is None else _followed(behind, t)
         if event and not stopped:
             after = next((later for later, _ in marks if later > t), end)
             now = _changed(now, event, held((t + after) / 2.0) if held else {}, t + _LEAVING * (after - t))
@@ -154,6 +146,17 @@ def _on_the_way(
             return []
         found.append(now)
     return found
+
+
+def _passed(now: Equilibrium, end: float) -> Equilibrium | None:
+    """Return the equilibrium behind the place where two contacts pass each other on a beam; None where they do not."""
+    layout, left = now.layout, end - now.load_parameter
+    ahead = now.z + _LEAVING * left * tangent(now, _LITTLE * left)[0]
+    if np.diff(layout.extents(ahead)).min() < 0.0 and largest((ahead - now.z)[layout.arcs]) < _MEETING:
+        arcs = {touch.spec.pair: float(ahead[touch.arc]) * layout.length for touch in layout.touches}
+        behind = switched(now, arcs, layout.grips, now.load_parameter + _LEAVING * left)
+        return behind if behind.found and _kind(behind) == _kind(now) else None
+    return None
 
 
 def _from_the_start(response: Response) -> Iterator[ContactEvent]:
@@ -171,10 +174,10 @@ def _changed(now: Equilibrium, event: ContactEvent, grips: Mapping[str, Grip], a
     """Return the equilibrium behind an event; behind a touch at the load parameter `after`."""
     arcs = {pair: arc for pair, arc in now.closed.items() if pair != event.pair or event.kind in _STAYS}
     if event.kind != "touch":
-        return switched(now, arcs, grips)
+        return switched(now, arcs, grips, now.load_parameter)
     # where there is no force yet, the direction of a face is not stationary at one place only
     loose = {**grips, event.pair: LOOSE}
-    now = switched(now, {**arcs, event.pair: event.arc_position}, loose)
+    now = switched(now, {**arcs, event.pair: event.arc_position}, loose, now.load_parameter)
     now = reach(now, after, loose) if now.found else now
     return correct(moved(now, after, grips), _ITERATIONS) if now.found else now
 
@@ -188,9 +191,9 @@ def _alike(one: Equilibrium, other: Equilibrium) -> bool:
     return slips[0] == slips[1] and orders[0] == orders[1]
 
 
-def same(one: Equilibrium, other: Equilibrium, allowed: float) -> bool:
+def same(one: Equilibrium, other: Equilibrium) -> bool:
     """Whether two equilibria are the same, with the same contacts."""
-    return _alike(one, other) and _apart(one, other) <= allowed
+    return _alike(one, other) and _apart(one, other) <= _SAME
 
 
 def at_rest(scene: Scene) -> Equilibrium:

@@ -164,8 +164,6 @@ def test_any_number_of_load_parameters_gives_the_same_answer(file, element):
     """The same to 1e-6 at the last one, certified, or the same named stop."""
     asked = load_scene(str(file))
     rows = [run(replace(asked, load_parameters=n), element, every=False) for n in (1, 2, 5, 8, 12, 40, 200)]
-    found = [item.text for item in findings(asked, rows)]
-    # the referee does not follow a path on which two contacts pass each other on a beam, and says so
-    assert [
-        text for text in found if file.stem != "beams-146" or "NOT_JUDGED: the path up to" not in text
-    ] == []
+    # a pin grazes a tip of mixed elements and slips off it, which the referee does not follow, and says so
+    grazes, found = (file.stem, element) == ("beams-146", "mixed"), findings(asked, rows)
+    assert [item.text for item in found if not (grazes and "NOT_JUDGED: the path up to" in item.text)] == []

@@ -5,8 +5,10 @@ A slip has no memory. A stick holds the place at which it began: where the refer
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, product
+from typing import TypeVar
 
 import numpy as np
 
@@ -21,12 +23,12 @@ from comparisons.referee.rod import face_of, units_of
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import ContactSpec, Scene
 
+T = TypeVar("T")
+
 _ITERATIONS = 60
 """Largest number of steps of a root."""
 _FIRST = 1e-4
 """First step of a secant, in load parameters."""
-_BEFORE = 0.01
-"""Part of a slip's interval of load parameters before its end at which its sign is compared with the slip rate."""
 _FEET = 40
 """Number of corrections of a place on a face whose height tapers."""
 _CLOSE = 1e-13
@@ -51,10 +53,10 @@ class History:
             how += [f"friction of {spec.pair} taken from {taken}"] if taken else []
         self.taken = "; ".join(how)
         self._begins: dict[Phase, Equilibrium] = {}
+        self._signs: dict[Phase, int] = {}
         self._holds: dict[Phase, Hold] = {}
         self._reached: dict[Phase, Hold] = {}
-        self._followed: set[tuple[Phase, float]] = set()
-        """Where sticks began, the places up to which they were followed, and from where they were."""
+        """Where sticks began, and the places up to which they were followed."""
         changes = [phase.begin for own in self.phases.values() for phase in own[1:]]
         times = sorted([0.0, *changes, *corners(scene), float(np.max(response.load_parameter, initial=0.0))])
         self._cuts = [t for t, after in pairwise([*times, math.inf]) if after > t + SAME]
@@ -76,21 +78,27 @@ class History:
 
     def begin(self, phase: Phase) -> Equilibrium:
         """Return the equilibrium where a phase of a contact begins, in the state before it; not for the first phase, nor for a slip-off."""
-        if phase not in self._begins:
+        return self._once(self._begins, phase, self._found)
+
+    def _once(self, known: dict[Phase, T], phase: Phase, seek: Callable[[Phase], T]) -> T:
+        """Seek something of a phase that is not known yet, but not while it is sought."""
+        if phase not in known:
             if phase in self._sought:
                 raise UnknownFrictionError(
                     f"the changes of {phase.spec.pair} and of another contact depend on each other"
                 )
             self._sought.add(phase)
             try:
-                self._begins[phase] = self._found(phase)
+                known[phase] = seek(phase)
             finally:
                 self._sought.discard(phase)
-        return self._begins[phase]
+        return known[phase]
 
     def grip(self, phase: Phase, until: float) -> Grip:
         """Return how friction holds a contact in a closed phase, up to a load parameter in it."""
-        spec, slip = phase.spec, self._sign(phase) if phase.slip == UNKNOWN else phase.slip
+        spec, slip = phase.spec, phase.slip
+        if slip == UNKNOWN:
+            slip = self._once(self._signs, phase, self._sign)
         if slip:
             return Grip(friction=spec.friction, slip=slip)
         if phase not in self._holds:
@@ -107,14 +115,14 @@ class History:
 
     def _roll(self, phase: Phase, first: float, last: float) -> None:
         """Follow the contacts that stick between two neighbouring changes, as far as this has not been done."""
-        if (phase, first) in self._followed:
+        if self._reached[phase].load_parameter > last - SAME:
             return
         middle = (first + last) / 2.0
         grips = self.around(middle, until=first)
         sticking = {pair: self._phase_at(pair, middle) for pair, grip in grips.items() if not grip.slip}
         begins = {pair: self._reached[item] for pair, item in sticking.items()}
         begin = max(item.load_parameter for item in begins.values())
-        if begin >= last:
+        if begin > last - SAME:
             return
         closed = self.closed(middle)
         began = [self._begins[item] for item in sticking.values() if item in self._begins]
@@ -127,58 +135,31 @@ class History:
             raise UnknownFrictionError(f"no equilibria in stick were found up to load parameter {last:.6g}")
         for pair, item in sticking.items():
             self._holds[item], self._reached[item] = rolled[0][pair], rolled[1][pair]
-            self._followed.add((item, first))
 
     def _sign(self, phase: Phase) -> int:
-        """Sign of a slip between two load parameters: of the force where it begins, or of the slip that ends where it does."""
+        """Sign of a slip between two load parameters: the one that the slip rate has, too, in the middle of it."""
         pair = phase.spec.pair
-        if phase.before is not None and phase.before.slip == 0:
-            solution = self.begin(phase)
-            return 1 if solution.contacts[pair].drag > 0.0 else -1
-        for after in self.phases[pair]:
-            if after.before is phase and after.slip == 0:
-                return self.begin(after).layout.grips[pair].slip
+        after = next(later for later in self.phases[pair] if later.before is phase)
+        t = (phase.begin + after.begin) / 2.0
+        around = self.around(t, phase.spec)
+        # no load parameter may have the contacts of the middle, if another one opens where this slip ends
+        for closed, sign in product((self.closed(t) | {pair}, self.closed(after.begin) | {pair}), (1, -1)):
+            state = {**around, pair: Grip(friction=phase.spec.friction, slip=sign)}
+            with suppress(UnknownFrictionError):
+                now = reach(self.near(t, closed, state), t, state)
+                if now.found and sign * slip_rate(now, now.layout.touch(pair)) > 0.0:
+                    return sign
         raise UnknownFrictionError(f"{pair} slips between two load parameters, and its sign is not stated")
 
     def _found(self, phase: Phase) -> Equilibrium:
-        """Find the root of a phase's margin, in each state that the contact may have been in before."""
-        before, friction = phase.before, phase.spec.friction
+        """Find the root of a phase's margin, in the state that the contact was in before."""
+        before = phase.before
         assert before is not None, "the first phase has no begin"
-        if before.slip == OPEN:
-            return self._root(phase, LOOSE)
         if math.isnan(phase.stated) and before.slip == -phase.slip != 0:
             raise UnknownFrictionError(
                 f"the slip of {phase.spec.pair} turns between two load parameters, and a stick in between is not stated"
             )
-        if before.slip != UNKNOWN or (before.before is not None and before.before.slip == 0):
-            return self._root(phase, self.grip(before, phase.begin))
-        found, reasons = [], []
-        for sign in (1, -1):
-            own = Grip(friction=friction, slip=sign)
-            try:
-                begin = self._root(phase, own)
-                found.append((self._unlike(phase, before, own, begin), begin))
-            except UnknownFrictionError as error:
-                reasons.append(error)
-        if not found:
-            raise reasons[0]
-        # at a corner of a pin's path, and where another contact changes, a slip of either sign can end
-        return min(found, key=lambda item: item[0])[1]
-
-    def _unlike(
-        self, phase: Phase, before: Phase, own: Grip, begin: Equilibrium
-    ) -> tuple[bool, float, float]:
-        """How unlikely it is that the slip `own` ends where a phase begins: a slip rate of the other sign, and distances from the stated place."""
-        pair, t, slipped = (
-            phase.spec.pair,
-            begin.load_parameter - _BEFORE * (begin.load_parameter - before.begin),
-            True,
-        )
-        if self.closed(t) == begin.closed.keys():
-            now = reach(begin, t, {**self.around(t, phase.spec), pair: own})
-            slipped = now.found and own.slip * slip_rate(now, now.layout.touch(pair)) > 0.0
-        off = abs(begin.closed[pair] - phase.stated_arc)
-        return not slipped, 0.0 if math.isnan(off) else off, abs(begin.load_parameter - phase.begin)
+        return self._root(phase, LOOSE if before.slip == OPEN else self.grip(before, phase.begin))
 
     def _root(self, phase: Phase, own: Grip) -> Equilibrium:
         """Return the equilibrium at which the state `own` of a contact ends."""
@@ -206,13 +187,9 @@ class History:
         """Return an equilibrium from which the beginning of a phase is sought, in the state before: near an answer, or where that state began."""
         t, found, before = phase.begin, None, phase.before
         closed = self.closed(t) | {phase.spec.pair}
-        later = before is not None and before.before is not None
-        try:
+        with suppress(UnknownFrictionError):
             found = reach(self.near(t, closed, state), t, state)
-        except UnknownFrictionError:
-            if not later:
-                raise
-        if before is not None and later and (found is None or not found.found):
+        if before is not None and before.before is not None and (found is None or not found.found):
             began = self.begin(before)
             found = reach(began, t, state) if closed == began.closed.keys() else None
         return _found_at(found, phase, t)

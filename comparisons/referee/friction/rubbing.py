@@ -121,12 +121,8 @@ def _law(response: Response, allowed: float) -> float:
 
 def _backwards(exact: Equilibrium, touch: Touch) -> float:
     """Slip rate against the sign of the slip, over the speed; at a corner of a pin's path the smaller of those before and behind it."""
-    least = np.inf
-    for behind in (False, True):
-        least = min(least, -relative_slip_rate(exact, touch, behind=behind))
-        if least <= 0.0 or not any(abs(exact.load_parameter - t) < 1e-9 for t in corners(exact.scene)):
-            break
-    return least
+    corner = any(abs(exact.load_parameter - t) < 1e-9 for t in corners(exact.scene))
+    return min(-relative_slip_rate(exact, touch, behind=behind) for behind in (False, True)[: 1 + corner])
 
 
 def _spent(history: History, k: int, exact: Equilibrium) -> tuple[float, float]:
