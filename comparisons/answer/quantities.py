@@ -10,11 +10,9 @@ from numpy.typing import NDArray
 
 from comparisons.answer import Array, Response
 from comparisons.answer.axis import STATIONS, axes_at_stations
-from comparisons.answer.material import UNDEFINED, clamped, frictions, frictions_found, rubbing
+from comparisons.answer.material import AWAY, UNDEFINED, clamped, frictions, frictions_found, rubbing
 from comparisons.scene import Scene
 
-AWAY = 1.5
-"""Distance from clamp and contact, over the height, within which the stress of a solid is local; it is not compared there."""
 SCOPES = ("end", "path")
 """``end``: the error at one load parameter; ``path``: the largest error over all load parameters that both responses have."""
 

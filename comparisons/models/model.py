@@ -1,17 +1,14 @@
 """The contract of a model, the options of one run, and its progress. All that uses a model uses it through this contract alone."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Set
 from dataclasses import dataclass
 from math import nan
-from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, get_args
+from typing import ClassVar, Literal, NamedTuple, get_args
 
-if TYPE_CHECKING:
-    from comparisons.answer import Response
-    from comparisons.models.theory import Bending
-    from comparisons.scene import Scene
+from comparisons.answer import Response
+from comparisons.models.theory import ROUND_OFF, Bending
+from comparisons.scene import Scene, unstated
 
 Branch = Literal["stop", "stable", "primary"]
 BRANCHES: tuple[str, ...] = get_args(Branch)
@@ -116,8 +113,6 @@ class Model(ABC):
 
     def unstated(self, scene: Scene) -> str | None:
         """Return the line that refuses a special key which the model does not state; None if it states all that `scene` uses."""
-        from comparisons.scene import unstated
-
         return unstated(scene, self.label, self.keys)
 
     def apart(self, scene: Scene) -> float:  # noqa: ARG002 - others have another theory
@@ -192,6 +187,4 @@ class Model(ABC):
 
         A model that does not define this method is allowed round-off only.
         """
-        from comparisons.models.theory import ROUND_OFF
-
         return {"round-off": ROUND_OFF}

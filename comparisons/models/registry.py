@@ -1,20 +1,21 @@
 """The registry of models, and the solution of a scene by one of them, with checks and certificate."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 from importlib import import_module
 from math import isnan
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
-from comparisons.models.model import ModelError, Options, Watch, unwatched
-
-if TYPE_CHECKING:
-    from comparisons.answer import Response
-    from comparisons.models.model import Model
-    from comparisons.scene import Scene
+from comparisons.answer import Response
+from comparisons.answer.axis import axis_grid
+from comparisons.answer.material import material_forces
+from comparisons.answer.record import not_kept
+from comparisons.models.model import Model, ModelError, Options, Watch, unwatched
+from comparisons.models.verify import CHECK_FAILED, verified
+from comparisons.referee import Certificate, Verdict, certify, default_allowance
+from comparisons.referee.certify import ALLOWED
+from comparisons.scene import Scene
 
 Certify = Literal["last", "all", "none"]
 """Load parameters to certify: the last one and the neighbours of events, all, or none."""
@@ -48,11 +49,6 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
     ModelError
         If the model cannot state the scene, or an option does not belong to it.
     """
-    from comparisons.answer.axis import axis_grid
-    from comparisons.answer.material import material_forces
-    from comparisons.answer.record import not_kept
-    from comparisons.models.verify import verified
-
     chosen, given = find(model), options or Options()
     for option, value in vars(given).items():
         if value is not None and option not in chosen.options:
@@ -91,7 +87,6 @@ def _kind(response: Response, model: Model | None) -> dict[str, Any]:
 def restored(response: Response, scene: Scene) -> Response:
     """Return a response from a file with the kind that its model is registered with, and checked as when it was solved."""
     from comparisons.models.outside.programs import known
-    from comparisons.models.verify import CHECK_FAILED, verified
 
     kind = _kind(response, MODELS.get(response.model) or known(response.model))
     if response.completed and not response.reported_success:
@@ -119,10 +114,6 @@ def certified(
         Largest relative distance from the exact equilibrium, by default `comparisons.referee.certify.ALLOWED`. What the model's theory
         has besides is added.
     """
-    from comparisons.models.verify import CHECK_FAILED
-    from comparisons.referee import Certificate, Verdict, certify, default_allowance
-    from comparisons.referee.certify import ALLOWED
-
     if which == "none" or not len(response.load_parameter):
         return response
     model = MODELS.get(response.model)

@@ -1,20 +1,17 @@
 """The exact rods: Reissner's, which stretch and shear, by collocation under one pin and else by the referee, and the elastica."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING
 
-from comparisons.models.model import Model, ModelError, Options, Style, refused
+from comparisons.answer import Response
+from comparisons.models.model import Model, ModelError, Options, Style, Watch, refused
 from comparisons.models.shared import kept
+from comparisons.models.theory import CHANGE, ROUND_OFF, Bending
 from comparisons.models.tsm import beams_refusal
+from comparisons.scene import Scene
 from comparisons.scene.keys import SPECIAL
 
 if TYPE_CHECKING:
-    from comparisons.answer import Response
     from comparisons.models.cantilever import RodScene
-    from comparisons.models.model import Watch
-    from comparisons.models.theory import Bending
-    from comparisons.scene import Scene
 
 
 class Rod(Model):
@@ -86,8 +83,6 @@ class Elastica(Model):
 
     def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:  # noqa: ARG002 - as above
         """Return the errors from missing stretch and shear."""
-        from comparisons.models.theory import CHANGE, ROUND_OFF
-
         beam = scene.beams[0]
         soft = beam.EI / beam.length**2 * (1 / beam.EA + 1 / beam.GA)
         return {
@@ -96,7 +91,7 @@ class Elastica(Model):
         }
 
 
-def _on_axis(scene: Scene) -> RodScene:
+def _on_axis(scene: Scene) -> "RodScene":
     """Return `scene` in the frame of the one cantilever that a pin on its axis pushes."""
     from comparisons.models.cantilever import to_rod
 

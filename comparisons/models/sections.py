@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.answer import Array, Sections
-from comparisons.answer.material import clamped
-from comparisons.answer.quantities import AWAY
+from comparisons.answer.material import AWAY, clamped
 from comparisons.models.shared import occupied
 from comparisons.scene import BeamSpec, Scene
 

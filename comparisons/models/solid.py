@@ -1,21 +1,30 @@
 """The two-dimensional solid."""
 
-from __future__ import annotations
-
+from collections.abc import Iterator
 from math import ceil
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from comparisons.answer import (
+    Array,
+    ContactEvent,
+    ContactHistory,
+    Deformation,
+    FrictionHistory,
+    Grid,
+    Response,
+)
+from comparisons.answer.material import Deferred
+from comparisons.models import theory
 from comparisons.models.model import Model, ModelError, Options, Reached, Style, Watch, refused
+from comparisons.models.sections import j_integrals, section_forces
 from comparisons.models.shared import joints, kept, line_loads, occupied, of_result, result_of, ways
+from comparisons.scene import BeamSpec, LoadSpec, Scene, SpringSpec, SupportSpec
 from comparisons.scene.conditions import COMPONENTS
 from comparisons.scene.keys import SPECIAL
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from comparisons.answer import Array, ContactEvent, Response
-    from comparisons.models.theory import Bending
-    from comparisons.scene import BeamSpec, LoadSpec, Scene, SpringSpec, SupportSpec
     from fem_reference import SolidProblem, Strip
 
 REFINED = ((25, 1), (50, 2), (100, 4), (200, 8))
@@ -46,12 +55,7 @@ class Solid(Model):
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked."""
-        import numpy as np
-
         import fem_reference
-        from comparisons.answer import ContactHistory, Deformation, FrictionHistory, Grid
-        from comparisons.answer.material import Deferred
-        from comparisons.models.sections import j_integrals, section_forces
 
         def report(step: Any) -> None:
             touching = (f"{touch.pair.contact.name} at {touch.at.zeta:.4g}" for touch in step.state.closed)
@@ -131,10 +135,8 @@ class Solid(Model):
         """Yield meshes, coarse to fine."""
         yield from (Options(mesh=mesh) for mesh in (*COARSE, *REFINED[: 2 if quick else 3]))
 
-    def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:
+    def error_parts(self, scene: Scene, options: Options, bent: theory.Bending) -> dict[str, float]:
         """Return the parts of the difference between a strip and the rod."""
-        from comparisons.models import theory
-
         beam = scene.beams[0]
         length = 1 / (options.mesh or beam.mesh)[0]
         turn = min(bent.curvature * length, bent.turn)
@@ -161,8 +163,6 @@ def _order(scene: Scene) -> str:
 
 def _events(result: Any) -> tuple[ContactEvent, ...]:
     """Return the events of a scene with friction, whose load parameters are located; no element owns a contact."""
-    from comparisons.answer import ContactEvent
-
     found = [
         ContactEvent(pair=pair, element=-1, released=0.0, stage=max(1, ceil(event.load_parameter)), **own)
         for pair, contact in result.contacts.items()
@@ -172,7 +172,7 @@ def _events(result: Any) -> tuple[ContactEvent, ...]:
     return tuple(sorted(found, key=lambda event: event.load_parameter))
 
 
-def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> SolidProblem:
+def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProblem":
     """Return the `fem_reference.SolidProblem` of `scene`: plane stress, thickness equal to the width, unilateral contact.
 
     Parameters
@@ -316,7 +316,7 @@ def rectangle(beam: BeamSpec) -> tuple[float, float]:
     return beam.section()[0] / height, height
 
 
-def _strip(beam: BeamSpec, clamps: set[str], mesh: tuple[int, int] | None) -> Strip:
+def _strip(beam: BeamSpec, clamps: set[str], mesh: tuple[int, int] | None) -> "Strip":
     from fem_reference import Strip
 
     width, height = rectangle(beam)
