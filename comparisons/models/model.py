@@ -2,11 +2,11 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Set
-from dataclasses import dataclass
 from math import nan
 from typing import ClassVar, Literal, NamedTuple, get_args
 
 from comparisons.answer import Response
+from comparisons.frozen import Value
 from comparisons.models.theory import ROUND_OFF, Bending
 from comparisons.scene import Scene, unstated
 
@@ -19,8 +19,7 @@ class ModelError(ValueError):
     """A model cannot state a scene, or an option does not fit the model: one line."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Options:
+class Options(Value):
     """Options of one run. None keeps the value of the scene, or the default of the model."""
 
     elements: int | None = None
@@ -72,8 +71,7 @@ def bar(part: float) -> str:
     return f"[{'#' * filled}{'.' * (WIDTH - filled)}]"
 
 
-@dataclass(frozen=True, kw_only=True)
-class Style:
+class Style(Value):
     """How figures draw the answers of a model: colour in hexadecimal digits, marker of matplotlib, width of a line on a page [px], no dashes."""
 
     colour: str

@@ -8,7 +8,6 @@ import sys
 from abc import abstractmethod
 from collections.abc import Container
 from contextlib import redirect_stdout
-from dataclasses import dataclass
 from functools import cache, lru_cache
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
@@ -18,6 +17,7 @@ from typing import Any
 
 from comparisons.answer import Response
 from comparisons.extras import install
+from comparisons.frozen import Value
 from comparisons.models.model import Model, ModelError, Options, Style, Watch
 from comparisons.models.outside.adapters.exchange import Refusal, States, answered
 from comparisons.models.outside.child import ProgramError, ProgramStatus, found, run
@@ -30,8 +30,7 @@ SUFFIX = ".toml"
 """Suffix of a program file."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Program(Model):
+class Program(Value, Model):
     """A program of others, which reads the text of a resolved scene and writes the text of a response."""
 
     name: str
@@ -43,7 +42,7 @@ class Program(Model):
     #: ``refuses(scene)``: why the program cannot state the scene, None if it can; without it the program itself is asked.
     refuses: Refusal | None = None
 
-    def __post_init__(self) -> None:
+    def _settle(self) -> None:
         vars(self).update(
             label=self.label or self.name,
             options=("elements",) if self.elements else (),
@@ -90,7 +89,6 @@ class Program(Model):
         return tuple(Options(elements=n) for n in self.elements[: 2 if quick else None]) or (Options(),)
 
 
-@dataclass(frozen=True, kw_only=True)
 class Command(Program):
     """A command in a child process: the resolved scene goes to its standard input, a response comes from its standard output."""
 
@@ -120,7 +118,6 @@ class Command(Program):
         return run(self.command, self.folder, text, self.seconds, self.memory, self.environment)
 
 
-@dataclass(frozen=True, kw_only=True)
 class Functions(Program):
     """Functions in this process, as `comparisons.models.outside.adapters.exchange.serve` takes them."""
 
