@@ -18,7 +18,6 @@ from comparisons.answer import (
 from comparisons.answer.material import Deferred
 from comparisons.models import theory
 from comparisons.models.model import Model, ModelError, Options, Reached, Style, Watch, refused
-from comparisons.models.sections import j_integrals, section_forces
 from comparisons.models.shared import joints, kept, line_loads, occupied, of_result, result_of, ways
 from comparisons.scene import BeamSpec, LoadSpec, Scene, SpringSpec, SupportSpec
 from comparisons.scene.conditions import COMPONENTS
@@ -56,6 +55,7 @@ class Solid(Model):
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked."""
         import fem_reference
+        from comparisons.models.sections import j_integrals, section_forces
 
         def report(step: Any) -> None:
             touching = (f"{touch.pair.contact.name} at {touch.at.zeta:.4g}" for touch in step.state.closed)
