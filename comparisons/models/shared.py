@@ -77,16 +77,11 @@ def of_result(
     """Return the response of one of the solvers; `line(beam, k)` has the positions at both ends of the axis, `more` what is its own."""
     tips = {beam.name: 0 if scene.tip(beam.name) == "start" else -1 for beam in scene.beams}
     steps = range(len(result.load_parameter))
-    supports = {item.node: result.supports[item.node] for item in scene.all_supports}
-    held, springs = (
-        {end: SupportHistory(**kept(one, "force moment")) for end, one in items.items()}
-        for items in (supports, result.springs)
-    )
     return Response(
         **kept(result, "message load_parameter newton_iterations cutbacks unknowns wall_seconds index"),
         status=result.status.name,
-        supports=held,
-        springs=springs,
+        supports={item.node: _held(result.supports[item.node]) for item in scene.all_supports},
+        springs={end: _held(one) for end, one in result.springs.items()},
         tips={beam: rows([line(beam, k)[end] for k in steps], 2) for beam, end in tips.items()},
         axis_line=axis_line,
         critical=tuple(
@@ -95,3 +90,7 @@ def of_result(
         ),
         **more,
     )
+
+
+def _held(found: Any) -> SupportHistory:
+    return SupportHistory(**kept(found, "force moment"))
