@@ -32,7 +32,7 @@ class Frozen:
         self._settle()
 
     def _settle(self) -> None:
-        """Put values that depend on others into their final form."""
+        """Complete values by others, or refuse them."""
 
     def __setattr__(self, name: str, value: object) -> None:
         raise FrozenInstanceError(f"cannot assign to field {name!r}")
