@@ -12,23 +12,22 @@ class Frozen:
     """Values by name, which `dataclasses.fields` and `dataclasses.replace` know; a record is equal to itself alone."""
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
-    _fields: ClassVar[dict[str, Field[Any]]]
+    _fields: ClassVar[dict[str, Any]]
+    _needed: ClassVar[set[str]]
 
     def __init_subclass__(cls) -> None:
         dataclass(init=False, repr=False, eq=False, match_args=False)(cls)
         cls._fields = {item.name: item for item in fields(cls)}
+        cls._needed = {item.name for item in fields(cls) if item.default is item.default_factory is MISSING}
 
     def __init__(self, /, **given: Any) -> None:
-        own, known = vars(self), self._fields
-        for name, item in known.items():
-            if name in given:
-                own[name] = given[name]
-            elif item.default is not MISSING:
-                own[name] = item.default
-            elif item.default_factory is not MISSING:
-                own[name] = item.default_factory()
-        if own.keys() != known.keys() or given.keys() - known:
-            raise TypeError(f"{type(self).__name__} has {', '.join(known)}; given are {', '.join(given)}")
+        if not self._needed <= given.keys() <= self._fields.keys():
+            names = f"{', '.join(self._fields)}; given are {', '.join(given)}"
+            raise TypeError(f"{type(self).__name__} has {names}")
+        for name, item in self._fields.items():
+            value = given.get(name, item.default)
+            # values that are set one by one are read faster than those of an updated dictionary
+            object.__setattr__(self, name, item.default_factory() if value is MISSING else value)
         self._settle()
 
     def _settle(self) -> None:
@@ -49,7 +48,16 @@ class Frozen:
 
 
 class Value(Frozen):
-    """A record that is equal to another one of its kind with equal values."""
+    """A record that is equal to another one of its kind with equal values.
+
+    Examples
+    --------
+    >>> class Step(Value):
+    ...     size: float
+    ...     parts: int = 1
+    >>> Step(size=0.5), Step(size=0.5) == Step(size=0.5, parts=1)
+    (Step(size=0.5, parts=1), True)
+    """
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Value) and self._values() == other._values()
