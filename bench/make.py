@@ -15,7 +15,7 @@ from pathlib import Path
 from comparisons.answer import ContactEvent, Response
 from comparisons.models import solve
 from comparisons.models.model import Options, unwatched
-from comparisons.models.rods import solve_rods
+from comparisons.models.rod import solve_rods
 from comparisons.referee import certify
 from comparisons.referee.friction import History
 from comparisons.referee.path import corners, reach

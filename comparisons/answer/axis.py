@@ -1,20 +1,20 @@
 """Deformed axes, sampled at fixed stations for comparison and storage."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from comparisons.answer.record import Array, Grid, not_kept
 from comparisons.answer.response import Response
+from comparisons.frozen import Frozen
 from comparisons.scene import Scene
 
 STATIONS = np.linspace(0.0, 1.0, 101)
 """Arc lengths of the stations, over the length of the beam."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class SampledAxes:
+class SampledAxes(Frozen):
     """Deformed axes as arrays; callable like `Response.axis_line`."""
 
     arc_length: dict[str, Array]  #: Arc lengths along the undeformed axes, shape (m,), by beam.

@@ -87,7 +87,9 @@ def error_columns(
 ) -> Columns:
     """Return the errors of every pair, support or beam, shape (n,), at the n load parameters that both responses have."""
     _, own, true = np.intersect1d(response.load_parameter, reference.load_parameter, return_indices=True)
-    pair = Pair(response, reference, own, true, scene, scale or scales(reference))
+    steps = {"own_steps": own, "reference_steps": true}
+    divisors = scale or scales(reference)
+    pair = Pair(response=response, reference=reference, scene=scene, scale=divisors, **steps)
     return QUANTITIES[quantity].columns(pair)
 
 

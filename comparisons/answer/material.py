@@ -29,6 +29,8 @@ from comparisons.scene.keys import unstated
 
 UNDEFINED = "no touched beam is held by one clamp alone and loaded by contacts alone"
 """Reason why a scene has no material force."""
+AWAY = 1.5
+"""Distance from clamp and contact, over the height, within which the stress of a solid is local, so that no rod has it."""
 ROUNDS = 30
 """Iterations for the length of g; each one reduces its error by a strain."""
 

@@ -1,7 +1,6 @@
 """The quantities that are compared between two responses to one scene: each is a row of `QUANTITIES`, and nothing else knows it."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -10,11 +9,10 @@ from numpy.typing import NDArray
 
 from comparisons.answer import Array, Response
 from comparisons.answer.axis import STATIONS, axes_at_stations
-from comparisons.answer.material import UNDEFINED, clamped, frictions, frictions_found, rubbing
+from comparisons.answer.material import AWAY, UNDEFINED, clamped, frictions, frictions_found, rubbing
+from comparisons.frozen import Frozen
 from comparisons.scene import Scene
 
-AWAY = 1.5
-"""Distance from clamp and contact, over the height, within which the stress of a solid is local; it is not compared there."""
 SCOPES = ("end", "path")
 """``end``: the error at one load parameter; ``path``: the largest error over all load parameters that both responses have."""
 
@@ -25,8 +23,7 @@ Scales = Mapping[str, float]
 """The largest values of a reference, by which errors are divided, by quantity; 1 where the largest is zero."""
 
 
-@dataclass(frozen=True, eq=False)
-class Pair:
+class Pair(Frozen):
     """Two responses to a scene, the numbers of the n load parameters that both have, and the scales."""
 
     response: Response
@@ -37,8 +34,7 @@ class Pair:
     scale: Scales
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Quantity:
+class Quantity(Frozen):
     """How a quantity is read and compared, and how it is called."""
 
     meaning: str  #: What is compared, and what its errors are relative to.

@@ -1,12 +1,13 @@
 """What a model states about a scene, and the records of contacts, supports, events and meshes in it."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.frozen import Frozen, Value
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
@@ -18,8 +19,7 @@ CONTACT_STATES = {OPEN: "#BBBBBB", SLIPS[0]: "#0072B2", SLIPS[1]: "#E69F00", SLI
 """The states of a contact with friction, and the colour of each in pictures."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ContactHistory:
+class ContactHistory(Frozen):
     """One contact pair over the load parameters."""
 
     force: Array  #: Magnitude of the contact force, shape (s,).
@@ -30,8 +30,7 @@ class ContactHistory:
     friction: "FrictionHistory | None" = None  #: What friction does; None without friction.
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class FrictionHistory:
+class FrictionHistory(Frozen):
     """Friction of one contact pair over the load parameters, 0 where the pair is open."""
 
     tangential: Array  #: Force on the beam along its tangent, positive from start to end, shape (s,).
@@ -44,16 +43,14 @@ class FrictionHistory:
         return [SLIPS[int(slip)] if size else OPEN for slip, size in zip(self.slip, force, strict=True)]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class SupportHistory:
+class SupportHistory(Frozen):
     """Force and moment of a support on the end of its beam."""
 
     force: Array  #: Force of the support, shape (s, 2), zero in a free direction.
     moment: Array  #: Moment about the supported end (s,), zero where the rotation is free.
 
 
-@dataclass(frozen=True, kw_only=True)
-class ContactEvent:
+class ContactEvent(Value):
     """A change of the contact, located by the model; in a pass-through the contact moves on to the next element."""
 
     kind: str  #: ``touch``, ``release``, ``slip-off``, ``slip``, ``stick`` or ``pass-through``.
@@ -67,8 +64,7 @@ class ContactEvent:
     stage: int = 1
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class CriticalPoint:
+class CriticalPoint(Frozen):
     """A point of the path where the tangent is singular, located by the model."""
 
     kind: str  #: ``limit point`` or ``bifurcation``.
@@ -76,8 +72,7 @@ class CriticalPoint:
     mode: dict[str, Array]  #: Displacements of the axes (m, 2) in the buckling mode by beam, the largest 1.
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Deformation:
+class Deformation(Frozen):
     """The largest deformation of any element, for the check that the element's kinematics still approximate it.
 
     The bend of an element in contact is at least ``F min(a, b) l/EI``, that under a constant moment of the contact force, with the
@@ -90,8 +85,7 @@ class Deformation:
     bearable: float  #: Bend up to which the first neglected term is at most a fifth of the force [rad].
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Grid:
+class Grid(Frozen):
     """A mesh in its undeformed state with fields at its points."""
 
     points: Array  #: Undeformed positions, shape (n, 2).
@@ -100,8 +94,7 @@ class Grid:
     point_data: dict[str, Array]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Sections:
+class Sections(Frozen):
     """Section forces along a beam at stations from its start to its end; a place where they jump is stated twice, from both sides."""
 
     arc: Array  #: Distance along the undeformed axis, not falling, shape (m,).
@@ -115,8 +108,7 @@ def not_kept(*_: object) -> NoReturn:
     raise NotImplementedError("a stored response has no mesh")
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Answer:
+class Answer(Frozen):
     """What one model states about one scene at s load parameters. What it cannot state is None or empty."""
 
     model: str = ""  #: Name of the model.

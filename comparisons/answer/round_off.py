@@ -1,11 +1,11 @@
 """Round-off of the numbers that an answer states, by the scale of each quantity."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from comparisons.answer.record import Answer
+from comparisons.frozen import Value
 from comparisons.scene import BeamSpec, Scene
 
 LAST_PLACES, UNRESOLVED = 8 * float(np.finfo(float).eps), 1e-4
@@ -34,8 +34,7 @@ def residual_force(scene: Scene) -> float:
     return RESIDUAL * max(beam.EI / beam.length**2 for beam in scene.beams)
 
 
-@dataclass(frozen=True, kw_only=True)
-class RoundOff:
+class RoundOff(Value):
     """What is not resolved of each kind of quantity; a smaller number is printed as 0."""
 
     force: float = 0.0  #: `force_round_off` or, where it is larger, `RESIDUAL`.

@@ -5,8 +5,9 @@ from pathlib import Path
 
 from comparisons.answer import Response
 from comparisons.answer.file import read_response
+from comparisons.cli.command import DONE, STOPPED, WRONG
 from comparisons.cli.options import STANDARD, outputs, write
-from comparisons.cli.screen import DONE, STOPPED, WRONG, watching
+from comparisons.cli.screen import watching
 from comparisons.files import OutputError
 from comparisons.models import TSM, certified, restored, solve
 from comparisons.models.model import ModelError

@@ -3,8 +3,8 @@
 import sys
 from argparse import Namespace
 
+from comparisons.cli.command import DONE
 from comparisons.cli.options import STANDARD, outputs, write
-from comparisons.cli.screen import DONE
 from comparisons.models import find
 from comparisons.models.model import Options
 from comparisons.models.outside.exchange import request

@@ -1,28 +1,28 @@
-"""The command itself: its arguments, and one line and an exit status for whatever goes wrong."""
+"""The command itself: its arguments, whose words are in ``commands.toml``, and one line and an exit status for whatever goes wrong."""
 
 import argparse
 import os
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+import tomllib
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager, redirect_stderr, suppress
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, NoReturn
+from typing import Any, NoReturn
 
-from comparisons.cli.options import STATED, add_command
-from comparisons.cli.screen import BAD_INPUT, DONE, INTERRUPTED, STOPPED, WRONG, report
 from comparisons.extras import EXTRAS, install
 from comparisons.files import OutputError, printable
-from comparisons.models.model import ModelError
-from comparisons.scene import InputError
+from comparisons.scene import InputError, rules
+from comparisons.scene.rules import Rule, RuleError
 from comparisons.suites.names import SUITES
 
-if TYPE_CHECKING:
-    from comparisons.models.outside.child import ProgramError
-
+DONE, WRONG, BAD_INPUT, STOPPED, INTERRUPTED = 0, 1, 2, 3, 130
+STATED = tomllib.loads(Path(__file__).with_name("commands.toml").read_text(encoding="utf-8"))
+"""The commands and their arguments, in words."""
 GONE: dict[str, str] = STATED["gone"]
 """Commands and options of earlier versions, and what does their work."""
 NEEDED = ("numpy", "scipy", "scikit-fem", "meshio", "matplotlib", "jinja2")
@@ -57,8 +57,6 @@ def _run(arguments: list[str] | None) -> int:
     except InputError as error:
         for line in str(error).split("\n"):
             status = _told(line, BAD_INPUT)
-    except (ModelError, OutputError) as error:  # whose names may have line ends
-        status = _told(error, BAD_INPUT)
     except BrokenPipeError:
         # whoever read the output has had enough
         _drop_output()
@@ -73,16 +71,23 @@ def _run(arguments: list[str] | None) -> int:
         status = _told(f"{missing}: cannot be imported, {install(missing)}", BAD_INPUT)
     except KeyboardInterrupt:
         status = _told("interrupted", INTERRUPTED)
-    except _program_error() as error:
-        status = _told(error, BAD_INPUT if error.status.name == "NOT_STARTED" else STOPPED)
+    except _refusals() as error:  # whose names may have line ends
+        ran = getattr(error, "status", None)
+        status = _told(error, STOPPED if ran and ran.name != "NOT_STARTED" else BAD_INPUT)
     return status
 
 
-def _program_error() -> "type[ProgramError]":
-    """Return the error of a program of others, whose room is not imported before something fails."""
+def _refusals() -> tuple[type[Exception], ...]:
+    """Return the errors of files, models and programs of others; the rooms of the last two are not imported before something fails."""
+    from comparisons.models.model import ModelError
     from comparisons.models.outside.child import ProgramError
 
-    return ProgramError
+    return OutputError, ModelError, ProgramError
+
+
+def report(line: str) -> None:
+    """Report a line on standard error."""
+    print(printable(line), file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -140,6 +145,97 @@ def _version() -> int:
         mark = "ok" if state else "-" if absent else "MISSING"
         print(f"{mark:8s}{name:14s} {state or absent or 'missing'}")
     return DONE if all(state or absent for _, state, absent in rows) else WRONG
+
+
+class Listed:
+    """Names for a help, which are looked up where it is asked for."""
+
+    def __init__(self, names: Callable[[], Iterable[str]]) -> None:
+        self.names = names
+
+    def __str__(self) -> str:
+        return ", ".join(self.names())
+
+
+def _models(option: str = "") -> Iterable[str]:
+    """Return the names of all models and programs, or of the models that have an option."""
+    from comparisons.models import MODELS
+    from comparisons.models.outside.programs import ADAPTERS
+
+    if option:
+        return (model.name for model in MODELS.values() if option in model.options)
+    return (*MODELS, *ADAPTERS)
+
+
+def _quantities(*, path: bool) -> Iterable[str]:
+    from comparisons.answer.quantities import names
+
+    return names(path=path)
+
+
+LISTED = {
+    "--model": Listed(_models),
+    "--accuracy": Listed(partial(_quantities, path=False)),
+    "--max-error": Listed(partial(_quantities, path=True)),
+}
+"""The names that an argument takes."""
+
+
+def obeying(rule: Rule, text: str, whole: str = "") -> Any:
+    """Return the number or word that obeys a rule of the scene; it is a part of the argument `whole`."""
+    word: object = text
+    for form in (float, int):
+        with suppress(ValueError):
+            word = form(text)
+    try:
+        return rule(word)
+    except RuleError as error:
+        raise argparse.ArgumentTypeError(f"{whole or text}: {error}") from None
+
+
+def _bound(argument: str, rule: Rule, default: str, text: str) -> tuple[str, float]:
+    """Return what ``QUANTITY=X`` states, one of the quantities of an argument; without one it is `default`."""
+    name, _, value = text.rpartition("=")
+    if (name or default) not in LISTED[argument].names():
+        raise argparse.ArgumentTypeError(f"{text}: must be QUANTITY=X, one of {LISTED[argument]}")
+    return name or default, obeying(rule, value, text)
+
+
+def _branch(text: str) -> Any:
+    """Return a way to go on at a critical point."""
+    from comparisons.models.model import BRANCHES
+
+    return obeying(rules.choice(*BRANCHES), text)
+
+
+def _workers(text: str) -> int | str:
+    """Return a number of processes, or an address, which has letters."""
+    return text if any(map(str.isalpha, text)) else int(obeying(rules.whole_number, text))
+
+
+TYPES: dict[str, Callable[[str], object]] = {
+    "--accuracy": partial(_bound, "--accuracy", rules.fraction, "force"),
+    "--max-error": partial(_bound, "--max-error", rules.positive, ""),
+    "--branch": _branch,
+    "--workers": _workers,
+    "--out": Path,
+}
+"""How the text of an argument is read that has no rule."""
+
+
+def add_command(commands: Any, name: str) -> None:
+    """Add a command to the subparsers of the parser."""
+    stated = STATED["command"][name]
+    parser = commands.add_parser(name, **{key: stated.get(key) for key in ("help", "description", "epilog")})
+    for argument in stated["arguments"].split():
+        reading = {**STATED["argument"][argument]}
+        reading["help"] = stated.get("own", {}).get(argument, reading.get("help"))
+        rule = reading.pop("rule", None)
+        if rule or argument in TYPES:
+            reading["type"] = TYPES.get(argument) or partial(obeying, getattr(rules, rule))
+        action = parser.add_argument(argument.partition("=")[0], **reading)
+        vars(action).update(models=Listed(partial(_models, action.dest)), names=LISTED.get(argument))
+    parser.set_defaults(command=name)
 
 
 class _Parser(argparse.ArgumentParser):

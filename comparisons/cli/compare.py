@@ -4,19 +4,9 @@ import argparse
 from functools import partial
 from pathlib import Path
 
+from comparisons.cli.command import DONE, STOPPED, WRONG, report
 from comparisons.cli.options import chosen, outputs, refuse, workers
-from comparisons.cli.screen import (
-    DONE,
-    STOPPED,
-    WRONG,
-    exit_status,
-    files_named,
-    report,
-    say,
-    staging,
-    teller,
-    watching,
-)
+from comparisons.cli.screen import exit_status, files_named, say, staging, teller, watching
 from comparisons.files import writable_folder, write_text
 from comparisons.models import TSM, find
 from comparisons.models.model import ModelError

@@ -3,7 +3,7 @@
 from argparse import Namespace
 from pathlib import Path
 
-from comparisons.cli.screen import DONE
+from comparisons.cli.command import DONE
 from comparisons.files import OutputError
 from comparisons.scene import InputError, built_in_scenes, load_scene, rules
 from comparisons.scene.read import FOLDER

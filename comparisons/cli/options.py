@@ -1,105 +1,16 @@
-"""The arguments of the commands: their words are in ``commands.toml``, here is how they are read."""
+"""What the commands make of their arguments: options of a model, where cases run, files to write."""
 
 import argparse
 import sys
-import tomllib
-from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
-from functools import partial
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from comparisons.files import OutputError, result_file, write_text
-from comparisons.models import MODELS
-from comparisons.models.model import BRANCHES, ModelError, Options
-from comparisons.scene import rules
-from comparisons.scene.rules import Rule, RuleError
+from comparisons.models.model import ModelError, Options
 
 if TYPE_CHECKING:
     from comparisons.suite.workers import Workers
-
-
-class Listed:
-    """Names for a help, which are looked up where it is asked for."""
-
-    def __init__(self, names: Callable[[], Iterable[str]]) -> None:
-        self.names = names
-
-    def __str__(self) -> str:
-        return ", ".join(self.names())
-
-
-def _models() -> Iterable[str]:
-    from comparisons.models.outside.programs import ADAPTERS
-
-    return (*MODELS, *ADAPTERS)
-
-
-def _quantities(*, path: bool) -> Iterable[str]:
-    from comparisons.answer.quantities import names
-
-    return names(path=path)
-
-
-LISTED = {
-    "--model": Listed(_models),
-    "--accuracy": Listed(partial(_quantities, path=False)),
-    "--max-error": Listed(partial(_quantities, path=True)),
-}
-"""The names that an argument takes."""
-
-
-def obeying(rule: Rule, text: str, whole: str = "") -> Any:
-    """Return the number or word that obeys a rule of the scene; it is a part of the argument `whole`."""
-    word: object = text
-    for form in (float, int):
-        with suppress(ValueError):
-            word = form(text)
-    try:
-        return rule(word)
-    except RuleError as error:
-        raise argparse.ArgumentTypeError(f"{whole or text}: {error}") from None
-
-
-def _bound(argument: str, rule: Rule, default: str, text: str) -> tuple[str, float]:
-    """Return what ``QUANTITY=X`` states, one of the quantities of an argument; without one it is `default`."""
-    name, _, value = text.rpartition("=")
-    if (name or default) not in LISTED[argument].names():
-        raise argparse.ArgumentTypeError(f"{text}: must be QUANTITY=X, one of {LISTED[argument]}")
-    return name or default, obeying(rule, value, text)
-
-
-def _workers(text: str) -> int | str:
-    """Return a number of processes, or an address, which has letters."""
-    return text if any(map(str.isalpha, text)) else int(obeying(rules.whole_number, text))
-
-
-STATED = tomllib.loads(Path(__file__).with_name("commands.toml").read_text(encoding="utf-8"))
-"""The commands and their arguments, in words."""
-TYPES: dict[str, Callable[[str], object]] = {
-    "--accuracy": partial(_bound, "--accuracy", rules.fraction, "force"),
-    "--max-error": partial(_bound, "--max-error", rules.positive, ""),
-    "--branch": partial(obeying, rules.choice(*BRANCHES)),
-    "--workers": _workers,
-    "--out": Path,
-}
-"""How the text of an argument is read that has no rule."""
-
-
-def add_command(commands: Any, name: str) -> None:
-    """Add a command to the subparsers of the parser."""
-    stated = STATED["command"][name]
-    parser = commands.add_parser(name, **{key: stated.get(key) for key in ("help", "description", "epilog")})
-    for argument in stated["arguments"].split():
-        reading = {**STATED["argument"][argument]}
-        reading["help"] = stated.get("own", {}).get(argument, reading.get("help"))
-        rule = reading.pop("rule", None)
-        if rule or argument in TYPES:
-            reading["type"] = TYPES.get(argument) or partial(obeying, getattr(rules, rule))
-        action = parser.add_argument(argument.partition("=")[0], **reading)
-        models = ", ".join(model.name for model in MODELS.values() if action.dest in model.options)
-        vars(action).update(models=models, names=LISTED.get(argument))
-    parser.set_defaults(command=name)
 
 
 def refuse(given: argparse.Namespace, names: Iterable[str], rule: str) -> None:

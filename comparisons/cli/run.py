@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from shutil import rmtree
 
+from comparisons.cli.command import DONE, STOPPED, WRONG, report
 from comparisons.cli.options import refuse, workers
-from comparisons.cli.screen import DONE, STOPPED, WRONG, files_named, report, say, teller
+from comparisons.cli.screen import files_named, say, teller
 from comparisons.files import writable_folder
 from comparisons.models import TSM
 from comparisons.output import tabulated, write_rows

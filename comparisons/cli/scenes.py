@@ -4,7 +4,7 @@ import json
 import re
 from argparse import Namespace
 
-from comparisons.cli.screen import DONE
+from comparisons.cli.command import DONE
 from comparisons.scene import built_in_scenes
 from comparisons.scene.read import json_schema
 

@@ -1,4 +1,4 @@
-"""What a command says: lines and bars on standard error, the solutions that stopped, and its exit status."""
+"""What a command says: bars on standard error, files, and the solutions that stopped."""
 
 import os
 import sys
@@ -7,22 +7,16 @@ from contextlib import contextmanager
 from time import monotonic
 from typing import TYPE_CHECKING
 
-from comparisons.files import printable
+from comparisons.answer import Response
+from comparisons.cli.command import DONE, STOPPED, report
 from comparisons.models.model import REDRAW, Count, Reached, Watch, bar
+from comparisons.scene import Scene
 
 if TYPE_CHECKING:
-    from comparisons.answer import Response
     from comparisons.report.brief import Brief
-    from comparisons.scene import Scene
 
-DONE, WRONG, BAD_INPUT, STOPPED, INTERRUPTED = 0, 1, 2, 3, 130
 PATIENCE = 2.0
 """Seconds that a work takes without a bar."""
-
-
-def report(line: str) -> None:
-    """Report a line on standard error."""
-    print(printable(line), file=sys.stderr, flush=True)
 
 
 def teller(*, quiet: bool) -> Callable[[str], None]:
@@ -40,7 +34,7 @@ def say(brief: "Brief") -> None:
     print(brief.text(bold=sys.stdout.isatty() and not os.environ.get("NO_COLOR")), end="\n\n")
 
 
-def exit_status(scene: "Scene", responses: "Iterable[tuple[str, Response]]") -> int:
+def exit_status(scene: Scene, responses: Iterable[tuple[str, Response]]) -> int:
     """Name every solution that stopped, by its label, and what was reached; return the exit status."""
     stopped = [(label, response) for label, response in responses if not response.completed]
     for label, response in stopped:

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 from comparisons.answer import Response
 from comparisons.answer.material import frictions_found
 from comparisons.answer.page import text
+from comparisons.cli.command import DONE, STOPPED, report
 from comparisons.cli.options import STANDARD, chosen, outputs, refuse, write
-from comparisons.cli.screen import DONE, STOPPED, exit_status, report, watching
+from comparisons.cli.screen import exit_status, watching
 from comparisons.files import writable_folder
 from comparisons.models import TSM, certified, find, solve
 from comparisons.scene import Scene, load_scene

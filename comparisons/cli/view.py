@@ -6,7 +6,8 @@ from argparse import Namespace
 from pathlib import Path
 
 from comparisons.answer import Response
-from comparisons.cli.screen import DONE, exit_status, files_named, report, staging, watching
+from comparisons.cli.command import DONE, report
+from comparisons.cli.screen import exit_status, files_named, staging, watching
 from comparisons.files import writable_folder
 from comparisons.models import SOLID, TSM, solve
 from comparisons.models.model import ModelError, Options

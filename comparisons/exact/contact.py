@@ -19,7 +19,6 @@ quantity: with the values `*` at an earlier place of the stick
 The trapezium on the left is exact, c = 0, where A is constant or roll is.
 """
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -34,6 +33,7 @@ from comparisons.exact.section import (
     integrate,
     tangent,
 )
+from comparisons.frozen import Value
 
 Real = NDArray[np.float64]
 _LARGEST_CORRECTION, _CONVERGED = 0.1, 3e-8
@@ -106,8 +106,7 @@ def _solved(matrix: Real, right: Real, largest: float = _SINGULAR) -> Real | Non
     return np.asarray(np.linalg.solve(plain, right / rows) / columns)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Cantilever:
+class Cantilever(Value):
     """A rod under a pin: flexibility, distance h of the face from the axis, radius R of the pin, coefficient of friction."""
 
     flexibility: Flexibility

@@ -1,7 +1,7 @@
 """What an exact solution states along the path of a pin: states of contact, events, and the states of the rod in the units of the input."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from math import inf
 from typing import NamedTuple
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from comparisons.exact.contact import Cantilever
+from comparisons.frozen import Value
 
 Array = NDArray[np.float64]
 _RULES: dict[str, Callable[[float], bool]] = {
@@ -55,8 +56,7 @@ class Outcome(StrEnum):
         return self in (Outcome.LOST, Outcome.JAMMED)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Event:
+class Event(Value):
     """Change of the state of contact."""
 
     load_parameter: float  #: Fraction of the path's length at which the state changes.
@@ -66,8 +66,7 @@ class Event:
     magnitude: float  #: Contact force at the event.
 
 
-@dataclass(frozen=True, kw_only=True)
-class RodPath:
+class RodPath(Value):
     """States of the rod at `s` positions of the pin.
 
     Without contact the rod is straight, `arc_position` is nan and the forces are zero. Where the path has ended (`Outcome.ends`) all

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 from typing import Any
@@ -19,6 +18,7 @@ from comparisons.answer import (
     SupportHistory,
 )
 from comparisons.exact import Outcome, RodPath
+from comparisons.frozen import Value
 from comparisons.models.model import ModelError
 from comparisons.models.shared import POINTS
 from comparisons.scene import BeamSpec, ContactSpec, Scene
@@ -36,8 +36,7 @@ STOPS = {
 _LOST = [state.name for state in Outcome if state.ends]
 
 
-@dataclass(frozen=True, kw_only=True)
-class RodScene:
+class RodScene(Value):
     """One cantilever under one pin in a local frame: the clamp at the origin, the beam along +x, the pin pushes towards +y."""
 
     scene: Scene

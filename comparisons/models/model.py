@@ -1,17 +1,14 @@
 """The contract of a model, the options of one run, and its progress. All that uses a model uses it through this contract alone."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Set
-from dataclasses import dataclass
 from math import nan
-from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, get_args
+from typing import ClassVar, Literal, NamedTuple, get_args
 
-if TYPE_CHECKING:
-    from comparisons.answer import Response
-    from comparisons.models.theory import Bending
-    from comparisons.scene import Scene
+from comparisons.answer import Response
+from comparisons.frozen import Value
+from comparisons.models.theory import ROUND_OFF, Bending
+from comparisons.scene import Scene, unstated
 
 Branch = Literal["stop", "stable", "primary"]
 BRANCHES: tuple[str, ...] = get_args(Branch)
@@ -22,8 +19,7 @@ class ModelError(ValueError):
     """A model cannot state a scene, or an option does not fit the model: one line."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Options:
+class Options(Value):
     """Options of one run. None keeps the value of the scene, or the default of the model."""
 
     elements: int | None = None
@@ -75,8 +71,7 @@ def bar(part: float) -> str:
     return f"[{'#' * filled}{'.' * (WIDTH - filled)}]"
 
 
-@dataclass(frozen=True, kw_only=True)
-class Style:
+class Style(Value):
     """How figures draw the answers of a model: colour in hexadecimal digits, marker of matplotlib, width of a line on a page [px], no dashes."""
 
     colour: str
@@ -116,8 +111,6 @@ class Model(ABC):
 
     def unstated(self, scene: Scene) -> str | None:
         """Return the line that refuses a special key which the model does not state; None if it states all that `scene` uses."""
-        from comparisons.scene import unstated
-
         return unstated(scene, self.label, self.keys)
 
     def apart(self, scene: Scene) -> float:  # noqa: ARG002 - others have another theory
@@ -192,6 +185,4 @@ class Model(ABC):
 
         A model that does not define this method is allowed round-off only.
         """
-        from comparisons.models.theory import ROUND_OFF
-
         return {"round-off": ROUND_OFF}

@@ -1,20 +1,21 @@
 """The registry of models, and the solution of a scene by one of them, with checks and certificate."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 from importlib import import_module
 from math import isnan
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
-from comparisons.models.model import ModelError, Options, Watch, unwatched
-
-if TYPE_CHECKING:
-    from comparisons.answer import Response
-    from comparisons.models.model import Model
-    from comparisons.scene import Scene
+from comparisons.answer import Response
+from comparisons.answer.axis import axis_grid
+from comparisons.answer.material import material_forces
+from comparisons.answer.record import not_kept
+from comparisons.models.model import Model, ModelError, Options, Watch, unwatched
+from comparisons.models.verify import CHECK_FAILED, verified
+from comparisons.referee import Certificate, Verdict, certify, default_allowance
+from comparisons.referee.certify import ALLOWED
+from comparisons.scene import Scene
 
 Certify = Literal["last", "all", "none"]
 """Load parameters to certify: the last one and the neighbours of events, all, or none."""
@@ -48,11 +49,6 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
     ModelError
         If the model cannot state the scene, or an option does not belong to it.
     """
-    from comparisons.answer.axis import axis_grid
-    from comparisons.answer.material import material_forces
-    from comparisons.answer.record import not_kept
-    from comparisons.models.verify import verified
-
     chosen, given = find(model), options or Options()
     for option, value in vars(given).items():
         if value is not None and option not in chosen.options:
@@ -62,38 +58,38 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
         raise ModelError(unknown)
     try:
         began = perf_counter()
-        response = replace(chosen.solve(scene, given, watch), model=chosen.name, scene=scene.name)
+        found = chosen.solve(scene, given, watch)
         taken = perf_counter() - began
-        rod, lines = not chosen.continuum, partial(axis_grid, scene, response.axis_line)
-        forces = material_forces(response, scene, strains=chosen.rod) if rod else response.material_force
-        response = replace(
-            response,
-            **_kind(response, chosen),
-            setting=chosen.setting(scene, given),
-            wall_seconds=taken if isnan(response.wall_seconds) else response.wall_seconds,
-            definition=scene,
-            grid=lines if response.grid is not_kept else response.grid,
-            material_force=forces,
-            reported_success=response.completed or response.reported_success,
-        )
-        return verified(response, scene)
+        more: dict[str, Any] = {"wall_seconds": taken} if isnan(found.wall_seconds) else {}
+        if found.grid is not_kept:
+            more["grid"] = partial(axis_grid, scene, found.axis_line)
+        if not chosen.continuum:
+            more["material_force"] = material_forces(found, scene, strains=chosen.rod)
+        named = {"model": chosen.name, "scene": scene.name, "setting": chosen.setting(scene, given)}
+        success = found.completed or found.reported_success
+        more |= {
+            **named,
+            **_kind(found, chosen.name, chosen),
+            "definition": scene,
+            "reported_success": success,
+        }
+        return verified(replace(found, **more), scene)
     except ValueError as error:
         raise ModelError(f"{chosen.name}: {error}") from error
 
 
-def _kind(response: Response, model: Model | None) -> dict[str, Any]:
+def _kind(response: Response, name: str, model: Model | None) -> dict[str, Any]:
     """Return of what kind an answer is by its model, whatever it says of itself; without a model it is a program's, which says its kind."""
     continuum = response.continuum if model is None else model.continuum
     round_off = response.round_off if continuum and model is not None else 0.0
-    return {"continuum": continuum, "outside": response.model not in MODELS, "round_off": round_off}
+    return {"continuum": continuum, "outside": name not in MODELS, "round_off": round_off}
 
 
 def restored(response: Response, scene: Scene) -> Response:
     """Return a response from a file with the kind that its model is registered with, and checked as when it was solved."""
     from comparisons.models.outside.programs import known
-    from comparisons.models.verify import CHECK_FAILED, verified
 
-    kind = _kind(response, MODELS.get(response.model) or known(response.model))
+    kind = _kind(response, response.model, MODELS.get(response.model) or known(response.model))
     if response.completed and not response.reported_success:
         contradiction = f"the status is {response.status}, and reported_success is false"
         return replace(response, **kind, status=CHECK_FAILED, message=contradiction)
@@ -119,10 +115,6 @@ def certified(
         Largest relative distance from the exact equilibrium, by default `comparisons.referee.certify.ALLOWED`. What the model's theory
         has besides is added.
     """
-    from comparisons.models.verify import CHECK_FAILED
-    from comparisons.referee import Certificate, Verdict, certify, default_allowance
-    from comparisons.referee.certify import ALLOWED
-
     if which == "none" or not len(response.load_parameter):
         return response
     model = MODELS.get(response.model)

@@ -1,15 +1,13 @@
 """What several models state alike: ends that meet, weights, and the histories in the results of both solvers."""
 
-from __future__ import annotations
+from collections.abc import Callable, Iterator
+from typing import Any
 
-from typing import TYPE_CHECKING, Any
+import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from comparisons.answer import Array, Response
-    from comparisons.models.model import Options
-    from comparisons.scene import BeamSpec, PinSpec, Scene
+from comparisons.answer import Array, CriticalPoint, Response, SupportHistory
+from comparisons.models.model import Options
+from comparisons.scene import BeamSpec, PinSpec, Scene
 
 POINTS = 401
 """Points of a deflected axis in pictures. The exact solutions do not depend on this number."""
@@ -55,8 +53,6 @@ def ways(pin: PinSpec) -> dict[str, Any]:
 
 def rows(found: Any, width: int) -> Array:
     """Return a list of vectors as an array (n, width), also where the list is empty."""
-    import numpy as np
-
     return np.array(found, dtype=np.float64).reshape(-1, width)
 
 
@@ -64,8 +60,6 @@ def result_of(
     solver: Any, problem: Any, scene: Scene, options: Options, report: Callable[[Any], None], **settings: Any
 ) -> Any:
     """Return the result of one of the solvers, a package, also where it stopped; `report` receives every accepted step."""
-    import numpy as np
-
     given = solver.Settings(branch=options.branch or "stop", **settings)
     try:
         return solver.solve(problem, np.array(scene.times), given, watch=report)
@@ -81,20 +75,13 @@ def of_result(
     **more: Any,
 ) -> Response:
     """Return the response of one of the solvers; `line(beam, k)` has the positions at both ends of the axis, `more` what is its own."""
-    from comparisons.answer import CriticalPoint, Response, SupportHistory
-
     tips = {beam.name: 0 if scene.tip(beam.name) == "start" else -1 for beam in scene.beams}
     steps = range(len(result.load_parameter))
-    supports = {item.node: result.supports[item.node] for item in scene.all_supports}
-    held, springs = (
-        {end: SupportHistory(**kept(one, "force moment")) for end, one in items.items()}
-        for items in (supports, result.springs)
-    )
     return Response(
         **kept(result, "message load_parameter newton_iterations cutbacks unknowns wall_seconds index"),
         status=result.status.name,
-        supports=held,
-        springs=springs,
+        supports={item.node: _held(result.supports[item.node]) for item in scene.all_supports},
+        springs={end: _held(one) for end, one in result.springs.items()},
         tips={beam: rows([line(beam, k)[end] for k in steps], 2) for beam, end in tips.items()},
         axis_line=axis_line,
         critical=tuple(
@@ -103,3 +90,7 @@ def of_result(
         ),
         **more,
     )
+
+
+def _held(found: Any) -> SupportHistory:
+    return SupportHistory(**kept(found, "force moment"))

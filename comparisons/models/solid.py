@@ -1,21 +1,30 @@
 """The two-dimensional solid."""
 
-from __future__ import annotations
-
-from math import ceil
+from collections.abc import Iterator
+from math import ceil, nan
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from comparisons.answer import (
+    Array,
+    ContactEvent,
+    ContactHistory,
+    Deformation,
+    FrictionHistory,
+    Grid,
+    Response,
+    Sections,
+)
+from comparisons.answer.material import AWAY, Deferred, clamped
+from comparisons.models import theory
 from comparisons.models.model import Model, ModelError, Options, Reached, Style, Watch, refused
 from comparisons.models.shared import joints, kept, line_loads, occupied, of_result, result_of, ways
+from comparisons.scene import BeamSpec, LoadSpec, Scene, SpringSpec, SupportSpec
 from comparisons.scene.conditions import COMPONENTS
 from comparisons.scene.keys import SPECIAL
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from comparisons.answer import Array, ContactEvent, Response
-    from comparisons.models.theory import Bending
-    from comparisons.scene import BeamSpec, LoadSpec, Scene, SpringSpec, SupportSpec
     from fem_reference import SolidProblem, Strip
 
 REFINED = ((25, 1), (50, 2), (100, 4), (200, 8))
@@ -27,6 +36,8 @@ DEFAULT_PENALTY = 25.0
 """Default penalty stiffness of the solid, over E b."""
 SLENDER = 0.125
 """Largest height over length of the rectangle that replaces a section given by area and second moment."""
+SHARE = 0.25
+"""Largest part of the distance between clamp and contact that is left out at either end."""
 
 
 class Solid(Model):
@@ -46,12 +57,7 @@ class Solid(Model):
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked."""
-        import numpy as np
-
         import fem_reference
-        from comparisons.answer import ContactHistory, Deformation, FrictionHistory, Grid
-        from comparisons.answer.material import Deferred
-        from comparisons.models.sections import j_integrals, section_forces
 
         def report(step: Any) -> None:
             touching = (f"{touch.pair.contact.name} at {touch.at.zeta:.4g}" for touch in step.state.closed)
@@ -131,10 +137,8 @@ class Solid(Model):
         """Yield meshes, coarse to fine."""
         yield from (Options(mesh=mesh) for mesh in (*COARSE, *REFINED[: 2 if quick else 3]))
 
-    def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:
+    def error_parts(self, scene: Scene, options: Options, bent: theory.Bending) -> dict[str, float]:
         """Return the parts of the difference between a strip and the rod."""
-        from comparisons.models import theory
-
         beam = scene.beams[0]
         length = 1 / (options.mesh or beam.mesh)[0]
         turn = min(bent.curvature * length, bent.turn)
@@ -161,8 +165,6 @@ def _order(scene: Scene) -> str:
 
 def _events(result: Any) -> tuple[ContactEvent, ...]:
     """Return the events of a scene with friction, whose load parameters are located; no element owns a contact."""
-    from comparisons.answer import ContactEvent
-
     found = [
         ContactEvent(pair=pair, element=-1, released=0.0, stage=max(1, ceil(event.load_parameter)), **own)
         for pair, contact in result.contacts.items()
@@ -172,7 +174,7 @@ def _events(result: Any) -> tuple[ContactEvent, ...]:
     return tuple(sorted(found, key=lambda event: event.load_parameter))
 
 
-def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> SolidProblem:
+def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProblem":
     """Return the `fem_reference.SolidProblem` of `scene`: plane stress, thickness equal to the width, unilateral contact.
 
     Parameters
@@ -316,7 +318,7 @@ def rectangle(beam: BeamSpec) -> tuple[float, float]:
     return beam.section()[0] / height, height
 
 
-def _strip(beam: BeamSpec, clamps: set[str], mesh: tuple[int, int] | None) -> Strip:
+def _strip(beam: BeamSpec, clamps: set[str], mesh: tuple[int, int] | None) -> "Strip":
     from fem_reference import Strip
 
     width, height = rectangle(beam)
@@ -342,6 +344,55 @@ def _strip(beam: BeamSpec, clamps: set[str], mesh: tuple[int, int] | None) -> St
         mesh_file=beam.solid_mesh_file if mesh is None else None,
         mesh=mesh or beam.mesh,
     )
+
+
+def section_forces(scene: Scene, result: Any, beam: str, k: int) -> Sections:
+    """Return the section forces; a clamped end that nothing else is joined to or acts on has its reaction as section force."""
+    import fem_reference
+
+    found = fem_reference.section_forces(result, beam, k)
+    taken = occupied(scene)
+    table, own = np.stack([found.stations, found.N, found.V, found.M]), scene.beam(beam)
+    for support in scene.supports_of(beam):
+        motion = scene.prescribed_motions[support.node].at(float(result.load_parameter[k]))
+        turn, first = motion[2], support.end == "start"
+        if turn is None or support.node in taken:
+            continue
+        held, sign = result.supports[support.node], 1 - 2 * first
+        tangent = complex(*own.tangent(1.0 - first)) * np.exp(1.0j * turn)
+        force = sign * complex(*held.force[k]) * tangent.conjugate()
+        column = [(1.0 - first) * own.length, force.real, force.imag, sign * held.moment[k]]
+        table = np.insert(table, 0 if first else table.shape[1], column, axis=1)
+    return Sections(arc=table[0], N=table[1], V=table[2], M=table[3])
+
+
+def j_integrals(scene: Scene, result: Any) -> dict[str, Array]:
+    """Return the J-integrals at the clamps of `comparisons.answer.material.clamped`, shape (s,) by beam [force].
+
+    The J-integral is the same for all sections between the clamp and the nearest contact. Its error changes its sign between
+    neighbouring Gauss stations and is largest beside clamp and contact. The value is therefore the mean over the Gauss stations in
+    between, without those nearer to clamp or contact than 1.5 heights or a quarter of the distance. It is nan where no station is left.
+    The J-integral of a naturally curved beam is not constant, and is left out.
+    """
+    import fem_reference
+
+    def mean(beam: BeamSpec, clamp: float, k: int) -> float:
+        pairs = [contact.pair for contact in scene.contacts if contact.beam == beam.name]
+        arcs = np.array([result.contacts[pair].arc_position[k] for pair in pairs])
+        free = float(np.fmin.reduce(np.abs(arcs - clamp), initial=beam.length))
+        margin = min(AWAY * beam.rectangle_height, SHARE * free)
+        sections = fem_reference.section_forces(result, beam.name, k)
+        distance = np.abs(sections.stations - clamp)
+        inside = (distance > margin) & (distance < free - margin)
+        return float(sections.material_force[inside].mean()) if inside.any() else nan
+
+    steps, found = range(len(result.load_parameter)), {}
+    for name, support in clamped(scene).items():
+        beam = scene.beam(name)
+        if not beam.turn:
+            clamp = 0.0 if support.end == "start" else beam.length
+            found[name] = np.array([mean(beam, clamp, k) for k in steps])
+    return found
 
 
 SOLID = Solid()

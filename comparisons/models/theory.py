@@ -15,9 +15,8 @@ deflection, and the round-off of a position is multiplied by the stiffness EI/l^
 system has no such factor.
 """
 
-from dataclasses import dataclass
 from math import factorial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -39,8 +38,7 @@ CHANGE = 10.0
 a beam to a half circle, as a function of the half height, the number is 6."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Bending:
+class Bending(NamedTuple):
     """Bending and shear of the exact answer, as dimensionless maxima over the load parameters."""
 
     force: float = 0.0  # force, curvature: ``F L^2/EI`` and ``kappa L``

@@ -1,26 +1,30 @@
 """Beams by the tangent stiffness method."""
 
-from __future__ import annotations
-
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache
 from itertools import accumulate
 from math import hypot, nan, sqrt
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import numpy as np
+
+import tsm
+from comparisons.answer import (
+    ContactEvent,
+    ContactHistory,
+    Deformation,
+    FrictionHistory,
+    Grid,
+    Response,
+    Sections,
+)
+from comparisons.models import theory
 from comparisons.models.model import Model, ModelError, Options, Reached, Style, Watch
 from comparisons.models.shared import kept, line_loads, of_result, result_of, rows, ways
+from comparisons.scene import BeamSpec, ContactSpec, Scene
 from comparisons.scene.keys import SPECIAL
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from comparisons.answer import Grid, Response
-    from comparisons.models.theory import Bending
-    from comparisons.scene import BeamSpec, ContactSpec, Scene
-    from tsm import Beam, ContactPair, Structure
-    from tsm.elements import ElementType
-
+from tsm.elements import ELEMENTS, ClosedForm, ElementType
 
 EXACT, MIXED, PAPER = "exact", "mixed", "timoshenko"
 """The elements of `tsm` that a comparison runs: without a mesh error, recommended, and the paper's."""
@@ -39,8 +43,6 @@ class Tsm(Model):
 
     def element(self, options: Options) -> ElementType:
         """Return the type of the elements, `mixed` if none is chosen; raise `ModelError` if there is no such type."""
-        from tsm.elements import ELEMENTS, ElementType
-
         name = options.element or MIXED
         if name not in ELEMENTS:
             from comparisons.models.outside.programs import loaded, offered
@@ -72,9 +74,6 @@ class Tsm(Model):
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked; a tolerance is for elements that integrate."""
-        import tsm
-        from comparisons.answer import ContactEvent, ContactHistory, Deformation, FrictionHistory, Sections
-
         kind, tolerance = self.kind(scene, options), options.integration_tolerance
         structure = to_structure(scene, elements=options.elements, element=kind.name)
         if tolerance is not None and kind.meshed:
@@ -118,8 +117,6 @@ class Tsm(Model):
 
     def styles(self) -> dict[str, Style]:
         """Return one style for every type of element."""
-        from tsm.elements import ELEMENTS
-
         styles = {kind.name: Style(colour=kind.colour, marker=kind.marker) for kind in ELEMENTS.values()}
         return {f"{self.label} {name}": style for name, style in styles.items()}
 
@@ -151,13 +148,8 @@ class Tsm(Model):
             counts = {EXACT: (1,), MIXED: (2, 3, 5, 10, 20, 40), PAPER: (10, 20, 50)}
         yield from (Options(element=name, elements=n) for name in counts for n in counts[name])
 
-    def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:
+    def error_parts(self, scene: Scene, options: Options, bent: theory.Bending) -> dict[str, float]:
         """Return the allowed error from the element's order, contact and shear."""
-        import numpy as np
-
-        from comparisons.models import theory
-        from tsm.elements import ClosedForm
-
         kind, beam = self.kind(scene, options), scene.beams[0]
         if not isinstance(kind, ClosedForm):
             return {"accuracy of the integration": theory.EXACT}
@@ -186,7 +178,7 @@ class Tsm(Model):
         }
 
 
-def _reporter(structure: Structure, watch: Watch) -> Callable[[Any], None]:
+def _reporter(structure: tsm.Structure, watch: Watch) -> Callable[[Any], None]:
     """Return a function that passes accepted steps on to `watch`; elements are counted from 1."""
     counts = {beam.name: beam.elements for beam in structure.beams}
     first = dict(zip(counts, accumulate(counts.values(), initial=0), strict=False))
@@ -209,10 +201,6 @@ def _grid(scene: Scene, result: Any, k: int) -> Grid:
     The field `arc` is the distance along the undeformed axis. Axial stresses are given at
     the right and the left face, seen along the beam. `height` is 0 where the section has no height.
     """
-    import numpy as np
-
-    from comparisons.answer import Grid
-
     parts = []
     for number, beam in enumerate(scene.beams):
         stations = result.stations(beam.name, k)
@@ -232,7 +220,7 @@ def _grid(scene: Scene, result: Any, k: int) -> Grid:
     return Grid(points=points, cells={"line": np.arange(len(points)).reshape(-1, 2)}, point_data=data)
 
 
-def to_structure(scene: Scene, *, elements: int | None = None, element: str | None = None) -> Structure:
+def to_structure(scene: Scene, *, elements: int | None = None, element: str | None = None) -> tsm.Structure:
     """Return the `tsm.Structure` of `scene`: sections on the axis, rigid joints, dead loads.
 
     Parameters
@@ -244,8 +232,6 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
     element : str, optional
         Key of `tsm.ELEMENTS`, `mixed` if not given.
     """
-    import tsm
-
     refused = beams_refusal(scene)
     if refused is not None:
         raise ModelError(refused)
@@ -297,32 +283,29 @@ def _face_slope(scene: Scene, contact: ContactSpec) -> float:
     return rise / hypot(scene.beam(contact.beam).length, rise)
 
 
-def _pair(scene: Scene, contact: ContactSpec) -> ContactPair:
+def _pair(scene: Scene, contact: ContactSpec) -> tsm.ContactPair:
     """Contact pair. The face of a beam whose height tapers lies at half the height from the undeformed axis, see `_face_slope`."""
-    from tsm import ContactPair
-
     slope, radius = _face_slope(scene, contact), scene.radius(contact)
     inner = 1.0 - sqrt(1.0 - slope**2)
     start, end = (
         offset - inner * (offset - radius) for part in (0.0, 1.0) for offset in [scene.offset(contact, part)]
     )
     own = kept(contact, "node beam side keep friction")
-    return ContactPair(offset=start, end_offset=end if slope else None, radius=radius, **own)
+    return tsm.ContactPair(offset=start, end_offset=end if slope else None, radius=radius, **own)
 
 
-def _beam(scene: Scene, spec: BeamSpec, elements: int | None, kind: ElementType) -> Beam:
+def _beam(scene: Scene, spec: BeamSpec, elements: int | None, kind: ElementType) -> tsm.Beam:
     """Beam with nodes where loads inside it begin, end or act."""
-    from tsm import Beam, Section
 
-    def section(fraction: float) -> Section:
+    def section(fraction: float) -> tsm.Section:
         EA, GA, EI = spec.stiffness(fraction)
-        return Section(EA=EA, GA=GA, EI=EI)
+        return tsm.Section(EA=EA, GA=GA, EI=EI)
 
     nodes = spec.nodes if kind.meshed and not elements else ()
     count = elements or (spec.divisions if kind.meshed else 1)
     own = [load for _, load in scene.numbered_loads() if load.beam == spec.name]
     places = [part for load in own for part in (load.span if load.at is None else (load.at,))]
-    return Beam(
+    return tsm.Beam(
         **kept(spec, "name start end turn"),
         section=section(0.0),
         end_section=section(1.0) if spec.tapers else None,

@@ -1,10 +1,11 @@
 """Certificates: verdicts on an answer by comparison with the exact equilibrium near it."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from typing import Any
 
+from comparisons.frozen import Frozen
 from comparisons.referee.distance import Distance
 from comparisons.referee.state import Equilibrium
 
@@ -19,8 +20,7 @@ class Verdict(Enum):
     NOT_AN_EQUILIBRIUM = "not near an equilibrium"
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Judgement:
+class Judgement(Frozen):
     """The verdict on an answer at one load parameter.
 
     Attributes
@@ -54,8 +54,7 @@ class Judgement:
         return math.nan if self.exact is None else self.exact.error
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Certificate:
+class Certificate(Frozen):
     """The verdict on an answer along its path.
 
     Attributes

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from comparisons.answer.round_off import (
     force_round_off,
     least_force,
 )
+from comparisons.frozen import Value
 from comparisons.referee.guess import SHORTEST, end_of
 from comparisons.referee.rod import angle, axis_at_rest, cross, face_of
 from comparisons.referee.state import Equilibrium
@@ -44,8 +45,7 @@ _SHARPEST = 1.4
 """Largest angle between neighbouring chords in the bound of the chords' error [rad]; beyond it the tangent grows without limit."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Distance:
+class Distance(Value):
     """Largest differences between an answer and the exact equilibrium.
 
     Attributes

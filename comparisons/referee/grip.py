@@ -1,8 +1,8 @@
 """How friction holds a contact: slip one way or the other, or stick at a place."""
 
-from dataclasses import dataclass
-
 from numpy.polynomial import Polynomial
+
+from comparisons.frozen import Value
 
 
 class UnknownFrictionError(ValueError):
@@ -13,8 +13,7 @@ class UnknownFrictionError(ValueError):
         self.wrong = wrong
 
 
-@dataclass(frozen=True, kw_only=True)
-class Hold:
+class Hold(Value):
     """The place at which a contact began to stick, with lengths in units of the layout."""
 
     load_parameter: float
@@ -34,8 +33,7 @@ class Hold:
         return next((float(area(t)) for begin, area in reversed(self.areas) if begin <= t), 0.0)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Grip:
+class Grip(Value):
     """How a contact with friction is held."""
 
     friction: float

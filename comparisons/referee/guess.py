@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from comparisons.answer import ContactHistory, Response
+from comparisons.frozen import Frozen
 from comparisons.referee.grip import Grip
 from comparisons.referee.layout import NONE, Layout, Part
 from comparisons.scene import BeamSpec, ContactSpec, Scene
@@ -23,8 +24,7 @@ SHORTEST = 1e-9
 """Length of a part over the longest beam up to which two stations are at one place."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class AnswerState:
+class AnswerState(Frozen):
     """An answer at one load parameter, in the scene's units.
 
     Attributes

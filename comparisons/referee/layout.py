@@ -8,7 +8,7 @@ of a beam; its force is ``n = c - W(s)`` with an unknown constant c. Lengths are
 """
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from itertools import pairwise
 from types import MappingProxyType
@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.frozen import Frozen, Value
 from comparisons.referee.grip import Grip
 from comparisons.referee.rod import Face, Piece, Rod, face_of, rod_of, trimmed, units_of
 from comparisons.scene import ContactSpec, Scene
@@ -31,8 +32,7 @@ _NOTHING = np.zeros(3)
 _AXIS = Face(1.0, 0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Touch:
+class Touch(Value):
     """A closed contact between a touching point x and the axis point ``r = x - offset(s) nu(phi)``, nu the left normal of the direction phi.
 
     The offset is the reach of the face on the left of the beam, and minus the reach on its right.
@@ -51,8 +51,7 @@ class Touch:
     """How friction holds the contact; None without friction."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Station:
+class Station(Frozen):
     """An end of a beam, a joint, a contact, or a place inside a beam; of a contact, the position is that of the touching point."""
 
     reference: Array
@@ -82,8 +81,7 @@ class Hinge(NamedTuple):
     stiffness: float
 
 
-@dataclass(frozen=True, eq=False)
-class Part:
+class Part(Frozen):
     """A rod between two stations of a beam."""
 
     beam: int
@@ -101,8 +99,7 @@ class Part:
         return z[self.force : self.force + 2, None]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Layout:
+class Layout(Frozen):
     """Stations, parts and hinges of a scene at a load parameter; the parts of a beam are consecutive and in order."""
 
     scene: Scene
@@ -287,8 +284,8 @@ def lay_out(
         piece = 0
         for (_, first, arc), (_, last, arc_after) in pairwise(chain):
             piece += arc < NONE  # a place inside the beam, whose arc position is prescribed
-            constant = numbers.free(2)[0]
-            parts.append(Part(number, first, last, (arc, arc_after), constant, rod, rod.pieces[piece]))
+            between: dict[str, Any] = {"beam": number, "first": first, "last": last, "arcs": (arc, arc_after)}
+            parts.append(Part(**between, force=numbers.free(2)[0], rod=rod, piece=rod.pieces[piece]))
     return Layout(
         scene=scene, load_parameter=load_parameter, length=length, force=force, stations=tuple(stations),
         parts=tuple(parts), hinges=tuple(hinges), given=np.array(numbers.given[::-1]),

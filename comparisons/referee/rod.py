@@ -11,7 +11,6 @@ touches with its centre R further from the axis.
 """
 
 import math
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -19,6 +18,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyint, polymul, polyval
 from numpy.typing import NDArray
 
+from comparisons.frozen import Frozen
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 
 Array = NDArray[np.float64]
@@ -95,8 +95,7 @@ class Piece(NamedTuple):
         return self.strained(c, s, theta).way + np.array([np.cos(self.angle(s)), np.sin(self.angle(s))])
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Rod:
+class Rod(Frozen):
     """A beam in the units of a layout."""
 
     length: float

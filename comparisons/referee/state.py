@@ -1,12 +1,13 @@
 """The exact equilibrium in the units of the scene: contacts, reactions, ends, and shapes of the beams."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import Enum
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.frozen import Frozen
 from comparisons.referee.elements import AMPLITUDE, VALUES, WEIGHTS, Mesh, rotations, shapes, up_to
 from comparisons.referee.equations import System, assemble, index_of
 from comparisons.referee.layout import NONE, Layout, Touch
@@ -21,8 +22,7 @@ _INSIDE = 1.0 - 1e-9
 """Fraction of a part up to which points lie before its end."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Contact:
+class Contact(Frozen):
     """A closed contact in exact equilibrium.
 
     Attributes
@@ -43,8 +43,7 @@ class Contact:
     arc_position: float
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Shape:
+class Shape(Frozen):
     """Positions and section forces along a beam.
 
     Attributes
@@ -72,8 +71,7 @@ class SearchStatus(Enum):
     NOT_JUDGED = "the scene or the arrangement of its contacts is beyond double precision"
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Equilibrium:
+class Equilibrium(Frozen):
     """The exact equilibrium near an answer, or a guess of it, by the unknowns of a layout.
 
     Attributes

@@ -6,9 +6,10 @@ attributes. Where a value is itself wrong, reading it raises `Unjudged`, and the
 
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import Field, FrozenInstanceError, dataclass, field, fields
+from dataclasses import Field, field, fields
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, dataclass_transform
 
+from comparisons.frozen import Value
 from comparisons.scene.rules import MISSING, FieldError, Mistakes, RecordError, Records, ValueRule
 from comparisons.scene.tables import stated, table_values
 
@@ -36,26 +37,24 @@ def listed(name: str, kind: type["Record"], meaning: str) -> Any:
 
 
 @dataclass_transform(kw_only_default=True, frozen_default=True, field_specifiers=(key,))
-class Record:
+class Record(Value):
     """Immutable, hashable values that obey the rules of their keys, and those between them, `obeys`.
 
     Raises FieldError at construction, with all mistakes.
     """
 
-    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
     obeys: ClassVar[tuple[Callable[[Any], Mistakes], ...]] = ()
     _rules: ClassVar[dict[str, ValueRule]]
     _free: ClassVar[dict[str, Any]]
 
     def __init_subclass__(cls) -> None:
-        dataclass(init=False, repr=False, eq=False, match_args=False)(cls)
-        cls._rules = {item.name: rule_of(item) for item in fields(cls)}
-        cls._free = {item.name: item.default for item in fields(cls) if item.default is not MISSING}
+        super().__init_subclass__()
+        declared = cls._fields.values()
+        cls._rules = {item.name: rule_of(item) for item in declared}
+        cls._free = {item.name: item.default for item in declared if item.default is not MISSING}
         for name in cls._rules.keys() & vars(cls).keys():
             delattr(cls, name)  # so that a value which is wrong is not there
-        rows = (
-            f"{item.name} : {rule_of(item).accepts}\n    {item.metadata['meaning']}" for item in fields(cls)
-        )
+        rows = (f"{item.name} : {rule_of(item).accepts}\n    {item.metadata['meaning']}" for item in declared)
         said = (cls.__doc__ or "").replace("\n    ", "\n").rstrip()
         cls.__doc__ = "\n".join([said, "\nParameters\n----------", *rows, f"\n{RAISES}"])
 
@@ -74,9 +73,6 @@ class Record:
         if mistakes:
             raise RecordError(mistakes, self)
 
-    def _settle(self) -> None:
-        """Put values that depend on others into their final form."""
-
     def has(self, *names: str) -> bool:
         """Whether none of the named values is wrong."""
         return vars(self).keys() >= set(names)
@@ -93,25 +89,6 @@ class Record:
             if name in self._rules:
                 raise Unjudged(name)
             raise AttributeError(f"{type(self).__name__} has no attribute {name}")
-
-    def __setattr__(self, name: str, value: object) -> None:
-        raise FrozenInstanceError(f"cannot assign to field {name!r}")
-
-    def __delattr__(self, name: str) -> None:
-        self.__setattr__(name, None)
-
-    def _values(self) -> tuple[Any, ...]:
-        return (type(self), *(vars(self).get(name) for name in self._rules))
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Record) and self._values() == other._values()
-
-    def __hash__(self) -> int:
-        return hash(self._values())
-
-    def __repr__(self) -> str:
-        values = (f"{name}={vars(self).get(name)!r}" for name in self._rules)
-        return f"{type(self).__name__}({', '.join(values)})"
 
 
 def rule_of(item: Field[Any]) -> ValueRule:

@@ -10,13 +10,14 @@ construction, and the rest is a measured number.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from comparisons.answer import Array
 from comparisons.answer.quantities import forces, moments, size
+from comparisons.frozen import Frozen
 from comparisons.models import ROD, SOLID, TSM, solve
 from comparisons.models.model import Count, ModelError, Options, uncounted
 from comparisons.scene import Scene
@@ -45,8 +46,7 @@ Values = Mapping[str, Array]
 """Values at the load parameters `TIMES`, shape (4,), by quantity."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Budget:
+class Budget(Frozen):
     """The difference of TSM and solid and its parts, relative to the exact rods' value at the same load parameter."""
 
     scene: str

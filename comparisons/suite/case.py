@@ -2,17 +2,17 @@
 
 import hashlib
 import json
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
+from comparisons.frozen import Value
 from comparisons.models import Model, find
 from comparisons.models.model import Options
 from comparisons.scene import Scene, to_toml
 from comparisons.version import version
 
 
-@dataclass(frozen=True, kw_only=True)
-class Case:
+class Case(Value):
     """A scene with a model and its options: all that a result depends on.
 
     Element order, penalty and load steps are entries of the scene, elements and meshes are options. An unknown model is a `ModelError`.
@@ -22,7 +22,7 @@ class Case:
     model: str
     options: Options = field(default_factory=Options)
 
-    def __post_init__(self) -> None:
+    def _settle(self) -> None:
         find(self.model)
 
     @property

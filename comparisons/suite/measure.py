@@ -8,7 +8,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from importlib import import_module
 from math import nan
 from os import times
@@ -23,6 +23,7 @@ from comparisons.answer import Response
 from comparisons.answer.axis import storable
 from comparisons.answer.errors import Errors, errors
 from comparisons.answer.file import as_dict, restated
+from comparisons.frozen import Frozen
 from comparisons.models import certified, find, solve
 from comparisons.models.model import ModelError
 from comparisons.output import plain
@@ -39,8 +40,7 @@ STORED = ("seconds", "repeats", "peak_memory", "verdict", "process_seconds")
 """What is kept of a row besides its answer."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Row:
+class Row(Frozen):
     """A case with its answer, its cost and its errors."""
 
     case: Case  #: What was solved.

@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+
+from comparisons.frozen import Value
 
 JUNIT = """\
 <?xml version="1.0" encoding="utf-8"?>
@@ -21,8 +22,7 @@ errors="0" skipped="0" time="{{ "%f" % (checks | sum(2)) }}">
 </testsuite>"""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Finding:
+class Finding(Value):
     """An error with its bound and the reason of the bound; the error is infinite where there is no answer.
 
     What is compared as a number has its value and the exact one.

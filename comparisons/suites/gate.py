@@ -1,12 +1,12 @@
 """Errors of one model against bounds: what a CI run asks."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from math import inf, isnan
 
 from comparisons.answer import Response
 from comparisons.answer.errors import difference, worst_place
 from comparisons.answer.quantities import QUANTITIES
+from comparisons.frozen import Frozen
 from comparisons.models import ROD, certified, find, solve
 from comparisons.models.model import ModelError, Options
 from comparisons.referee.certify import ALLOWED
@@ -14,8 +14,7 @@ from comparisons.scene import Scene
 from comparisons.suites.finding import Finding, junit_text
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Gate:
+class Gate(Frozen):
     """A run, what it is measured against, and its errors with their bounds by name of the quantity, in the order asked for.
 
     An error is infinite where a solution stopped.

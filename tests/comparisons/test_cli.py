@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 # the table of the commands: that it is whole is the contract
-from comparisons.cli.options import STATED
+from comparisons.cli.command import STATED
 from comparisons.scene import built_in_scenes
 from tests.comparisons.suite.conftest import crossval
 

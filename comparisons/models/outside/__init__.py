@@ -12,14 +12,13 @@ from comparisons.models.outside.adapters.exchange import (
     serve,
 )
 from comparisons.models.outside.adapters.frame import Frame, frame
-from comparisons.models.outside.programs import Command, Functions, Program
+from comparisons.models.outside.programs import Command, Functions
 
 __all__ = [
     "Command",
     "Frame",
     "Functions",
     "Histories",
-    "Program",
     "RefusedError",
     "StoppedError",
     "frame",

@@ -3,67 +3,93 @@
 A program gets the resolved scene as JSON text and returns a response as JSON text.
 """
 
-from __future__ import annotations
-
 import json
 import sys
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Container
 from contextlib import redirect_stdout
-from dataclasses import dataclass
 from functools import cache, lru_cache
 from importlib import import_module
+from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from comparisons.answer import Response
 from comparisons.extras import install
-from comparisons.models.model import Model, ModelError, Options, Style
+from comparisons.frozen import Value
+from comparisons.models.model import Model, ModelError, Options, Style, Watch
+from comparisons.models.outside.adapters.exchange import Refusal, States, answered
 from comparisons.models.outside.child import ProgramError, ProgramStatus, found, run
-from comparisons.scene import rules
+from comparisons.models.outside.exchange import answer, refusal, request, unanswered
+from comparisons.scene import Scene, rules
 from comparisons.scene.rules import Rule, ValueRule
 from comparisons.scene.tables import InputError, check_keys, head_values, read_tables, read_text, refuse
-
-if TYPE_CHECKING:
-    from importlib.metadata import EntryPoint
-
-    from comparisons.answer import Response
-    from comparisons.models.model import Watch
-    from comparisons.models.outside.adapters.exchange import Refusal, States
-    from comparisons.scene import Scene
 
 SUFFIX = ".toml"
 """Suffix of a program file."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Source(ABC):
-    """What reads the text of a resolved scene and writes the text of a response."""
+class Program(Value, Model):
+    """A program of others, which reads the text of a resolved scene and writes the text of a response."""
 
-    name: str  #: Name of the model.
+    name: str
     label: str = ""  #: Name in figures and texts; the name of the model if empty.
     #: Numbers of elements along a beam that comparisons of cost run; empty if the program chooses its resolution itself.
     elements: tuple[int, ...] = ()
     colour: str = "#AA3377"  #: Colour of its lines, in hexadecimal digits.
     continuum: bool = False  #: Whether it computes a two-dimensional body.
-    #: ``refusal(scene)``: why the program cannot state the scene, None if it can; without it the program itself is asked.
-    refusal: Refusal | None = None
+    #: ``refuses(scene)``: why the program cannot state the scene, None if it can; without it the program itself is asked.
+    refuses: Refusal | None = None
+
+    def _settle(self) -> None:
+        vars(self).update(
+            label=self.label or self.name,
+            options=("elements",) if self.elements else (),
+            style=Style(colour=self.colour, marker="D"),
+        )
 
     @abstractmethod
     def digest(self) -> str:
         """Return a digest of what its answers depend on."""
 
-    def missing(self) -> str | None:
-        """Return what must be installed; None if it can be found."""
-        return None
-
     @abstractmethod
     def ask(self, text: str) -> bytes:
         """Return the answer to a scene; raise `ProgramError` if there is none."""
 
+    def missing(self) -> str | None:
+        """Return what must be installed; None if it can be found."""
+        return None
 
-@dataclass(frozen=True, kw_only=True)
-class Command(Source):
+    @property
+    def identity(self) -> str:
+        """Name of the program, and a digest of what its answers depend on."""
+        return f"{self.name} {self.digest()}"
+
+    def refusal(self, scene: Scene) -> str | None:
+        """Return why the program cannot state the scene, or what is missing to run it."""
+        return self.unstated(scene) or _refusal(self, scene) or self.missing()
+
+    def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:  # noqa: ARG002 - a program states no steps
+        """Return the response to `scene`, not yet checked. Its status names what failed if there is none."""
+        if (missing := self.missing()) is not None:
+            raise ModelError(missing)
+        try:
+            return answer(self.ask(request(scene, options, scene.times)), scene, self.name)
+        except ProgramError as error:
+            return unanswered(scene, self.name, error)
+
+    def setting(self, scene: Scene, options: Options) -> str:
+        """Return the numbers of elements; empty if the program chooses its resolution itself."""
+        counts = {options.elements or beam.divisions for beam in scene.beams} if self.options else set()
+        return "+".join(map(str, sorted(counts)))
+
+    def resolutions(self, *, quick: bool) -> tuple[Options, ...]:
+        """Return the program's numbers of elements; the first two if quick."""
+        return tuple(Options(elements=n) for n in self.elements[: 2 if quick else None]) or (Options(),)
+
+
+class Command(Program):
     """A command in a child process: the resolved scene goes to its standard input, a response comes from its standard output."""
 
     #: The program and its arguments. A program with a separator in its path is relative to `folder`.
@@ -92,8 +118,7 @@ class Command(Source):
         return run(self.command, self.folder, text, self.seconds, self.memory, self.environment)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Functions(Source):
+class Functions(Program):
     """Functions in this process, as `comparisons.models.outside.adapters.exchange.serve` takes them."""
 
     #: ``states(scene, histories)``: adds the states to `histories` and yields the load parameter of each.
@@ -105,11 +130,9 @@ class Functions(Source):
 
     def ask(self, text: str) -> bytes:
         """Call the functions. If one raises, the status of the response names the exception. What they print goes to standard error."""
-        from comparisons.models.outside.adapters.exchange import answered
-
         try:
             with redirect_stdout(sys.stderr):
-                return json.dumps(answered(json.loads(text), self.refusal, self.states)).encode()
+                return json.dumps(answered(json.loads(text), self.refuses, self.states)).encode()
         except Exception as error:
             raise ProgramError(ProgramStatus.CRASHED, f"{type(error).__name__}: {error}") from error
 
@@ -122,59 +145,14 @@ def _digest(text: bytes, *files: Path) -> str:
     return hashlib.sha256(b"\0".join(parts)).hexdigest()
 
 
-class Program(Model):
-    """A program of others; its source says how it is asked: in a child process (`Command`) or in this one (`Functions`)."""
-
-    def __init__(self, source: Source) -> None:
-        self.source = source
-        self.name, self.label = source.name, source.label or source.name
-        self.continuum = source.continuum
-        self.options = ("elements",) if source.elements else ()
-        self.style = Style(colour=source.colour, marker="D")
-        self.missing = source.missing
-
-    @property
-    def identity(self) -> str:
-        """Name of the program, and a digest of what its answers depend on."""
-        return f"{self.name} {self.source.digest()}"
-
-    def refusal(self, scene: Scene) -> str | None:
-        """Return why the program cannot state the scene, or what is missing to run it."""
-        return self.unstated(scene) or _refusal(self.source, scene) or self.missing()
-
-    def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:  # noqa: ARG002 - a program states no steps
-        """Return the response to `scene`, not yet checked. Its status names what failed if there is none."""
-        from comparisons.models.outside.exchange import answer, request, unanswered
-
-        missing = self.missing()
-        if missing is not None:
-            raise ModelError(missing)
-        try:
-            return answer(self.source.ask(request(scene, options, scene.times)), scene, self.name)
-        except ProgramError as error:
-            return unanswered(scene, self.name, error)
-
-    def setting(self, scene: Scene, options: Options) -> str:
-        """Return the numbers of elements; empty if the program chooses its resolution itself."""
-        counts = {options.elements or beam.divisions for beam in scene.beams} if self.options else set()
-        return "+".join(map(str, sorted(counts)))
-
-    def resolutions(self, *, quick: bool) -> tuple[Options, ...]:
-        """Return the program's numbers of elements; the first two if quick."""
-        counts = self.source.elements[: 2 if quick else None]
-        return tuple(Options(elements=count) for count in counts) or (Options(),)
-
-
 @lru_cache(maxsize=256)
-def _refusal(source: Source, scene: Scene) -> str | None:
+def _refusal(program: Program, scene: Scene) -> str | None:
     """Return why a scene without load parameters is refused; a program that fails does not refuse it."""
-    from comparisons.models.outside.exchange import refusal, request
-
     text = request(scene, Options(), ())
-    if source.refusal is not None:
-        return source.refusal(json.loads(text))
+    if program.refuses is not None:
+        return program.refuses(json.loads(text))
     try:
-        return refusal(source.ask(text))
+        return refusal(program.ask(text))
     except ProgramError:
         return None
 
@@ -184,12 +162,10 @@ def _refusal_of(module: str) -> Refusal:
 
 
 ADAPTERS: dict[str, Program] = {
-    name: Program(
-        Command(
-            name=name, label=label, command=(sys.executable, "-m", module), folder=Path(__file__).parents[3],
-            elements=(10, 20, 40, 80), colour=colour, requires=requires, needs=needs, continuum=continuum,
-            refusal=_refusal_of(module),
-        )
+    name: Command(
+        name=name, label=label, command=(sys.executable, "-m", module), folder=Path(__file__).parents[3],
+        elements=(10, 20, 40, 80), colour=colour, requires=requires, needs=needs, continuum=continuum,
+        refuses=_refusal_of(module),
     )
     for name, label, colour, requires, needs, continuum in (
         ("calculix", "CalculiX", "#117733", "ccx", "Debian's calculix-ccx is needed: there is no program ccx", True),
@@ -235,8 +211,6 @@ def used() -> tuple[Model, ...]:
 @cache
 def offered(group: str = "crossval.models") -> dict[str, EntryPoint]:
     """Return the entry points by which installed packages offer models, or another group, by their names; nothing is imported."""
-    from importlib.metadata import entry_points
-
     return {point.name: point for point in entry_points(group=group)}
 
 
@@ -264,7 +238,7 @@ def read_program(path: Path) -> Program:
     given, mistakes = head_values(tables, "program", RULES, required=("name", "command"))
     mistakes += check_keys(tables, ("program",), required=("program",))
     refuse(source, mistakes, tables)
-    return Program(Command(folder=path.resolve().parent, **given))
+    return Command(folder=path.resolve().parent, **given)
 
 
 def _list(items: str, rule: ValueRule, least: int = 0) -> ValueRule:

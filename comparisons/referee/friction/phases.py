@@ -1,12 +1,12 @@
 """The phases of the contacts in an answer: open, slip one way or the other, or stick, with where each begins."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.answer import ContactEvent, ContactHistory, Response
+from comparisons.frozen import Frozen
 from comparisons.referee.path import changes_of
 from comparisons.scene import ContactSpec, Scene
 
@@ -22,8 +22,7 @@ SAME = 1e-9
 """Load parameters of one event."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Phase:
+class Phase(Frozen):
     """A phase of a contact, which begins between the load parameters `low` and `high`, with the phase before it."""
 
     spec: ContactSpec

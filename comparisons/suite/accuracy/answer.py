@@ -1,7 +1,6 @@
 """The answer to a scene at a requested accuracy: the model that the scene requires, and the cheapest setting that suffices."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
 
@@ -10,6 +9,7 @@ import numpy as np
 from comparisons.answer import Array, Response
 from comparisons.answer.file import SCHEMA
 from comparisons.answer.quantities import QUANTITIES, names
+from comparisons.frozen import Frozen, Value
 from comparisons.models import MODELS, SOLID, TSM, Model, solve
 from comparisons.models.model import ModelError, Options
 from comparisons.scene import BeamSpec, Scene
@@ -22,8 +22,7 @@ LOOKED_AT = 8
 """Number of states that are searched for the largest strain."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Theory:
+class Theory(Value):
     """Error of beam theory against the solid body, which no finer mesh of the beam removes."""
 
     error: float  #: Expected relative error of a contact force.
@@ -32,8 +31,7 @@ class Theory:
     kink: float  #: Largest angle by which shear kinks the axis at a contact, ``F/GA`` [rad].
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Answer:
+class Answer(Frozen):
     """A response to a stated accuracy."""
 
     response: Response  #: The response at all load parameters.

@@ -1,13 +1,14 @@
 """One cell of the matrix: what must hold of its answer, against other answers or by a law in closed form, and its verdict."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from comparisons.answer import Response
 from comparisons.answer.errors import difference
+from comparisons.frozen import Value
 from comparisons.models import TSM
 from comparisons.models.theory import FLOOR, Bending, bending, chord_term, element_lengths, ordinal
 from comparisons.models.verify import CHECK_FAILED
@@ -64,8 +65,7 @@ def in_units_of(other: BeamSpec, beam: BeamSpec, response: Response) -> Response
     )
 
 
-@dataclass(frozen=True, kw_only=True)
-class Against:
+class Against(Value):
     """The check against the answer of another case in any units; by default theory says what is allowed."""
 
     case: Case
@@ -124,8 +124,7 @@ def circle(case: Case, own: Response, _: Results) -> Finding:
     return Finding(name="circle", error=error, allowed=allowed, why=why)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Cell:
+class Cell(Value):
     """A case at one position of the matrix, the varied quantity, the model and the value, with what must hold of it."""
 
     axis: str = ""

@@ -3,10 +3,11 @@
 import math
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
+from comparisons.frozen import Value
 from comparisons.models.model import Options
 from comparisons.scene import InputError, Scene, built_in_scenes, load_scene, read_scene
 from comparisons.suite.settings import changed
@@ -18,8 +19,7 @@ Changes = Mapping[str, Any]
 """New values of a scene's settings by the names of a study file, ``contact.friction``."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Picture:
+class Picture(Value):
     """What is drawn."""
 
     axes: Sequence[str] = ()  #: Labels of the axes, by default places.
@@ -28,8 +28,7 @@ class Picture:
     guide: Sequence[float] = ()  #: Order and first value of a line for the eye, on logarithmic axes.
 
 
-@dataclass(frozen=True, kw_only=True)
-class Quantity:
+class Quantity(Value):
     """A number with its exact value, and where an answer has it."""
 
     name: str = ""  #: With the unit, unless the quantity is dimensionless.
@@ -48,8 +47,7 @@ class Quantity:
         return abs(self.exact) if self.scale is None else self.scale
 
 
-@dataclass(frozen=True, kw_only=True)
-class Trial:
+class Trial(Value):
     """A model that is put to a problem."""
 
     model: str  #: Model with its element.
@@ -65,8 +63,7 @@ class Trial:
         return f"{self.model}, {self.setting}" if self.setting else self.model
 
 
-@dataclass(frozen=True, kw_only=True)
-class Problem:
+class Problem(Value):
     """A problem with an exact answer."""
 
     name: str  #: A short name without spaces.

@@ -4,11 +4,11 @@
 # where none helps, the area of [P] 4.1 begins.
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
 from comparisons.answer import Array
+from comparisons.frozen import Frozen
 from tsm import Settings, Structure
 from tsm.contact.contact_set import initial_state
 from tsm.model.model import Model
@@ -32,8 +32,7 @@ _ITERATIONS = 25
 _BEHIND = (0.1, 0.2, 0.3, 0.4, 0.5)  # places inside the next element, in element lengths
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Approach:
+class Approach(Frozen):
     """Equilibria (k,) on the way to a node at an arc position, and their distances in element lengths."""
 
     node: float

@@ -1,7 +1,7 @@
 """What the errors of a trade-off are measured against: the exact rods, and the limit of the solid by extrapolation."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from comparisons.answer import Array, Response
 from comparisons.answer.axis import SampledAxes, sampled_axes
 from comparisons.answer.errors import Errors, errors
 from comparisons.answer.quantities import forces, moments, scales, size
+from comparisons.frozen import Frozen
 from comparisons.models import ROD
 from comparisons.scene import Scene
 from comparisons.suite import Case
@@ -24,8 +25,7 @@ class NoReferenceError(ValueError):
     """The exact rods did not complete: one line."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Reference:
+class Reference(Frozen):
     """A response that errors are measured against, its uncertainty by scope and quantity, and what it is in one sentence."""
 
     response: Response

@@ -1,10 +1,10 @@
 """A scene as a frame of nodes and straight elements, for adapters of beam programs."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, NamedTuple
 
+from comparisons.frozen import Value
 from comparisons.models.outside.adapters.exchange import Histories, Table, named, points_along
 
 
@@ -17,8 +17,7 @@ class Element(NamedTuple):
     length: float  #: Undeformed length.
 
 
-@dataclass(frozen=True, kw_only=True)
-class Frame:
+class Frame(Value):
     """Nodes and elements of all beams; joined beams share a node."""
 
     scene: Table

@@ -13,7 +13,7 @@ import pytest
 from comparisons.answer import Response
 from comparisons.models import certified, find, solve
 from comparisons.models.model import ModelError, Options
-from comparisons.models.outside import Functions, Program
+from comparisons.models.outside import Functions
 from comparisons.scene import LoadSpec, Scene, load_scene
 
 ROOT = Path(__file__).parents[4]
@@ -151,7 +151,7 @@ def test_a_program_that_is_not_installed_is_named(monkeypatch, tmp_path):
 def given(scene: Scene) -> dict[str, Any]:
     """Return what a program gets of a scene when it is asked whether it states it."""
     seen: list[dict[str, Any]] = []
-    Program(Functions(name="spy", refusal=seen.append, states=lambda *_: iter(()))).refusal(scene)  # type: ignore[arg-type, func-returns-value]
+    Functions(name="spy", refuses=seen.append, states=lambda *_: iter(())).refusal(scene)  # type: ignore[arg-type, func-returns-value]
     return seen[0]
 
 

@@ -146,7 +146,7 @@ def test_the_bending_that_theory_allows_for_has_no_units():
     for change in (Change(), Change(length=1e3, force=1e-3)):
         scene = change.scene(SCENE)
         (beam,), exact = scene.beams, solve(scene, "rod")
-        found.append(list(vars(bending(beam, exact)).values()))
+        found.append(list(bending(beam, exact)))
         force = exact.contacts["pin->" + beam.name].force.max()
         assert found[-1][0] == pytest.approx(force * beam.length**2 / beam.EI)
     assert found[0] == pytest.approx(found[1])
