@@ -66,9 +66,10 @@ def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool]) -> list[str]:
     return ["  ".join(side(text, width) for side, text, width in line).rstrip() for line in lines]
 
 
-def markdown(rows: Sequence[Sequence[str]]) -> str:
-    """Return rows of cells, the header first, as a table in Markdown."""
-    lines = ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |\n" for row in rows]
+def markdown(rows: Sequence[Mapping[str, str]]) -> str:
+    """Return rows of equal keys as a table in Markdown."""
+    cells = [list(rows[0]), *(row.values() for row in rows)]
+    lines = ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |\n" for row in cells]
     return "".join([lines[0], "|" + "---|" * len(rows[0]) + "\n", *lines[1:]])
 
 

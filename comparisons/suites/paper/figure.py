@@ -3,13 +3,14 @@
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import Any
 
 from comparisons.answer import Response
 from comparisons.models import find
-from comparisons.output import Row, write_numbers, write_rows
+from comparisons.output import Row
 from comparisons.report import palette
 from comparisons.report.pages import Section
 from comparisons.scene import Scene
@@ -36,18 +37,12 @@ class Study:
     scenes: Sequence[Scene] = ()
     moving: Sequence[Section] = ()
 
-    def write(self, name: str, folder: Path) -> list[Path]:
-        """Draw the pictures and write the numbers, those of the JSON file under a name; return the files."""
-        files = []
-        for stem, drawn in self.pictures.items():
-            paths = [folder / f"{stem}.png", folder / f"{stem}.svg"]
-            if callable(drawn):
-                drawn(*paths)
-            else:
-                draw_lines(drawn, *paths, **STATED["picture"][stem])
-            files += paths
-        files += [write_rows(folder / f"{stem}.csv", rows) for stem, rows in self.tables.items()]
-        return [*files, write_numbers(folder / f"{name}.json", self.numbers)]
+    def drawn(self) -> dict[str, Callable[..., None]]:
+        """Return what draws the pictures."""
+        return {
+            stem: one if callable(one) else partial(draw_lines, one, **STATED["picture"][stem])
+            for stem, one in self.pictures.items()
+        }
 
 
 def stops(runs: Mapping[str, Response]) -> list[str]:
