@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.answer import Response
+from comparisons.answer.table import table
 from comparisons.models import TSM, find
 from comparisons.models.model import BRANCHES, ModelError, Options
 from comparisons.output import tabulated
@@ -36,6 +37,8 @@ Axes = dict[settings.Path, tuple[object, ...]]
 
 LARGEST, LARGEST_COUNT = 100_000, 10_000
 """Cases of a study, and values of a range."""
+ANSWERED = ("force", "arc_position", "moment", "tip_x", "tip_y")
+"""Quantities whose values at the end are columns."""
 DETAILS = ("moment:", "tip_x:", "tip_y:")
 """Columns that a table for a reader leaves out, by their beginnings."""
 HIDDEN = {"label", "load_parameter", "cutbacks", "seconds", "repeats", "peak_memory", "version", "message"}
@@ -251,18 +254,13 @@ def _varied(tables: Collection[Mapping[str, object]]) -> list[str]:
 
 def _answers(response: Response) -> dict[str, float]:
     """Return the last state reached."""
-    if not len(response.load_parameter):
-        return {}
-    contacts, tips = response.contacts.items(), response.tips.items()
-    last = {
-        "load_parameter": response.load_parameter[-1],
-        **{f"force:{pair}": one.force[-1] for pair, one in contacts},
-        **{f"arc_position:{pair}": one.arc_position[-1] for pair, one in contacts},
-        **{f"moment:{node}": one.moment[-1] for node, one in response.supports.items()},
-        **{f"tip_x:{beam}": tip[-1, 0] for beam, tip in tips},
-        **{f"tip_y:{beam}": tip[-1, 1] for beam, tip in tips},
-    }
-    return {name: float(value) for name, value in last.items() if np.isfinite(value)}
+    last = {name: values[-1:] for name, values in table(response, along=False).items()}
+    told = {"load_parameter": last.pop("load_parameter")}
+    for name, value in last.items():
+        of, _, what = name.rpartition(".")
+        if what in ANSWERED:
+            told[f"{what}:{of}"] = value
+    return {name: float(value[0]) for name, value in told.items() if np.isfinite(value).any()}
 
 
 def _text(value: object) -> object:

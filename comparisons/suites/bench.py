@@ -5,7 +5,6 @@ import json
 import math
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import cache
 from operator import attrgetter
 from pathlib import Path
@@ -176,8 +175,7 @@ def _free(scene: Scene) -> list[str]:
 
 def histories(scene: Scene, response: Response) -> dict[str, Any]:
     """Return what a response states, by ``OF.WHAT``, each of shape (s,)."""
-    # without extremes along the beams, which take long
-    found, steps = table(replace(response, definition=None)), range(len(response.load_parameter))
+    found, steps = table(response, along=False), range(len(response.load_parameter))
     for node in _free(scene):
         name, _, end = node.partition(".")
         lines = [response.axis_line(name, k)[1][0 if end == "start" else -1] for k in steps]

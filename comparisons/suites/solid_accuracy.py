@@ -28,9 +28,6 @@ At 20 N/m the penetration takes some 5e-5 of the force; at 200 N/m longer steps 
 """
 SHOWN = (0.1, 0.25, 0.5, 0.7)
 """Load parameters of the contact."""
-COLUMNS = (
-    "case", "clamp", "mesh", "penalty", "step", "load_parameter", "reached", "fem_reference", "calculix", "difference", "largest", "message",
-)  # fmt: skip
 STEPS = 20
 """Load parameters of every run but those beside CalculiX."""
 LATE = slice(2, None)
@@ -61,11 +58,17 @@ def peers(report: Report) -> Iterator[Row]:
     """Tip displacement and contact force of the solid and of CalculiX on the same meshes."""
     problem = to_solid(load_scene("ks-face"))
     for clamp, load, mesh in product((ROD.name, "full"), LOADS, PEER_MESHES):
-        yield _tip_row(replace(problem.strips[0], clamp=clamp, mesh=mesh), load)
+        strip = replace(problem.strips[0], clamp=clamp, mesh=mesh)
+        yield {"case": f"tip load {load:g} EI/L^2", **_named(strip), **_tip(strip, load)}
         report(f"tip load {load:g}, {clamp} clamp, {mesh[0]}x{mesh[1]}")
     for steps, penalty in RUNS:
-        yield from _pin_rows(problem, steps, penalty)
+        of = {"case": "pin on the face", **_named(problem.strips[0]), "penalty": penalty, "step": 1 / steps}
+        yield from (of | row for row in _pin(problem, steps, penalty))
         report(f"pin on the face, step {1 / steps:g}, {penalty:g} N/m")
+
+
+def _named(strip: "Strip") -> Row:
+    return {"clamp": strip.clamp, "mesh": "x".join(map(str, strip.mesh))}
 
 
 def contact_forces(problem: "SolidProblem", steps: int, count: int) -> Array:
@@ -75,7 +78,7 @@ def contact_forces(problem: "SolidProblem", steps: int, count: int) -> Array:
     return result.contacts[contact.name].force
 
 
-def _tip_row(strip: "Strip", load: float) -> Row:
+def _tip(strip: "Strip", load: float) -> Row:
     """Displacement of the free end under a transverse dead load that is spread over it, in ten steps."""
     from fem_reference import PointLoad, SolidProblem
 
@@ -84,12 +87,11 @@ def _tip_row(strip: "Strip", load: float) -> Row:
     result = solved(SolidProblem(strips=(strip,), loads=(dead,)), np.arange(1, 11) / 10)
     u, other = result.tips[strip.name][-1] - strip.end, tip_load(strip, force).tip[-1]
     own, peer, apart = (float(np.hypot(*one)) for one in (u, other, other - u))
-    end = {"load_parameter": 1.0, "reached": 1.0, "message": ""}
     found = {"fem_reference": own, "calculix": peer, "difference": apart / own}
-    return _row(strip, case=f"tip load {load:g} EI/L^2", **end, **found)
+    return {"load_parameter": 1.0, "reached": 1.0, **found}
 
 
-def _pin_rows(problem: "SolidProblem", steps: int, penalty: float) -> Iterator[Row]:
+def _pin(problem: "SolidProblem", steps: int, penalty: float) -> Iterator[Row]:
     """Yield a row per load parameter shown, with the contact force as the clamp bears it."""
     answer = pressed(problem.strips[0], problem.pins[0].path, steps, penalty)
     calculix = np.hypot(*answer.force.T)
@@ -98,17 +100,10 @@ def _pin_rows(problem: "SolidProblem", steps: int, penalty: float) -> Iterator[R
     ended = {"reached": float(answer.load_parameter[-1]), "largest": float(np.abs(differences).max())}
     for t in SHOWN:
         k = round(steps * t) - 1
-        found: Row = {"fem_reference": float(solid[k]), "message": answer.stopped}
-        if k < calculix.size:
-            found |= {"calculix": float(calculix[k]), "difference": float(differences[k])}
-            found["message"] = answer.stopped if t == SHOWN[-1] else ""
-        path = {"penalty": penalty, "step": 1 / steps, "load_parameter": t}
-        yield _row(problem.strips[0], case="pin on the face", **path, **ended, **found)
-
-
-def _row(strip: "Strip", **values: Any) -> Row:
-    own: Row = {"clamp": strip.clamp, "mesh": "x".join(map(str, strip.mesh)), **values}
-    return {name: own.get(name) for name in COLUMNS}
+        there = k < calculix.size
+        found = {"calculix": float(calculix[k]), "difference": float(differences[k])} if there else {}
+        said = {"message": "" if there and t < SHOWN[-1] else answer.stopped}
+        yield {"load_parameter": t, "fem_reference": float(solid[k]), **found, **ended, **said}
 
 
 def locking(report: Report) -> Iterator[Row]:

@@ -7,7 +7,7 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from comparisons.answer import Array, Response
 from comparisons.answer.axis import STATIONS, axes_at_stations
@@ -93,13 +93,8 @@ def value(response: Response, words: str, at: float) -> float:
         beam, part, direction = more
         station = round(float(part) * (len(STATIONS) - 1))
         return float(axes_at_stations(response, beam, [k])[0, station, "xy".index(direction)])
-    found = histories(response)
+    found = table(response, along=False)
     return float(found[what][k] if what in found else np.hypot(found[f"{what}_x"][k], found[f"{what}_y"][k]))
-
-
-def histories(response: Response) -> dict[str, NDArray[Any]]:
-    """Return `comparisons.answer.table` without extremes along the beams, which take long."""
-    return table(replace(response, definition=None))
 
 
 def step(response: Response, load_parameter: float) -> int:
@@ -142,7 +137,7 @@ def greatest_load(answers: Answers) -> Iterable[float]:
     given, response, pin = answers.problem.settings, answers.solved(draw=False), answers.scene.pins[-1]
     t, a = response.load_parameter, pin.points[0][0]
     rise = np.array([pin.position(one)[1] for one in t]) / a
-    load = histories(response)[given["load"]] * given["times"] * a**2 / answers.scene.beams[0].EI
+    load = table(response, along=False)[given["load"]] * given["times"] * a**2 / answers.scene.beams[0].EI
     answers.draw(rise, load)
     _draw_levels(answers, answers.problem.quantities[::2], rise.max())
     there = t <= max(pin.corners, default=1.0)
@@ -252,7 +247,7 @@ def work_over_energy(answers: Answers) -> Iterable[float]:
 def invariance(answers: Answers) -> Iterable[float]:
     """Largest changes of contact force and clamp moment in the scene that is moved, mirrored or named from the other end."""
     other = read_scene(answers.problem.settings["other"], answers.problem.name)
-    found = [histories(answers.solved(draw=False)), histories(answers.solved(other))]
+    found = [table(answers.solved(draw=False), along=False), table(answers.solved(other), along=False)]
     answers.lines.extend(undeformed(other))
     for name in ("force", "moment"):
         a, b = (

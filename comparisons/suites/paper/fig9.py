@@ -15,7 +15,16 @@ from comparisons.report.motion import motion_section, tracks
 from comparisons.scene import Scene, load_scene
 from comparisons.suite.settings import changed
 from comparisons.suites.drawing import Line
-from comparisons.suites.paper.figure import CANTILEVER, SIMPLE, STATED, TIMOSHENKO, Study, shapes, stops
+from comparisons.suites.paper.figure import (
+    CANTILEVER,
+    SIMPLE,
+    STATED,
+    TIMOSHENKO,
+    Study,
+    pictures,
+    shapes,
+    stops,
+)
 
 UPPER, TIP, LOWER = "pin->upper", "upper.end->lower", "pin->lower"
 """The contact pairs."""
@@ -77,7 +86,7 @@ def double_beam(*, quick: bool, report: Report) -> Study:
             "fig9": [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
         },
         numbers=numbers,
-        pictures={**({"fig9": drawn} if stages else {}), "fig9-forces": forces},
+        pictures=pictures(**({"fig9": drawn} if stages else {}), fig9_forces=forces),
         scenes=[finer],
         moving=[
             motion_section("Double beam: shapes and histories", finer, {BEAMS: response}, shown, focus=BEAMS)

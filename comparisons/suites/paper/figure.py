@@ -27,22 +27,21 @@ Numbers = Mapping[str, Any]
 class Study:
     """What is found for a figure: its scenes, rows and numbers, pictures, and moving shapes for the page.
 
-    `tables` and `pictures` go by the names of their files; a picture is its panels, or draws to the paths that it is given.
+    `tables` and `pictures` go by the names of their files; a picture draws to the paths that it is given.
     ``numbers["stopped"]`` names the runs that the figure needs and that did not go through.
     """
 
     tables: Mapping[str, list[Row]]
     numbers: Numbers
-    pictures: Mapping[str, Mapping[str, Iterable[Line]] | Callable[..., None]]
+    pictures: Mapping[str, Callable[..., None]]
     scenes: Sequence[Scene] = ()
     moving: Sequence[Section] = ()
 
-    def drawn(self) -> dict[str, Callable[..., None]]:
-        """Return what draws the pictures."""
-        return {
-            stem: one if callable(one) else partial(draw_lines, one, **STATED["picture"][stem])
-            for stem, one in self.pictures.items()
-        }
+
+def pictures(**drawn: Mapping[str, Iterable[Line]]) -> dict[str, Callable[..., None]]:
+    """Return what draws pictures, the panels of each by the name of its file, with a line below for a hyphen."""
+    names = {name.replace("_", "-"): panels for name, panels in drawn.items()}
+    return {name: partial(draw_lines, panels, **STATED["picture"][name]) for name, panels in names.items()}
 
 
 def stops(runs: Mapping[str, Response]) -> list[str]:

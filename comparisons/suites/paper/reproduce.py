@@ -171,7 +171,7 @@ def reproduce(name: str, *, quick: bool, report: Report) -> Found:
         brief=brief(judgements, quick=quick),
         files=files,
         sections=sections,
-        pictures={stem: draw for study in found.values() for stem, draw in study.drawn().items()},
+        pictures={stem: draw for study in found.values() for stem, draw in study.pictures.items()},
         scenes=dict.fromkeys(scene for study in found.values() for scene in study.scenes),
         stopped=[
             f"{figure}: {one}" for figure, study in found.items() for one in study.numbers.get("stopped", ())

@@ -100,7 +100,7 @@ def test_study_is_within_its_bars(stated):
     assert min(reached.values()) >= 0.02
     assert max(reached.values()) >= 0.5
     for row in pins:
-        assert row["message"] or row["calculix"]
+        assert row["message"] or row.get("calculix")
         assert row["largest"] <= 1e-3
     assert len(reported) == 12
     for clamp in ("rod", "full"):
@@ -109,6 +109,6 @@ def test_study_is_within_its_bars(stated):
             stated(f"calculix.{clamp}-{mesh}", *found)
     for step in reached:
         of_step = [row for row in pins if row["step"] == step]
-        there = [row["difference"] for row in of_step if row["difference"] is not None]
+        there = [row["difference"] for row in of_step if "difference" in row]
         stated(f"calculix.pin-{step:g}", of_step[0]["reached"], *there)
         stated(f"calculix.largest-{step:g}", of_step[0]["largest"])
