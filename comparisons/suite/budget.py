@@ -64,9 +64,9 @@ class Budget:
 def budget_cases(scene: Scene) -> dict[str, Case]:
     """Return the solutions behind the budget by name; a name ``finer ...`` is that of a mesh twice as fine."""
     short = replace(scene, load_parameters=STEPS)
-    free: Changes = {("contact", "penalty"): None, ("contact", "penetration"): 1e-12}
-    law: Changes = {("beam", "material"): "biot-linear"}
-    halved: Changes = {("beam", one.name, "mesh"): (2 * one.mesh[0], 2 * one.mesh[1]) for one in scene.beams}
+    free: Changes = {"contact.penalty": None, "contact.penetration": 1e-12}
+    law: Changes = {"beam.material": "biot-linear"}
+    halved: Changes = {f"beam.{one.name}.mesh": (2 * one.mesh[0], 2 * one.mesh[1]) for one in scene.beams}
     solids: dict[str, Changes] = {
         "bodies": {},
         "linear": law,
@@ -74,7 +74,7 @@ def budget_cases(scene: Scene) -> dict[str, Case]:
         "like rods": {**law, **free},
         "finer bodies": halved,
         "finer like rods": {**law, **free, **halved},
-        "careful": {("scene", "load_parameters"): 2 * STEPS},
+        "careful": {"scene.load_parameters": 2 * STEPS},
     }
     beams = {"beams": ELEMENTS, "finer beams": 2 * ELEMENTS}
     return {

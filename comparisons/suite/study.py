@@ -32,8 +32,8 @@ from comparisons.suite.case import Case
 from comparisons.suite.measure import Row
 from comparisons.version import version
 
-Axes = dict[settings.Path, tuple[object, ...]]
-"""The values of every setting that a run varies, by its place."""
+Axes = dict[str, tuple[object, ...]]
+"""The values of every setting that a run varies."""
 
 LARGEST, LARGEST_COUNT = 100_000, 10_000
 """Cases of a study, and values of a range."""
@@ -99,16 +99,16 @@ def _cases(scene: Scene, runs: list[dict[str, Any]], folder: Path, mistakes: lis
     return cases
 
 
-def _axes(run: dict[str, Any], mistakes: list[FieldError], place: settings.Path = ()) -> Axes:
+def _axes(run: dict[str, Any], mistakes: list[FieldError], place: str = "") -> Axes:
     """Return what a run, or a table in it, varies: the values of every setting by its place."""
     axes: Axes = {}
     for key, given in run.items():
-        at = (*place, key)
+        at = f"{place}{key}"
         if isinstance(given, dict) and not RANGE.keys() & given.keys():
-            axes |= _axes(given, mistakes, at)
+            axes |= _axes(given, mistakes, f"{at}.")
             continue
         try:
-            axes[at] = values(".".join(at), given)
+            axes[at] = values(at, given)
         except FieldError as error:
             mistakes += error.mistakes
     return axes
@@ -144,9 +144,9 @@ HEAD_RULES: dict[str, Rule] = {"name": rules.name, "scene": rules.text, "repeats
 """The keys of the table ``[study]`` with the rules of their values."""
 
 
-def _case(scene: Scene, chosen: dict[settings.Path, object], folder: Path) -> Case:
+def _case(scene: Scene, chosen: dict[str, object], folder: Path) -> Case:
     """Return the case of the chosen settings; raise all mistakes in them."""
-    given = {place[0]: value for place, value in chosen.items() if len(place) == 1}
+    given = {key: value for key, value in chosen.items() if "." not in key}
     rules_of: dict[str, Rule] = {
         "model": partial(_known, find_it=partial(_model, folder=folder)),
         **OPTION_RULES,
@@ -156,11 +156,11 @@ def _case(scene: Scene, chosen: dict[settings.Path, object], folder: Path) -> Ca
         model = find(own["model"])
         none = f'is no option of model = "{model.name}"'
         mistakes += (FieldError(key, given[key], none) for key in own.keys() - {"model", *model.options})
-    changes = {place: value for place, value in chosen.items() if len(place) > 1}
+    changes = {key: value for key, value in chosen.items() if "." in key}
     for place, value in changes.items():
-        if place[0] in LISTS and not getattr(scene, f"{place[0]}s"):
-            none = f"the scene has no {place[0]}"
-            mistakes.append(FieldError(place[0], {place[-1]: value}, none))
+        kind, *_, key = place.split(".")
+        if kind in LISTS and not getattr(scene, f"{kind}s"):
+            mistakes.append(FieldError(kind, {key: value}, f"the scene has no {kind}"))
     try:
         scene = settings.changed(scene, changes)
     except FieldError as error:

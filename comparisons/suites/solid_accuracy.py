@@ -39,8 +39,8 @@ SCENES = ("ks-cantilever", "ks-face")
 COMPARED = ("contact_force", "arc_position")
 PENETRATION = 1e-10
 """Penetration of the solid model, over the length."""
-EXACT: Changes = {("contact", "penetration"): PENETRATION}
-ROD_LAW: Changes = {**EXACT, ("beam", "material"): "biot-linear"}
+EXACT: Changes = {"contact.penetration": PENETRATION}
+ROD_LAW: Changes = {**EXACT, "beam.material": "biot-linear"}
 """The rod's own law, without penetration."""
 
 
@@ -142,7 +142,7 @@ def scatter(report: Report) -> Iterator[Row]:
         scene = _stepped(name)
         x, y = scene.pins[0].points[0]
         # the centre of a pin of finite radius lies that much below the scene's sharp pin
-        pin: Changes = {("pin", "start"): (x, y - radius), ("pin", "radius"): radius or None}
+        pin: Changes = {"pin.start": (x, y - radius), "pin.radius": radius or None}
         scene = changed(scene, {**ROD_LAW, **pin})
         found, finer = (
             np.array([_history(_beam(scene, mesh=one)) for one in of]) for of in (MESHES, SEQUENCE)
@@ -161,7 +161,7 @@ def penalty(report: Report) -> Iterator[Row]:
         scene = _stepped(name)
         exact = _contact(changed(scene, EXACT)).force
         for eps in (10.0 ** np.arange(-3, 14)).tolist():
-            result = solved(to_solid(changed(scene, {("contact", "penalty"): eps})), scene.times, throw=False)
+            result = solved(to_solid(changed(scene, {"contact.penalty": eps})), scene.times, throw=False)
             (contact,), found = result.contacts.values(), (None, None)
             if result.status.name == "COMPLETED":
                 found = -contact.gap[STEPS // 2 - 1], np.abs(contact.force / exact - 1.0).max()
@@ -191,7 +191,7 @@ def _slender(slenderness: float, nu: float) -> Scene:
 
 
 def _beam(scene: Scene, **changes: object) -> Scene:
-    return changed(scene, {("beam", key): value for key, value in changes.items()})
+    return changed(scene, {f"beam.{key}": value for key, value in changes.items()})
 
 
 def _contact(scene: Scene, count: int = STEPS, **strip: Any) -> "ContactHistory":

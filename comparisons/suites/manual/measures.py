@@ -18,9 +18,10 @@ from comparisons.models.model import Options
 from comparisons.models.solid import to_solid
 from comparisons.models.tsm import to_structure
 from comparisons.scene import LoadSpec, Scene, read_scene
+from comparisons.suite.settings import changed
 from comparisons.suites.drawing import Line
 from comparisons.suites.formula import value_of
-from comparisons.suites.manual.problem import Problem, Quantity, Trial, varied
+from comparisons.suites.manual.problem import Problem, Quantity, Trial
 from comparisons.suites.solid_accuracy import solved
 
 ANSWER = "exact answer"
@@ -72,7 +73,7 @@ def readings(answers: Answers) -> Iterable[float]:
     found: dict[str, Response] = {}
     for one in answers.problem.quantities:
         if repr(one.changes) not in found:
-            found[repr(one.changes)] = answers.solved(varied(answers.scene, one.changes))
+            found[repr(one.changes)] = answers.solved(changed(answers.scene, one.changes))
         of, beam = partial(value, found[repr(one.changes)]), answers.scene.beams[0]
         yield value_of(one.formula, of=of, read=one.read, at=one.at, beam=beam)
 
@@ -121,7 +122,7 @@ def critical_load(answers: Answers) -> Iterable[float]:
     scene, estimate = answers.scene, answers.problem.quantities[0].exact
 
     def sideways(load: float) -> float:
-        loaded = varied(scene, {"scene.load_parameters": 1, "load.force": (0.0, -load)})
+        loaded = changed(scene, {"scene.load_parameters": 1, "load.force": (0.0, -load)})
         return value(answers.solved(loaded, draw=False), "column.end.force_x", 1.0)
 
     aside, loads = scene.supports[0].motion[0] or 1.0, (estimate * np.linspace(0.1, 1.2, 12)).tolist()
@@ -193,7 +194,7 @@ def power_law(answers: Answers) -> Iterable[float]:
     given, found = answers.problem.settings, list[float]()
     for one in given["values"]:
         elements = given["varies"] == "elements"
-        scene = answers.scene if elements else varied(answers.scene, {given["varies"]: one})
+        scene = answers.scene if elements else changed(answers.scene, {given["varies"]: one})
         options = replace(answers.trial.options, elements=one) if elements else None
         response = answers.solved(scene, options=options, draw=False)
         if given["of"] == "penetration":

@@ -52,7 +52,7 @@ FLOORS: tuple[dict[str, Any], ...] = (
 
 def lifted(start: float) -> Scene:
     """Return the scene of section 4.1 with a starting position of the pin [m]."""
-    return changed(load_scene("cantilever-critical-area"), {("pin", "start"): (start, 0.0)})
+    return changed(load_scene("cantilever-critical-area"), {"pin.start": (start, 0.0)})
 
 
 def critical_areas(*, quick: bool, report: Report) -> Study:

@@ -132,7 +132,7 @@ def _stages(depth: Array) -> list[Row]:
 def _attempt(scene: Scene, element: str, place: float) -> Row:
     """How deep [m] `tsm.solve` comes with a formulation and a place of the pin, and the nodes passed."""
     # at_hand_over: a second contact on an element that knows one stops it where the exact rods hand over
-    moved = changed(scene, {("pin", "start"): (place, scene.pins[0].points[0][1])})
+    moved = changed(scene, {"pin.start": (place, scene.pins[0].points[0][1])})
     response, travel = solve(moved, TSM.name, Options(element=element)), _travel(moved)
     last, over = float(max(response.load_parameter, default=0.0)), HAND_OVER[place] / travel
     at_hand_over = response.status == "TWO_CONTACTS" and last < over <= last + scene.times[0]

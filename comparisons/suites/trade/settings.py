@@ -9,7 +9,7 @@ from comparisons.models.model import Options
 from comparisons.models.solid import REFINED
 from comparisons.scene import Scene
 from comparisons.suite import Case
-from comparisons.suite.settings import Changes, changed
+from comparisons.suite.settings import changed
 from tsm.elements import EXACT, MIXED_NO_BOW, PAPER, ElementType
 
 LIMIT = REFINED[1:]
@@ -76,8 +76,8 @@ def solid(
 ) -> Case:
     """Return the solid with elements of an order, and with another penalty or penetration of every contact if one is given."""
     given = {"penalty": None, "penetration": None, **contact} if contact else {}
-    changes: Changes = {("contact", key): value for key, value in given.items()}
-    scene = changed(scene, {("beam", "solid_element"): order, **changes})
+    changes = {f"contact.{key}": value for key, value in given.items()}
+    scene = changed(scene, {"beam.solid_element": order, **changes})
     return Case(scene=scene, model=SOLID.name, options=Options(mesh=mesh))
 
 
