@@ -11,7 +11,7 @@ from comparisons.cli.options import refuse, workers
 from comparisons.cli.screen import STOPPED, ended, report, shown, teller
 from comparisons.files import writable_folder
 from comparisons.models import TSM
-from comparisons.output import tabulated, write_rows
+from comparisons.output import cell, tabulated, write_rows
 from comparisons.scene import InputError, load_scene
 from comparisons.suite.progress import running
 from comparisons.suite.run import UNSETTLED
@@ -86,7 +86,10 @@ def _trade(given: Namespace) -> int:
 
 def _question(given: Namespace) -> int:
     folder = _out(given, f"{given.suite}.csv")
-    rows = list(STUDIES[given.suite](report))
+    rows = []
+    for row in STUDIES[given.suite]():
+        rows.append(row)
+        report(", ".join(f"{name} {cell(value)}" for name, value in row.items() if name != "message"))
     print(tabulated(rows))
     return ended([write_rows(folder / f"{given.suite}.csv", rows)])
 

@@ -18,9 +18,9 @@ import numpy as np
 from comparisons.answer import Array
 from comparisons.answer.quantities import forces, moments, size
 from comparisons.models import ROD, SOLID, TSM, solve
-from comparisons.models.model import Count, ModelError, Options, uncounted
+from comparisons.models.model import Count, ModelError, uncounted
 from comparisons.scene import Scene
-from comparisons.suite import Case
+from comparisons.suite import Case, case
 from comparisons.suite.settings import Changes, changed
 
 TIMES = (0.25, 0.5, 0.75, 1.0)
@@ -78,9 +78,9 @@ def budget_cases(scene: Scene) -> dict[str, Case]:
     }
     beams = {"beams": ELEMENTS, "finer beams": 2 * ELEMENTS}
     return {
-        "rods": Case(scene=short, model=ROD.name),
-        **{name: Case(scene=short, model=TSM.name, options=Options(elements=n)) for name, n in beams.items()},
-        **{name: Case(scene=changed(short, own), model=SOLID.name) for name, own in solids.items()},
+        "rods": case(short, ROD),
+        **{name: case(short, TSM, elements=n) for name, n in beams.items()},
+        **{name: case(changed(short, own), SOLID) for name, own in solids.items()},
     }
 
 
@@ -98,9 +98,9 @@ def error_budget(scene: Scene, count: Count = uncounted) -> Budget:
     found: dict[str, Array] = {}  # of shape (quantities, 4)
     names: list[str] = []
     cases = budget_cases(scene)
-    for name, case in cases.items():
-        values = _values(case)
-        names = names or [q for q, one in values.items() if np.isfinite(one).any()]
+    for name, one in cases.items():
+        values = _values(one)
+        names = names or [q for q, found_q in values.items() if np.isfinite(found_q).any()]
         if not names:
             raise ModelError(
                 "the budget is relative to the exact rods, which have no force at its load parameters"

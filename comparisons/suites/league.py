@@ -17,7 +17,7 @@ from comparisons.report import palette
 from comparisons.report.brief import Brief
 from comparisons.report.pages import Section, picture, table
 from comparisons.scene import Scene
-from comparisons.suite import Case, Row
+from comparisons.suite import Case, Row, case
 from comparisons.suite.progress import Runner
 from comparisons.suites.drawing import draw
 from comparisons.suites.found import Found
@@ -56,7 +56,7 @@ def league(scenes: Sequence[Scene], programs: Sequence[str], run: Runner, *, qui
     most two resolutions.
     """
     models = [(name, find(name)) for name in (*MODELS, *programs) if name != ROD.name]
-    references = {scene.name: Case(scene=scene, model=ROD.name) for scene in scenes}
+    references = {scene.name: case(scene, ROD) for scene in scenes}
     cases, left_out = list[Case](), list[tuple[str, str, str]]()
     for scene, (name, model) in product(scenes, models):
         reason = model.refusal(scene)
@@ -65,8 +65,8 @@ def league(scenes: Sequence[Scene], programs: Sequence[str], run: Runner, *, qui
         else:
             left_out.append((scene.name, model.label, reason))
     results = run([*references.values(), *cases])
-    exact = {name: results[case].response for name, case in references.items()}
-    rows = [results[case].against(exact[case.scene.name], QUANTITIES) for case in cases]
+    exact = {name: results[one].response for name, one in references.items()}
+    rows = [results[one].against(exact[one.scene.name], QUANTITIES) for one in cases]
     stopped = {name: one.message for name, one in exact.items() if not one.completed}
     entries = [league_row(row) for row in rows]
 

@@ -11,7 +11,7 @@ from comparisons.answer import Array
 from comparisons.models import ROD, solve
 from comparisons.models.outside.adapters.calculix import pressed, tip_load
 from comparisons.models.solid import to_solid
-from comparisons.output import Report, Row
+from comparisons.output import Row
 from comparisons.scene import Scene, load_scene
 from comparisons.suite.settings import Changes, changed
 
@@ -54,17 +54,15 @@ def solved(
     return fem_reference.solve(changed, np.asarray(times), throw=throw)
 
 
-def peers(report: Report) -> Iterator[Row]:
+def peers() -> Iterator[Row]:
     """Tip displacement and contact force of the solid and of CalculiX on the same meshes."""
     problem = to_solid(load_scene("ks-face"))
     for clamp, load, mesh in product((ROD.name, "full"), LOADS, PEER_MESHES):
         strip = replace(problem.strips[0], clamp=clamp, mesh=mesh)
         yield {"case": f"tip load {load:g} EI/L^2", **_named(strip), **_tip(strip, load)}
-        report(f"tip load {load:g}, {clamp} clamp, {mesh[0]}x{mesh[1]}")
     for steps, penalty in RUNS:
         of = {"case": "pin on the face", **_named(problem.strips[0]), "penalty": penalty, "step": 1 / steps}
         yield from (of | row for row in _pin(problem, steps, penalty))
-        report(f"pin on the face, step {1 / steps:g}, {penalty:g} N/m")
 
 
 def _named(strip: "Strip") -> Row:
@@ -106,7 +104,7 @@ def _pin(problem: "SolidProblem", steps: int, penalty: float) -> Iterator[Row]:
         yield {"load_parameter": t, "fem_reference": float(solid[k]), **found, **ended, **said}
 
 
-def locking(report: Report) -> Iterator[Row]:
+def locking() -> Iterator[Row]:
     """Error of the force in plane strain against the rod of ``E / (1 - nu^2)``, elements of equal nodes."""
     for slenderness, nu in product((0.02, 0.002), (0.3, 0.49, 0.4999)):
         scene = _slender(slenderness, nu)
@@ -118,11 +116,10 @@ def locking(report: Report) -> Iterator[Row]:
             strip = _beam(scene, solid_element=element, mesh=mesh, material="biot-linear")
             force = _contact(strip, STEPS // 2, plane="strain").force[-1]
             row[element] = float(force / rod.force[STEPS // 2 - 1] - 1.0)
-        report(f"h/L = {slenderness:g}, nu = {nu:g}")
         yield row
 
 
-def thin_beams(report: Report) -> Iterator[Row]:
+def thin_beams() -> Iterator[Row]:
     """The solid of the rod's own law against the rod, for thinner and thinner strips: the difference falls as h^2."""
     last: Row = {}
     for slenderness in (0.02, 0.01, 0.005):
@@ -131,12 +128,11 @@ def thin_beams(report: Report) -> Iterator[Row]:
         solid = _history(_beam(changed(scene, ROD_LAW), mesh=(100, 2)))
         row = _largest(solid / np.array([rod.force, rod.arc_position])[:, LATE] - 1.0)
         orders = {f"{name}_order": float(np.log2(last[name] / row[name])) if last else None for name in row}
-        report(f"h/L = {slenderness:g}")
         last = row
         yield {"h_over_L": slenderness, **row, **orders}
 
 
-def scatter(report: Report) -> Iterator[Row]:
+def scatter() -> Iterator[Row]:
     """Largest relative difference of force and arc position between any two of 21 meshes, and from mesh to finer mesh."""
     for name, radius in zip(SCENES, (0.0, 0.005), strict=True):
         scene = _stepped(name)
@@ -152,10 +148,9 @@ def scatter(report: Report) -> Iterator[Row]:
             differences[f"{coarse[0]}x{coarse[1]} to {fine[0]}x{fine[1]}"] = a / b - 1.0
         for label, apart in differences.items():
             yield {"scene": name, "radius": radius, "meshes": label, **_largest(apart)}
-        report(f"{name}, radius {radius:g}")
 
 
-def penalty(report: Report) -> Iterator[Row]:
+def penalty() -> Iterator[Row]:
     """Penetration half way and error of the force, against augmented Lagrangian steps, over sixteen decades of the penalty."""
     for name in SCENES:
         scene = _stepped(name)
@@ -167,10 +162,9 @@ def penalty(report: Report) -> Iterator[Row]:
                 found = -contact.gap[STEPS // 2 - 1], np.abs(contact.force / exact - 1.0).max()
             measured = dict(zip(("penetration", "force_error"), found, strict=True))
             yield {"scene": name, "penalty": eps, **measured, "message": result.message}
-        report(name)
 
 
-STUDIES: dict[str, Callable[[Report], Iterator[Row]]] = {
+STUDIES: dict[str, Callable[[], Iterator[Row]]] = {
     "locking": locking,
     "thin-beams": thin_beams,
     "scatter": scatter,
