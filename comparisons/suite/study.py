@@ -14,7 +14,7 @@ from comparisons.answer import Response
 from comparisons.answer.table import table
 from comparisons.models import TSM, find
 from comparisons.models.model import BRANCHES, ModelError, Options
-from comparisons.output import tabulated
+from comparisons.output import keys, tabulated
 from comparisons.scene import Scene, built_in_scenes, load_scene, rules
 from comparisons.scene.read import LISTS
 from comparisons.scene.rules import FieldError, RecordError, Rule, RuleError
@@ -41,7 +41,10 @@ ANSWERED = ("force", "arc_position", "moment", "tip_x", "tip_y")
 """Quantities whose values at the end are columns."""
 DETAILS = ("moment:", "tip_x:", "tip_y:")
 """Columns that a table for a reader leaves out, by their beginnings."""
-HIDDEN = {"label", "load_parameter", "cutbacks", "seconds", "repeats", "peak_memory", "version", "message"}
+HIDDEN = {
+    "family", "label", "outcome", "load_parameter", "load_parameters_reached", "cutbacks", "seconds", "repeats", "peak_memory",
+    "process_seconds", "version", "message",
+}  # fmt: skip
 """Columns that a table for a reader leaves out; without times it is the same in every run."""
 RANGE: dict[str, Rule] = {
     "from": rules.number,
@@ -210,25 +213,20 @@ def _range(given: dict[str, Any]) -> tuple[float, ...]:
 
 
 def result_rows(rows: Collection[Row]) -> list[dict[str, Any]]:
-    """Return a line for each row: settings that differ, status, last state reached, and cost."""
-    stated = [settings.settings(row.case) for row in rows]
+    """Return a line for each row: settings that differ, how it ended, last state reached, cost, and errors."""
+    stated, known = [settings.settings(row.case) for row in rows], [row.columns() for row in rows]
     answers = [_answers(row.response) for row in rows]
-    varied = _varied(stated)
-    columns = list(dict.fromkeys(name for answer in answers for name in answer))
+    varied, found = _varied(stated), keys(answers)
     return [
         {
-            "scene": row.case.scene.name,
-            "model": row.case.found.name,
-            "label": row.label,
+            **{name: line[name] for name in ("scene", "model", "label")},
             **{name: _text(own.get(name)) for name in varied},
-            "status": row.response.status,
-            "verdict": row.verdict,
-            **{name: answer.get(name) for name in columns},
-            **row.cost(),
+            **{name: line[name] for name in ("status", "verdict")},
+            **{name: answer.get(name) for name in found},
+            **line,
             "version": version(),
-            "message": row.response.message,
         }
-        for row, own, answer in zip(rows, stated, answers, strict=True)
+        for line, own, answer in zip(known, stated, answers, strict=True)
     ]
 
 

@@ -27,8 +27,8 @@ MOST, SCENES = 5, 6
 QUANTITIES = ("force", "arc", "moment", "tip", "friction")
 """The quantities whose errors are stated."""
 SHOWN = {
-    "setting": "setting", "outcome": "outcome", **{f"error_{name}": name for name in QUANTITIES}, "seconds": "seconds",
-    "process_seconds": "process",
+    "label": "setting", "outcome": "outcome", **{f"error_path_{name}": f"error {name}" for name in QUANTITIES},
+    "seconds": "seconds", "process_seconds": "process",
 }  # fmt: skip
 """The columns that the page shows, and how it calls them."""
 SECONDS = "seconds of the whole process"
@@ -68,7 +68,7 @@ def league(scenes: Sequence[Scene], programs: Sequence[str], run: Runner, *, qui
     exact = {name: results[one].response for name, one in references.items()}
     rows = [results[one].against(exact[one.scene.name], QUANTITIES) for one in cases]
     stopped = {name: one.message for name, one in exact.items() if not one.completed}
-    entries = [league_row(row) for row in rows]
+    entries = [row.columns() for row in rows]
 
     def sections(folder: Path) -> Iterator[Section]:
         yield Section("Work and precision", picture(folder / "league.svg", DIAGRAM))
@@ -102,26 +102,6 @@ def _cases(scene: Scene, name: str, model: Model, most: int) -> Iterator[Case]:
         chosen = np.linspace(0, len(settings) - 1, min(most, len(settings))).round().astype(int)
         for k in dict.fromkeys(chosen):
             yield Case(scene=scene, model=name, options=settings[k])
-
-
-def league_row(row: Row) -> dict[str, Any]:
-    """Return a row of the table."""
-    response = row.response
-    return {
-        "scene": row.case.scene.name,
-        "program": row.family,
-        "setting": row.label,
-        "outcome": row.outcome,
-        **{f"error_{name}": row.error("path", name) for name in QUANTITIES},
-        "seconds": row.seconds,
-        "process_seconds": row.process_seconds,
-        "unknowns": response.unknowns,
-        "load_parameters_reached": len(response.load_parameter),
-        "status": response.status,
-        "verdict": row.verdict,
-        "said_success_and_was_wrong": row.wrong,
-        "message": response.message,
-    }
 
 
 def ranked(scene: Scene) -> tuple[str, ...]:
@@ -165,16 +145,13 @@ def _plot(scenes: Sequence[Scene], rows: Sequence[Row], *paths: Path) -> None:
     A filled marker is a certified answer, a hollow one is a stop by name, and a cross is an answer that the program reported as a
     success and the referee refused.
     """
-    # whole decades have labels that do not overlap
-    spent = np.log10([seconds for row in rows if isfinite(seconds := _seconds(row))] or [1.0])
-    decades = 10.0 ** np.floor(spent.min() - 0.05), 10.0 ** np.ceil(spent.max() + 0.05)
 
     def panel(axes: Any, scene: Scene) -> None:
         quantity = "force" if scene.contacts else "tip"
         for program, own in _by_program(row for row in rows if row.case.scene == scene):
             _draw(axes, program, own, quantity)
-        axes.set(xscale="log", yscale="log", xlim=decades, title=scene.name, xlabel=SECONDS)
-        axes.set_ylabel(f"largest error of the {quantity}")
+        words = {"title": scene.name, "xlabel": SECONDS, "ylabel": f"largest error of the {quantity}"}
+        axes.set(xscale="log", yscale="log", **words)
 
     panels = [partial(panel, scene=scene) for scene in scenes]
     draw(panels, *paths, tall=2.6, sharex=True, sharey=True)

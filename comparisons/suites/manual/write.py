@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from comparisons import models as registry
+from comparisons.models.shared import kept
 from comparisons.output import Report, Row, markdown
 from comparisons.report import palette
 from comparisons.report.brief import Brief
@@ -189,24 +190,19 @@ def _section(case: Sequence[Judgement], folder: Path) -> Section:
 def _numbers(case: Sequence[Judgement]) -> dict[str, Any]:
     """Return everything but the picture as nested numbers."""
     problem = case[0].problem
-    stated = ("name", "title", "purpose", "statement", "source", "uncertainty")
+    runs = [
+        {
+            **kept(item.trial, "model setting"),
+            "tolerance": item.trial.allowed,
+            "reason": item.trial.why,
+            **{f"{name}s": [getattr(one, name) for one in item.findings] for name in ("value", "error")},
+            **kept(item, "seconds stopped passed"),
+        }
+        for item in case
+    ]
     return {
-        **{name: getattr(problem, name) for name in stated},
-        "quantities": problem.quantities,
-        "runs": [
-            {
-                "model": item.trial.model,
-                "setting": item.trial.setting,
-                "tolerance": item.trial.allowed,
-                "reason": item.trial.why,
-                "values": [one.value for one in item.findings],
-                "errors": [one.error for one in item.findings],
-                "seconds": item.seconds,
-                "stopped": item.stopped,
-                "passed": item.passed,
-            }
-            for item in case
-        ],
+        **kept(problem, "name title purpose statement source uncertainty quantities"),
+        "runs": runs,
         "picture": f"{problem.name}.svg",
         "passed": all(item.passed for item in case),
         "seconds": sum(item.seconds for item in case),

@@ -16,7 +16,6 @@ from comparisons.report import palette
 from comparisons.report.brief import Brief
 from comparisons.report.pages import Section, picture, piece, table
 from comparisons.scene import Scene, to_toml
-from comparisons.suite import Row
 from comparisons.suite.progress import Runner
 from comparisons.suite.study import result_rows
 from comparisons.suites.drawing import draw
@@ -69,8 +68,6 @@ def _draw(axes: Any, trade: Trade, *, own: bool) -> None:
     title = "against what each model converges to, Pareto fronts" if own else "against the exact rod"
     axes.set(xscale="log", yscale="log", ylabel=f"largest error of {SHOWN}", title=title)
     axes.margins(x=0.3, y=0.06)
-    low, high = np.log10(axes.get_xlim())  # whole decades have labels that do not overlap
-    axes.set_xlim(10.0 ** np.floor(low), 10.0 ** np.ceil(high))
     if own:
         axes.set_xlabel(SECONDS)
         doubt = trade.uncertainty(SOLID.name, SCOPE, SHOWN)
@@ -108,7 +105,7 @@ HIDDEN = ("scope", "quantity", "limit_uncertainty", "settings", "order_scatter",
 def trade(scene: Scene, run: Runner, *, quick: bool = False) -> Found:
     """Return what a trade-off found: every setting, the cheapest for an accuracy, orders, fronts, and what stopped."""
     trade = measure_trade(scene, run, quick=quick)
-    settings, known = _settings(trade.rows), trade.reference.uncertainty
+    settings, known = result_rows(trade.rows), trade.reference.uncertainty
     stated = [(scope, name) for scope, name in product(SCOPES, KEPT) if isfinite(known[scope][name])]
     cheap = [cheapest(trade, *of, target) for of, target in product(stated, TARGETS)]
     fitted = {quantity: list(orders(trade, quantity)) for quantity in KEPT}
@@ -164,18 +161,6 @@ def _shown(rows: Sequence[Line], columns: Sequence[str] = ()) -> list[Line]:
     """Return rows for people, of some columns or without `HIDDEN`, with blanks in the names."""
     kept = columns or [name for name in next(iter(rows), ()) if name not in HIDDEN]
     return [{name.replace("_", " "): row[name] for name in kept} for row in rows]
-
-
-def _settings(rows: Sequence[Row]) -> list[Line]:
-    """Return what every setting is and cost, as a study does, and all its errors."""
-    return [
-        line
-        | {
-            f"{'own_' * own}error_{scope}_{quantity}": row.error(scope, quantity, own=own)
-            for own, scope, quantity in product((False, True), SCOPES, KEPT)
-        }
-        for line, row in zip(result_rows(rows), rows, strict=True)
-    ]
 
 
 def _tables(trade: Trade) -> dict[str, list[tuple[str, list[Line]]]]:
