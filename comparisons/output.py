@@ -25,10 +25,15 @@ NO_VALUE = "no value"
 """In place of an infinite error: one of the two that are compared has no value."""
 
 
+def keys(rows: Iterable[Mapping[str, Any]]) -> list[str]:
+    """Return the keys of all rows, each once."""
+    return list(dict.fromkeys(key for row in rows for key in row))
+
+
 def csv_text(rows: Sequence[Mapping[str, Any]], columns: Iterable[str] = ()) -> str:
-    """Return rows of equal keys, the columns, as CSV; a number that is not finite is an empty cell."""
+    """Return rows as CSV with their keys as columns; what is not there, or a number that is not finite, is an empty cell."""
     text = io.StringIO()
-    writer = csv.DictWriter(text, list(columns) or list(rows[0]), lineterminator="\n")
+    writer = csv.DictWriter(text, list(columns) or keys(rows), lineterminator="\n")
     writer.writeheader()
     writer.writerows({key: plain(value) for key, value in row.items()} for row in rows)
     return text.getvalue()
@@ -41,8 +46,9 @@ def write_rows(path: Path, rows: Sequence[Mapping[str, Any]]) -> Path:
 
 
 def tabulated(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Return rows of equal keys as aligned text, numbers to the right; columns beyond the width of the terminal follow below, after the first one."""
-    cells = [list(rows[0]), *([cell(value) for value in row.values()] for row in rows)]
+    """Return rows as aligned text, numbers to the right; columns beyond the width of the terminal follow below, after the first one."""
+    names = keys(rows)
+    cells = [names, *([cell(row.get(name)) for name in names] for row in rows)]
     columns = list(zip(*cells, strict=True))
     right = [all(one == NO_VALUE or one[:1] in "-0123456789" for one in column[1:]) for column in columns]
     room = get_terminal_size().columns
@@ -66,9 +72,10 @@ def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool]) -> list[str]:
     return ["  ".join(side(text, width) for side, text, width in line).rstrip() for line in lines]
 
 
-def markdown(rows: Sequence[Sequence[str]]) -> str:
-    """Return rows of cells, the header first, as a table in Markdown."""
-    lines = ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |\n" for row in rows]
+def markdown(rows: Sequence[Mapping[str, str]]) -> str:
+    """Return rows of equal keys as a table in Markdown."""
+    cells = [list(rows[0]), *(row.values() for row in rows)]
+    lines = ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |\n" for row in cells]
     return "".join([lines[0], "|" + "---|" * len(rows[0]) + "\n", *lines[1:]])
 
 

@@ -24,7 +24,7 @@ RUBBING = {"tangential": "force", "normal": "force", "slip": "number", "dissipat
 """What friction of a contact does, with its kind."""
 
 
-def table(response: Answer, units: str | None = None) -> dict[str, NDArray[Any]]:
+def table(response: Answer, units: str | None = None, *, along: bool = True) -> dict[str, NDArray[Any]]:
     """Return the histories by name, each of shape (s,): what ``pandas.DataFrame`` takes.
 
     Parameters
@@ -33,10 +33,12 @@ def table(response: Answer, units: str | None = None) -> dict[str, NDArray[Any]]
         The answer. One that was read from a file states no extremes along its beams.
     units : str, optional
         Units of force and length, as ``"N, m"``; the names then end with their units, as ``strip.start.moment [N m]``.
+    along : bool
+        Whether the extremes along the beams are wanted, which take long.
     """
     named = {} if units is None else unit_names(units)
     found: dict[str, NDArray[Any]] = {}
-    for name, kind, values in _histories(response):
+    for name, kind, values in _histories(response, along=along):
         unit = f" [{named[kind]}]" if kind in named else ""
         if values is not None and values.ndim == 1:
             found[name + unit] = values
@@ -60,7 +62,7 @@ def unit_names(units: str) -> dict[str, str]:
     return {"force": force, "length": length, "moment": moment, "energy": moment, "stress": stress}
 
 
-def _histories(response: Answer) -> Iterator[tuple[str, str, NDArray[Any] | None]]:
+def _histories(response: Answer, *, along: bool) -> Iterator[tuple[str, str, NDArray[Any] | None]]:
     """Yield the histories: name, kind (an attribute of `RoundOff`), and values (s,) or (s, 2), None where the model does not state them."""
     yield "load_parameter", "number", response.load_parameter
     yield "stage", "number", response.stage
@@ -78,8 +80,8 @@ def _histories(response: Answer) -> Iterator[tuple[str, str, NDArray[Any] | None
             yield f"{node}.{prefix}moment", "moment", one.moment
     for beam, tip in response.tips.items():
         yield f"{beam}.tip", "length", tip
-    along = {} if response.definition is None else extremes_along(response, response.definition)
-    for beam, extremes in along.items():
+    scene = response.definition if along else None
+    for beam, extremes in ({} if scene is None else extremes_along(response, scene)).items():
         for name, extreme in extremes.items():
             yield f"{beam}.{name}", ALONG[name][0], extreme.value
             yield f"{beam}.{name}_at", "length", extreme.arc_position

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from comparisons.cli.command import DONE, STOPPED, WRONG, report
 from comparisons.cli.options import chosen, outputs, refuse, workers
-from comparisons.cli.screen import exit_status, files_named, say, staging, teller, watching
+from comparisons.cli.screen import exit_status, files_named, say, shown, staging, teller, watching
 from comparisons.files import writable_folder, write_text
 from comparisons.models import TSM, find
 from comparisons.models.model import ModelError
@@ -17,7 +17,7 @@ from comparisons.scene import Scene, built_in_scenes, load_scene
 from comparisons.suite.progress import running
 from comparisons.suites.compare import ROD, Run, compare, run_of
 from comparisons.suites.gate import gate
-from comparisons.suites.league import FILES, brief, measure_league, write_league
+from comparisons.suites.league import FILES, league
 
 MODEL = ("model", "element", "elements", "mesh")
 """The options that say which model is meant."""
@@ -85,13 +85,8 @@ def _held(scene: Scene, given: argparse.Namespace) -> int:
 
 
 def _league(scenes: list[Scene], given: argparse.Namespace) -> int:
-    """Measure every program on every scene, print the summary and name the files."""
+    """Measure every program on every scene."""
     folder = writable_folder(given.out or Path("out/league"), *FILES)
     with running(folder / "results", workers(given, 1), quiet=given.quiet, process=True) as run_cases:
-        league = measure_league(scenes, given.others, run_cases, quick=given.quick)
-    say(brief(league))
-    for name, program, reason in league.left_out:
-        print(f"{name}: {program}: left out, {reason}")
-    print()
-    files_named(*write_league(league, folder))
-    return DONE
+        found = league(scenes, given.others, run_cases, quick=given.quick)
+    return shown(found, folder)

@@ -3,29 +3,28 @@
 import os
 from argparse import Namespace
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from pathlib import Path
 from shutil import rmtree
 
-from comparisons.cli.command import DONE, STOPPED, WRONG, report
+from comparisons.cli.command import STOPPED, report
 from comparisons.cli.options import refuse, workers
-from comparisons.cli.screen import files_named, say, teller
+from comparisons.cli.screen import ended, shown, teller
 from comparisons.files import writable_folder
 from comparisons.models import TSM
-from comparisons.output import tabulated, write_rows
+from comparisons.output import cell, tabulated, write_rows
 from comparisons.scene import InputError, load_scene
 from comparisons.suite.progress import running
 from comparisons.suite.run import UNSETTLED
 from comparisons.suite.study import read_study, result_rows, result_table
 from comparisons.suites.bench import write_bench
 from comparisons.suites.extremes.run import extremes
-from comparisons.suites.manual import problems, write_manual
+from comparisons.suites.manual import manual, problems
 from comparisons.suites.names import FIGURES, QUESTIONS
 from comparisons.suites.paper.reproduce import reproduce
 from comparisons.suites.solid_accuracy import STUDIES
 from comparisons.suites.trade.reference import NoReferenceError
-from comparisons.suites.trade.report import brief, summary, write_trade
-from comparisons.suites.trade.trade import measure_trade
+from comparisons.suites.trade.report import trade
 
 
 def run(given: Namespace) -> int:
@@ -45,46 +44,30 @@ def _out(given: Namespace, *names: str) -> Path:
     return writable_folder(given.out or Path("out") / Path(given.suite).stem, *names)
 
 
-def _ended(files: Iterable[Path], reasons: Iterable[str] = (), status: int = STOPPED) -> int:
-    """Name the files, and what is wrong; return the exit status."""
-    files_named(*files)
-    ended = DONE
-    for reason in reasons:
-        report(f"crossval: {reason}")
-        ended = status
-    return ended
-
-
 def _figures(given: Namespace) -> int:
     folder = _out(given, "report.html")
     figure = "all" if given.suite == "paper" else given.suite
-    found, files, stopped = reproduce(figure, folder, quick=given.quick, report=report)
-    say(found)
-    return _ended(files, stopped)
+    return shown(reproduce(figure, quick=given.quick, report=report), folder)
 
 
 def _bench(given: Namespace) -> int:
     folder = given.out or Path("out") / given.suite
-    return _ended(write_bench(folder, given.of or [TSM.name], teller(quiet=given.quiet)))
+    return ended(write_bench(folder, given.of or [TSM.name], teller(quiet=given.quiet)))
 
 
 def _manual(given: Namespace) -> int:
     stated = problems(given.of or None)
     folder = _out(given, "index.md", "manual.json", "junit.xml")
-    answers, files = write_manual(folder, teller(quiet=given.quiet), stated)
-    failed = [f"{one.problem.name}, {one.trial.label}: {one.failure}" for one in answers if not one.passed]
-    print(f"{len(stated)} cases, {len(answers)} answers, {len(failed)} beyond their tolerance")
-    return _ended(files, failed, WRONG)
+    return shown(manual(stated, teller(quiet=given.quiet)), folder)
 
 
 def _extremes(given: Namespace) -> int:
     folder = _out(given, "extremes.html", "extremes.csv", "extremes.json")
     kept = folder / ".extremes"  # until the command has come to its end
     with running(kept, workers(given), quiet=given.quiet, repeats=0) as run_cases:
-        found, judgements, files = extremes(folder, run_cases, quick=given.quick)
+        found = extremes(run_cases, quick=given.quick)
     rmtree(kept)
-    say(found)
-    return _ended(files, (item.sentence for item in judgements if item.row["verdict"] == "wrong"), WRONG)
+    return shown(found, folder)
 
 
 def _trade(given: Namespace) -> int:
@@ -95,21 +78,21 @@ def _trade(given: Namespace) -> int:
     writable_folder(folder, "report.html", "trade.csv", "trade.json")
     try:
         with running(folder / "results", workers(given, 1), quiet=given.quiet) as run_cases:
-            trade = measure_trade(scene, run_cases, quick=given.quick)
+            found = trade(scene, run_cases, quick=given.quick)
     except NoReferenceError as error:
         report(f"crossval: {error}")
         return STOPPED
-    files = write_trade(trade, folder)
-    say(brief(trade))
-    print(summary(trade), end="\n\n")
-    return _ended(files)
+    return shown(found, folder)
 
 
 def _question(given: Namespace) -> int:
     folder = _out(given, f"{given.suite}.csv")
-    rows = list(STUDIES[given.suite](report))
+    rows = []
+    for row in STUDIES[given.suite]():
+        rows.append(row)
+        report(", ".join(f"{name} {cell(value)}" for name, value in row.items() if name != "message"))
     print(tabulated(rows))
-    return _ended([write_rows(folder / f"{given.suite}.csv", rows)])
+    return ended([write_rows(folder / f"{given.suite}.csv", rows)])
 
 
 def _study(given: Namespace) -> int:
@@ -123,7 +106,7 @@ def _study(given: Namespace) -> int:
     print(f"\n{study.name}: {len(rows)} cases: {', '.join(f'{name} {ends[name]}' for name in sorted(ends))}")
     left = sum(ends[name] for name in UNSETTLED)
     again = [f"{left} cases have no result; the same command tries them again"] if left else []
-    return _ended([write_rows(folder / table, rows)], again)
+    return ended([write_rows(folder / table, rows)], again)
 
 
 SUITES: dict[str, tuple[str, Callable[[Namespace], int]]] = {

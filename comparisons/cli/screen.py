@@ -8,12 +8,15 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 from comparisons.answer import Response
-from comparisons.cli.command import DONE, STOPPED, report
+from comparisons.cli.command import DONE, STOPPED, WRONG, report
 from comparisons.models.model import REDRAW, Count, Reached, Watch, bar
 from comparisons.scene import Scene
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from comparisons.report.brief import Brief
+    from comparisons.suites.found import Found
 
 PATIENCE = 2.0
 """Seconds that a work takes without a bar."""
@@ -32,6 +35,25 @@ def files_named(*files: object) -> None:
 def say(brief: "Brief") -> None:
     """Print what is found, its sentence in bold on a terminal that may have it."""
     print(brief.text(bold=sys.stdout.isatty() and not os.environ.get("NO_COLOR")), end="\n\n")
+
+
+def ended(files: Iterable[object], reasons: Iterable[str] = (), status: int = STOPPED) -> int:
+    """Name the files, and what is wrong; return the exit status."""
+    files_named(*files)
+    found = DONE
+    for reason in reasons:
+        report(f"crossval: {reason}")
+        found = status
+    return found
+
+
+def shown(found: "Found", folder: "Path") -> int:
+    """Write what a suite found to a folder, print it, and return the exit status."""
+    files = found.write(folder)
+    say(found.brief)
+    if found.text:
+        print(found.text, end="\n\n")
+    return ended(files, found.wrong or found.stopped, WRONG if found.wrong else STOPPED)
 
 
 def exit_status(scene: Scene, responses: Iterable[tuple[str, Response]]) -> int:

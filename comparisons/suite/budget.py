@@ -19,9 +19,9 @@ from comparisons.answer import Array
 from comparisons.answer.quantities import forces, moments, size
 from comparisons.frozen import Frozen
 from comparisons.models import ROD, SOLID, TSM, solve
-from comparisons.models.model import Count, ModelError, Options, uncounted
+from comparisons.models.model import Count, ModelError, uncounted
 from comparisons.scene import Scene
-from comparisons.suite import Case
+from comparisons.suite import Case, case
 from comparisons.suite.settings import Changes, changed
 
 TIMES = (0.25, 0.5, 0.75, 1.0)
@@ -64,9 +64,9 @@ class Budget(Frozen):
 def budget_cases(scene: Scene) -> dict[str, Case]:
     """Return the solutions behind the budget by name; a name ``finer ...`` is that of a mesh twice as fine."""
     short = replace(scene, load_parameters=STEPS)
-    free: Changes = {("contact", "penalty"): None, ("contact", "penetration"): 1e-12}
-    law: Changes = {("beam", "material"): "biot-linear"}
-    halved: Changes = {("beam", one.name, "mesh"): (2 * one.mesh[0], 2 * one.mesh[1]) for one in scene.beams}
+    free: Changes = {"contact.penalty": None, "contact.penetration": 1e-12}
+    law: Changes = {"beam.material": "biot-linear"}
+    halved: Changes = {f"beam.{one.name}.mesh": (2 * one.mesh[0], 2 * one.mesh[1]) for one in scene.beams}
     solids: dict[str, Changes] = {
         "bodies": {},
         "linear": law,
@@ -74,13 +74,13 @@ def budget_cases(scene: Scene) -> dict[str, Case]:
         "like rods": {**law, **free},
         "finer bodies": halved,
         "finer like rods": {**law, **free, **halved},
-        "careful": {("scene", "load_parameters"): 2 * STEPS},
+        "careful": {"scene.load_parameters": 2 * STEPS},
     }
     beams = {"beams": ELEMENTS, "finer beams": 2 * ELEMENTS}
     return {
-        "rods": Case(scene=short, model=ROD.name),
-        **{name: Case(scene=short, model=TSM.name, options=Options(elements=n)) for name, n in beams.items()},
-        **{name: Case(scene=changed(short, own), model=SOLID.name) for name, own in solids.items()},
+        "rods": case(short, ROD),
+        **{name: case(short, TSM, elements=n) for name, n in beams.items()},
+        **{name: case(changed(short, own), SOLID) for name, own in solids.items()},
     }
 
 
@@ -98,9 +98,9 @@ def error_budget(scene: Scene, count: Count = uncounted) -> Budget:
     found: dict[str, Array] = {}  # of shape (quantities, 4)
     names: list[str] = []
     cases = budget_cases(scene)
-    for name, case in cases.items():
-        values = _values(case)
-        names = names or [q for q, one in values.items() if np.isfinite(one).any()]
+    for name, one in cases.items():
+        values = _values(one)
+        names = names or [q for q, found_q in values.items() if np.isfinite(found_q).any()]
         if not names:
             raise ModelError(
                 "the budget is relative to the exact rods, which have no force at its load parameters"

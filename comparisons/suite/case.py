@@ -4,6 +4,7 @@ import hashlib
 import json
 from dataclasses import field
 from pathlib import Path
+from typing import Any
 
 from comparisons.frozen import Value
 from comparisons.models import Model, find
@@ -62,6 +63,11 @@ class Case(Value):
     def resolution(self) -> float:
         """Number of elements along a beam, nan of an exact model."""
         return self.found.resolution(self.options)
+
+
+def case(scene: Scene, model: Model, **options: Any) -> Case:
+    """Return a case of a model with options."""
+    return Case(scene=scene, model=model.name, options=Options(**options))
 
 
 def _digest(mesh_file: str | None) -> str | None:

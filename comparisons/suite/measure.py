@@ -26,6 +26,7 @@ from comparisons.answer.file import as_dict, restated
 from comparisons.frozen import Frozen
 from comparisons.models import certified, find, solve
 from comparisons.models.model import ModelError
+from comparisons.models.shared import kept
 from comparisons.output import plain
 from comparisons.referee import Verdict
 from comparisons.scene import to_toml
@@ -120,10 +121,29 @@ class Row(Frozen):
         """Return the ``seconds``, the ``iterations`` or the ``unknowns``."""
         return float(getattr(self if cost == "seconds" else self.response, cost))
 
-    def cost(self) -> dict[str, float]:
-        """Return the columns of all costs."""
-        own = {name: getattr(self.response, name) for name in ("iterations", "cutbacks", "unknowns")}
-        return own | {name: getattr(self, name) for name in ("seconds", "repeats", "peak_memory")}
+    def columns(self) -> dict[str, Any]:
+        """Return the run as a line of a table: what it is, how it ended, what it cost, and all errors that are known."""
+        of, response = self.case, self.response
+        errors = {"error": self.errors, "own_error": self.own_errors}
+        return {
+            "scene": of.scene.name,
+            "model": of.found.name,
+            "family": self.family,
+            "label": self.label,
+            "outcome": self.outcome,
+            "status": response.status,
+            "verdict": self.verdict,
+            "load_parameters_reached": len(response.load_parameter),
+            **kept(response, "iterations cutbacks unknowns"),
+            **kept(self, "seconds repeats peak_memory process_seconds"),
+            **{
+                f"{prefix}_{scope}_{name}": error
+                for prefix, known in errors.items()
+                for scope, table in (known or {}).items()
+                for name, error in table.items()
+            },
+            "message": response.message,
+        }
 
     def to_json(self) -> str:
         """Return what was measured as JSON text, after what the case is; null for what is not finite."""

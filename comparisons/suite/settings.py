@@ -10,10 +10,8 @@ from comparisons.scene.rules import FieldError, RecordError
 from comparisons.scene.tables import check_keys
 from comparisons.suite.case import Case
 
-Path = tuple[str, ...]
-"""Where a setting stands: ``("scene", "load_parameters")``, ``("beam", "height")`` for every beam, ``("beam", "upper", "height")``."""
-Changes = Mapping[Path, object]
-"""New values of settings; None takes a key away."""
+Changes = Mapping[str, object]
+"""New values of settings: ``scene.load_parameters``, ``beam.height`` of every beam, ``beam.upper.height``; None takes a key away."""
 Table = dict[str, Any]
 
 
@@ -29,10 +27,11 @@ def _named(kind: str, records: list[Table]) -> dict[str, Table]:
     return {str(record.get("name") or number): record for number, record in enumerate(records, 2)}
 
 
-def _places(tables: Table, path: Path, value: object) -> Iterator[tuple[str, Table]]:
+def _places(tables: Table, path: str, value: object) -> Iterator[tuple[str, Table]]:
     """Yield the tables that a setting changes with their places in a scene file; `FieldError` for none."""
-    kind, *name, key = path
-    given: Table = {name[0]: {key: value}} if name else {key: value}
+    kind, _, rest = path.partition(".")
+    name, _, key = rest.rpartition(".")
+    given: Table = {name: {key: value}} if name else {key: value}
     records = _named(kind, tables.get(kind, [])) if kind in LISTS else {"": tables["scene"]}
     mistakes = list(check_keys({kind: given}, ("scene", *LISTS)))
     if records and (kind == "scene" or name):
@@ -41,7 +40,7 @@ def _places(tables: Table, path: Path, value: object) -> Iterator[tuple[str, Tab
     if mistakes:
         raise RecordError(mistakes)
     for number, (own, record) in enumerate(records.items()):
-        if not name or own == name[0]:
+        if not name or own == name:
             yield kind if kind == "scene" else f"{kind}[{number}]", record
 
 
@@ -52,13 +51,14 @@ def changed(scene: Scene, changes: Changes) -> Scene:
     """
     tables: Table = to_tables(scene)
     stated, mistakes = dict[str, str](), list[FieldError]()
-    for path, value in sorted(changes.items(), key=lambda item: len(item[0])):
+    for path, value in sorted(changes.items(), key=lambda item: item[0].count(".")):
         try:
             for place, record in _places(tables, path, value):
-                record[path[-1]] = value
-                stated[f"{place}.{path[-1]}"] = ".".join(path)
+                key = path.rpartition(".")[2]
+                record[key] = value
+                stated[f"{place}.{key}"] = path
                 if value is None:
-                    del record[path[-1]]
+                    del record[key]
         except FieldError as error:
             mistakes += error.mistakes
     lists = {f"{kind}s": tables[kind] for kind in LISTS if kind in tables}
@@ -67,8 +67,8 @@ def changed(scene: Scene, changes: Changes) -> Scene:
             return Scene(**tables["scene"], **lists)
     except FieldError as error:
         for item in error.mistakes:
-            key = f"scene.{item.key}" if item.key in HEAD else item.key
-            mistakes.append(FieldError(stated.get(key, key), item.value, item.rule))
+            at = f"scene.{item.key}" if item.key in HEAD else item.key
+            mistakes.append(FieldError(stated.get(at, at), item.value, item.rule))
     raise RecordError(mistakes)
 
 

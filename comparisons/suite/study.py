@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from comparisons.answer import Response
+from comparisons.answer.table import table
 from comparisons.models import TSM, find
 from comparisons.models.model import BRANCHES, ModelError, Options
-from comparisons.output import tabulated
+from comparisons.output import keys, tabulated
 from comparisons.scene import Scene, built_in_scenes, load_scene, rules
 from comparisons.scene.read import LISTS
 from comparisons.scene.rules import FieldError, RecordError, Rule, RuleError
@@ -31,14 +32,19 @@ from comparisons.suite.case import Case
 from comparisons.suite.measure import Row
 from comparisons.version import version
 
-Axes = dict[settings.Path, tuple[object, ...]]
-"""The values of every setting that a run varies, by its place."""
+Axes = dict[str, tuple[object, ...]]
+"""The values of every setting that a run varies."""
 
 LARGEST, LARGEST_COUNT = 100_000, 10_000
 """Cases of a study, and values of a range."""
+ANSWERED = ("force", "arc_position", "moment", "tip_x", "tip_y")
+"""Quantities whose values at the end are columns."""
 DETAILS = ("moment:", "tip_x:", "tip_y:")
 """Columns that a table for a reader leaves out, by their beginnings."""
-HIDDEN = {"label", "load_parameter", "cutbacks", "seconds", "repeats", "peak_memory", "version", "message"}
+HIDDEN = {
+    "family", "label", "outcome", "load_parameter", "load_parameters_reached", "cutbacks", "seconds", "repeats", "peak_memory",
+    "process_seconds", "version", "message",
+}  # fmt: skip
 """Columns that a table for a reader leaves out; without times it is the same in every run."""
 RANGE: dict[str, Rule] = {
     "from": rules.number,
@@ -96,16 +102,16 @@ def _cases(scene: Scene, runs: list[dict[str, Any]], folder: Path, mistakes: lis
     return cases
 
 
-def _axes(run: dict[str, Any], mistakes: list[FieldError], place: settings.Path = ()) -> Axes:
+def _axes(run: dict[str, Any], mistakes: list[FieldError], place: str = "") -> Axes:
     """Return what a run, or a table in it, varies: the values of every setting by its place."""
     axes: Axes = {}
     for key, given in run.items():
-        at = (*place, key)
+        at = f"{place}{key}"
         if isinstance(given, dict) and not RANGE.keys() & given.keys():
-            axes |= _axes(given, mistakes, at)
+            axes |= _axes(given, mistakes, f"{at}.")
             continue
         try:
-            axes[at] = values(".".join(at), given)
+            axes[at] = values(at, given)
         except FieldError as error:
             mistakes += error.mistakes
     return axes
@@ -141,9 +147,9 @@ HEAD_RULES: dict[str, Rule] = {"name": rules.name, "scene": rules.text, "repeats
 """The keys of the table ``[study]`` with the rules of their values."""
 
 
-def _case(scene: Scene, chosen: dict[settings.Path, object], folder: Path) -> Case:
+def _case(scene: Scene, chosen: dict[str, object], folder: Path) -> Case:
     """Return the case of the chosen settings; raise all mistakes in them."""
-    given = {place[0]: value for place, value in chosen.items() if len(place) == 1}
+    given = {key: value for key, value in chosen.items() if "." not in key}
     rules_of: dict[str, Rule] = {
         "model": partial(_known, find_it=partial(_model, folder=folder)),
         **OPTION_RULES,
@@ -153,11 +159,11 @@ def _case(scene: Scene, chosen: dict[settings.Path, object], folder: Path) -> Ca
         model = find(own["model"])
         none = f'is no option of model = "{model.name}"'
         mistakes += (FieldError(key, given[key], none) for key in own.keys() - {"model", *model.options})
-    changes = {place: value for place, value in chosen.items() if len(place) > 1}
+    changes = {key: value for key, value in chosen.items() if "." in key}
     for place, value in changes.items():
-        if place[0] in LISTS and not getattr(scene, f"{place[0]}s"):
-            none = f"the scene has no {place[0]}"
-            mistakes.append(FieldError(place[0], {place[-1]: value}, none))
+        kind, *_, key = place.split(".")
+        if kind in LISTS and not getattr(scene, f"{kind}s"):
+            mistakes.append(FieldError(kind, {key: value}, f"the scene has no {kind}"))
     try:
         scene = settings.changed(scene, changes)
     except FieldError as error:
@@ -207,25 +213,20 @@ def _range(given: dict[str, Any]) -> tuple[float, ...]:
 
 
 def result_rows(rows: Collection[Row]) -> list[dict[str, Any]]:
-    """Return a line for each row: settings that differ, status, last state reached, and cost."""
-    stated = [settings.settings(row.case) for row in rows]
+    """Return a line for each row: settings that differ, how it ended, last state reached, cost, and errors."""
+    stated, known = [settings.settings(row.case) for row in rows], [row.columns() for row in rows]
     answers = [_answers(row.response) for row in rows]
-    varied = _varied(stated)
-    columns = list(dict.fromkeys(name for answer in answers for name in answer))
+    varied, found = _varied(stated), keys(answers)
     return [
         {
-            "scene": row.case.scene.name,
-            "model": row.case.found.name,
-            "label": row.label,
+            **{name: line[name] for name in ("scene", "model", "label")},
             **{name: _text(own.get(name)) for name in varied},
-            "status": row.response.status,
-            "verdict": row.verdict,
-            **{name: answer.get(name) for name in columns},
-            **row.cost(),
+            **{name: line[name] for name in ("status", "verdict")},
+            **{name: answer.get(name) for name in found},
+            **line,
             "version": version(),
-            "message": row.response.message,
         }
-        for row, own, answer in zip(rows, stated, answers, strict=True)
+        for line, own, answer in zip(known, stated, answers, strict=True)
     ]
 
 
@@ -251,18 +252,13 @@ def _varied(tables: Collection[Mapping[str, object]]) -> list[str]:
 
 def _answers(response: Response) -> dict[str, float]:
     """Return the last state reached."""
-    if not len(response.load_parameter):
-        return {}
-    contacts, tips = response.contacts.items(), response.tips.items()
-    last = {
-        "load_parameter": response.load_parameter[-1],
-        **{f"force:{pair}": one.force[-1] for pair, one in contacts},
-        **{f"arc_position:{pair}": one.arc_position[-1] for pair, one in contacts},
-        **{f"moment:{node}": one.moment[-1] for node, one in response.supports.items()},
-        **{f"tip_x:{beam}": tip[-1, 0] for beam, tip in tips},
-        **{f"tip_y:{beam}": tip[-1, 1] for beam, tip in tips},
-    }
-    return {name: float(value) for name, value in last.items() if np.isfinite(value)}
+    last = {name: values[-1:] for name, values in table(response, along=False).items()}
+    told = {"load_parameter": last.pop("load_parameter")}
+    for name, value in last.items():
+        of, _, what = name.rpartition(".")
+        if what in ANSWERED:
+            told[f"{what}:{of}"] = value
+    return {name: float(value[0]) for name, value in told.items() if np.isfinite(value).any()}
 
 
 def _text(value: object) -> object:

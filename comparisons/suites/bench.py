@@ -5,7 +5,6 @@ import json
 import math
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import cache
 from operator import attrgetter
 from pathlib import Path
@@ -18,7 +17,7 @@ from comparisons.answer.table import table
 from comparisons.files import writable_folder, write_text
 from comparisons.models import TSM, find, solve
 from comparisons.models.model import ModelError, Options
-from comparisons.models.shared import joints, line_loads
+from comparisons.models.shared import joints, kept, line_loads
 from comparisons.output import Report
 from comparisons.referee.rod import face_of
 from comparisons.scene import BeamSpec, PinSpec, Scene, load_scene
@@ -71,7 +70,7 @@ def resolved(about: str, scene: Scene, at: Sequence[int]) -> dict[str, Any]:
         ],
         "contacts": [
             {
-                "pair": one.pair, "node": one.node, "beam": one.beam, "side": one.side,
+                **kept(one, "pair node beam side"),
                 "distance": _coefficients((face := face_of(scene, one)).start, face.slope * scene.beam(one.beam).length),
                 "friction": one.friction,
             }
@@ -96,19 +95,10 @@ def _beam(beam: BeamSpec) -> dict[str, Any]:
         GA = [c * beam.stiffness(0.0)[1] / EA[0] for c in EA]
     stiffness = zip(("EA", "GA", "EI"), (EA, GA, EI), strict=True)
     return {
-        **{key: getattr(beam, key) for key in ("name", "start", "end", "length", "curvature")},
+        **kept(beam, "name start end length curvature"),
         "direction": beam.tangent(0.0),
         **{name: _coefficients(*values) for name, values in stiffness},
     }  # fmt: skip
-
-
-def _tidy(value: Any) -> Any:
-    """Return tables and lists with 15 digits of every number, which do not depend on the machine."""
-    if isinstance(value, dict):
-        return {key: _tidy(one) for key, one in value.items()}
-    if isinstance(value, list | tuple):
-        return [_tidy(one) for one in value]
-    return float(f"{value:.15g}") if isinstance(value, float) else value
 
 
 def _product(p: Sequence[Any], q: Sequence[Any]) -> list[float]:
@@ -176,8 +166,7 @@ def _free(scene: Scene) -> list[str]:
 
 def histories(scene: Scene, response: Response) -> dict[str, Any]:
     """Return what a response states, by ``OF.WHAT``, each of shape (s,)."""
-    # without extremes along the beams, which take long
-    found, steps = table(replace(response, definition=None)), range(len(response.load_parameter))
+    found, steps = table(response, along=False), range(len(response.load_parameter))
     for node in _free(scene):
         name, _, end = node.partition(".")
         lines = [response.axis_line(name, k)[1][0 if end == "start" else -1] for k in steps]
@@ -212,7 +201,9 @@ def lines(key: str, rows: Sequence[Mapping[str, Any]], **head: Any) -> str:
 
 def set_texts(found: Mapping[str, Response]) -> tuple[str, str]:
     """Return the texts of ``scenes.json`` and ``queries.json``, which has the name of the set, a digest of both."""
-    rows = [_tidy(resolved(row["about"], *scenes()[row["name"]])) for row in SET["scene"]]
+    text = json.dumps([resolved(row["about"], *scenes()[row["name"]]) for row in SET["scene"]])
+    # 15 digits do not depend on the machine
+    rows = json.loads(text, parse_float=lambda number: float(f"{float(number):.15g}"))
     stated, asked = lines("scenes", rows, **HEAD, conventions=SET["conventions"]), queries(found)
     name = hashlib.sha256((stated + json.dumps(asked)).encode()).hexdigest()[:16]
     return stated, lines("queries", asked, **HEAD, set=name)

@@ -41,6 +41,10 @@ def draw(
         axes.grid(visible=True, linewidth=0.3)
         handles, labels = axes.get_legend_handles_labels()
         named = dict(zip(labels, handles, strict=True)) | named
+    first = grid.flat[0]
+    if shared.get("sharex") and first.get_xscale() == "log":
+        low, high = np.log10(first.get_xlim())  # whole decades have labels that do not overlap
+        first.set_xlim(10.0 ** np.floor(low), 10.0 ** np.ceil(high))
     place = {"loc": "outside lower center", "fontsize": "small", "frameon": False}
     fig.legend(named.values(), named.keys(), ncols=1 if max(map(len, named)) > 50 else 2, **place)
     fig.suptitle(title, fontsize="medium")

@@ -11,7 +11,7 @@ from comparisons.answer import Array
 from comparisons.models import ROD, solve
 from comparisons.models.outside.adapters.calculix import pressed, tip_load
 from comparisons.models.solid import to_solid
-from comparisons.output import Report, Row
+from comparisons.output import Row
 from comparisons.scene import Scene, load_scene
 from comparisons.suite.settings import Changes, changed
 
@@ -28,9 +28,6 @@ At 20 N/m the penetration takes some 5e-5 of the force; at 200 N/m longer steps 
 """
 SHOWN = (0.1, 0.25, 0.5, 0.7)
 """Load parameters of the contact."""
-COLUMNS = (
-    "case", "clamp", "mesh", "penalty", "step", "load_parameter", "reached", "fem_reference", "calculix", "difference", "largest", "message",
-)  # fmt: skip
 STEPS = 20
 """Load parameters of every run but those beside CalculiX."""
 LATE = slice(2, None)
@@ -42,8 +39,8 @@ SCENES = ("ks-cantilever", "ks-face")
 COMPARED = ("contact_force", "arc_position")
 PENETRATION = 1e-10
 """Penetration of the solid model, over the length."""
-EXACT: Changes = {("contact", "penetration"): PENETRATION}
-ROD_LAW: Changes = {**EXACT, ("beam", "material"): "biot-linear"}
+EXACT: Changes = {"contact.penetration": PENETRATION}
+ROD_LAW: Changes = {**EXACT, "beam.material": "biot-linear"}
 """The rod's own law, without penetration."""
 
 
@@ -57,15 +54,19 @@ def solved(
     return fem_reference.solve(changed, np.asarray(times), throw=throw)
 
 
-def peers(report: Report) -> Iterator[Row]:
+def peers() -> Iterator[Row]:
     """Tip displacement and contact force of the solid and of CalculiX on the same meshes."""
     problem = to_solid(load_scene("ks-face"))
     for clamp, load, mesh in product((ROD.name, "full"), LOADS, PEER_MESHES):
-        yield _tip_row(replace(problem.strips[0], clamp=clamp, mesh=mesh), load)
-        report(f"tip load {load:g}, {clamp} clamp, {mesh[0]}x{mesh[1]}")
+        strip = replace(problem.strips[0], clamp=clamp, mesh=mesh)
+        yield {"case": f"tip load {load:g} EI/L^2", **_named(strip), **_tip(strip, load)}
     for steps, penalty in RUNS:
-        yield from _pin_rows(problem, steps, penalty)
-        report(f"pin on the face, step {1 / steps:g}, {penalty:g} N/m")
+        of = {"case": "pin on the face", **_named(problem.strips[0]), "penalty": penalty, "step": 1 / steps}
+        yield from (of | row for row in _pin(problem, steps, penalty))
+
+
+def _named(strip: "Strip") -> Row:
+    return {"clamp": strip.clamp, "mesh": "x".join(map(str, strip.mesh))}
 
 
 def contact_forces(problem: "SolidProblem", steps: int, count: int) -> Array:
@@ -75,7 +76,7 @@ def contact_forces(problem: "SolidProblem", steps: int, count: int) -> Array:
     return result.contacts[contact.name].force
 
 
-def _tip_row(strip: "Strip", load: float) -> Row:
+def _tip(strip: "Strip", load: float) -> Row:
     """Displacement of the free end under a transverse dead load that is spread over it, in ten steps."""
     from fem_reference import PointLoad, SolidProblem
 
@@ -84,12 +85,11 @@ def _tip_row(strip: "Strip", load: float) -> Row:
     result = solved(SolidProblem(strips=(strip,), loads=(dead,)), np.arange(1, 11) / 10)
     u, other = result.tips[strip.name][-1] - strip.end, tip_load(strip, force).tip[-1]
     own, peer, apart = (float(np.hypot(*one)) for one in (u, other, other - u))
-    end = {"load_parameter": 1.0, "reached": 1.0, "message": ""}
     found = {"fem_reference": own, "calculix": peer, "difference": apart / own}
-    return _row(strip, case=f"tip load {load:g} EI/L^2", **end, **found)
+    return {"load_parameter": 1.0, "reached": 1.0, **found}
 
 
-def _pin_rows(problem: "SolidProblem", steps: int, penalty: float) -> Iterator[Row]:
+def _pin(problem: "SolidProblem", steps: int, penalty: float) -> Iterator[Row]:
     """Yield a row per load parameter shown, with the contact force as the clamp bears it."""
     answer = pressed(problem.strips[0], problem.pins[0].path, steps, penalty)
     calculix = np.hypot(*answer.force.T)
@@ -98,20 +98,13 @@ def _pin_rows(problem: "SolidProblem", steps: int, penalty: float) -> Iterator[R
     ended = {"reached": float(answer.load_parameter[-1]), "largest": float(np.abs(differences).max())}
     for t in SHOWN:
         k = round(steps * t) - 1
-        found: Row = {"fem_reference": float(solid[k]), "message": answer.stopped}
-        if k < calculix.size:
-            found |= {"calculix": float(calculix[k]), "difference": float(differences[k])}
-            found["message"] = answer.stopped if t == SHOWN[-1] else ""
-        path = {"penalty": penalty, "step": 1 / steps, "load_parameter": t}
-        yield _row(problem.strips[0], case="pin on the face", **path, **ended, **found)
+        there = k < calculix.size
+        found = {"calculix": float(calculix[k]), "difference": float(differences[k])} if there else {}
+        said = {"message": "" if there and t < SHOWN[-1] else answer.stopped}
+        yield {"load_parameter": t, "fem_reference": float(solid[k]), **found, **ended, **said}
 
 
-def _row(strip: "Strip", **values: Any) -> Row:
-    own: Row = {"clamp": strip.clamp, "mesh": "x".join(map(str, strip.mesh)), **values}
-    return {name: own.get(name) for name in COLUMNS}
-
-
-def locking(report: Report) -> Iterator[Row]:
+def locking() -> Iterator[Row]:
     """Error of the force in plane strain against the rod of ``E / (1 - nu^2)``, elements of equal nodes."""
     for slenderness, nu in product((0.02, 0.002), (0.3, 0.49, 0.4999)):
         scene = _slender(slenderness, nu)
@@ -123,11 +116,10 @@ def locking(report: Report) -> Iterator[Row]:
             strip = _beam(scene, solid_element=element, mesh=mesh, material="biot-linear")
             force = _contact(strip, STEPS // 2, plane="strain").force[-1]
             row[element] = float(force / rod.force[STEPS // 2 - 1] - 1.0)
-        report(f"h/L = {slenderness:g}, nu = {nu:g}")
         yield row
 
 
-def thin_beams(report: Report) -> Iterator[Row]:
+def thin_beams() -> Iterator[Row]:
     """The solid of the rod's own law against the rod, for thinner and thinner strips: the difference falls as h^2."""
     last: Row = {}
     for slenderness in (0.02, 0.01, 0.005):
@@ -136,18 +128,17 @@ def thin_beams(report: Report) -> Iterator[Row]:
         solid = _history(_beam(changed(scene, ROD_LAW), mesh=(100, 2)))
         row = _largest(solid / np.array([rod.force, rod.arc_position])[:, LATE] - 1.0)
         orders = {f"{name}_order": float(np.log2(last[name] / row[name])) if last else None for name in row}
-        report(f"h/L = {slenderness:g}")
         last = row
         yield {"h_over_L": slenderness, **row, **orders}
 
 
-def scatter(report: Report) -> Iterator[Row]:
+def scatter() -> Iterator[Row]:
     """Largest relative difference of force and arc position between any two of 21 meshes, and from mesh to finer mesh."""
     for name, radius in zip(SCENES, (0.0, 0.005), strict=True):
         scene = _stepped(name)
         x, y = scene.pins[0].points[0]
         # the centre of a pin of finite radius lies that much below the scene's sharp pin
-        pin: Changes = {("pin", "start"): (x, y - radius), ("pin", "radius"): radius or None}
+        pin: Changes = {"pin.start": (x, y - radius), "pin.radius": radius or None}
         scene = changed(scene, {**ROD_LAW, **pin})
         found, finer = (
             np.array([_history(_beam(scene, mesh=one)) for one in of]) for of in (MESHES, SEQUENCE)
@@ -157,25 +148,23 @@ def scatter(report: Report) -> Iterator[Row]:
             differences[f"{coarse[0]}x{coarse[1]} to {fine[0]}x{fine[1]}"] = a / b - 1.0
         for label, apart in differences.items():
             yield {"scene": name, "radius": radius, "meshes": label, **_largest(apart)}
-        report(f"{name}, radius {radius:g}")
 
 
-def penalty(report: Report) -> Iterator[Row]:
+def penalty() -> Iterator[Row]:
     """Penetration half way and error of the force, against augmented Lagrangian steps, over sixteen decades of the penalty."""
     for name in SCENES:
         scene = _stepped(name)
         exact = _contact(changed(scene, EXACT)).force
         for eps in (10.0 ** np.arange(-3, 14)).tolist():
-            result = solved(to_solid(changed(scene, {("contact", "penalty"): eps})), scene.times, throw=False)
+            result = solved(to_solid(changed(scene, {"contact.penalty": eps})), scene.times, throw=False)
             (contact,), found = result.contacts.values(), (None, None)
             if result.status.name == "COMPLETED":
                 found = -contact.gap[STEPS // 2 - 1], np.abs(contact.force / exact - 1.0).max()
             measured = dict(zip(("penetration", "force_error"), found, strict=True))
             yield {"scene": name, "penalty": eps, **measured, "message": result.message}
-        report(name)
 
 
-STUDIES: dict[str, Callable[[Report], Iterator[Row]]] = {
+STUDIES: dict[str, Callable[[], Iterator[Row]]] = {
     "locking": locking,
     "thin-beams": thin_beams,
     "scatter": scatter,
@@ -196,7 +185,7 @@ def _slender(slenderness: float, nu: float) -> Scene:
 
 
 def _beam(scene: Scene, **changes: object) -> Scene:
-    return changed(scene, {("beam", key): value for key, value in changes.items()})
+    return changed(scene, {f"beam.{key}": value for key, value in changes.items()})
 
 
 def _contact(scene: Scene, count: int = STEPS, **strip: Any) -> "ContactHistory":

@@ -59,7 +59,7 @@ def line(docstring: str) -> str:
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Return a Markdown table; cells are Markdown in one line."""
-    return markdown([head, *rows]).rstrip("\n")
+    return markdown([dict(zip(head, row, strict=True)) for row in rows]).rstrip("\n")
 
 
 def scene_file() -> str:

@@ -11,7 +11,8 @@ from sphinx.locale import _
 from sphinx.util.logging import getLogger
 from sphinx.util.math import get_node_equation_number
 
-from comparisons.suites.manual import problems, write_manual
+from comparisons.files import writable_folder
+from comparisons.suites.manual import manual, problems
 from docs.extensions.gallery import gallery, stale
 from docs.extensions.generated import write_pages
 
@@ -59,8 +60,9 @@ def _write(app: Sphinx) -> None:
     if not stale(page, (path for package in packages for path in package.rglob("*.*[!c]"))):  # no .pyc
         return
     page.unlink(missing_ok=True)  # it was changed after it was written, and a changed file is not replaced
-    answers, _ = write_manual(page.parent, log.info, problems())
-    if not all(answer.passed for answer in answers):
+    found = manual(problems(), log.info)
+    found.write(writable_folder(page.parent))
+    if found.wrong:
         log.warning("manual: an answer lies beyond its tolerance")
     # Sphinx has targets in place of anchors, under names of their own
     text = re.sub(r'<a id="([\w-]+)"></a>', r"(manual-\1)=", page.read_text(encoding="utf-8"))

@@ -50,8 +50,8 @@ COEFFICIENTS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)
 
 def rubbing(friction, load_parameters=1, material=None):
     """The main scene with a coefficient of friction, and with another material of the solid."""
-    changes = {("contact", "friction"): friction, ("scene", "load_parameters"): load_parameters}
-    material = {("beam", "material"): material} if material else {}
+    changes = {"contact.friction": friction, "scene.load_parameters": load_parameters}
+    material = {"beam.material": material} if material else {}
     return changed(load_scene("ks-friction"), changes | material)
 
 

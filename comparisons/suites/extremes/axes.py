@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 
 from comparisons.models import MODELS, ROD, SOLID, TSM, Model
-from comparisons.models.model import Options
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
 from comparisons.scene.rules import Point
-from comparisons.suite import Case
+from comparisons.suite import case
 from comparisons.suites.extremes.cell import Against, Allowance, Cell, Check, circle, energy
 from tsm.elements import ELEMENTS, MIXED, TIMOSHENKO, ClosedForm, ElementType
 
@@ -73,13 +72,12 @@ def kinds(*, meshed: bool | None = None) -> list[ElementType]:
 
 def rod(scene: Scene, allowed: Allowance | None = None) -> Against:
     """Return the comparison with the exact rod on `scene`."""
-    return Against(case=Case(scene=scene, model=ROD.name), allowed=allowed)
+    return Against(case=case(scene, ROD), allowed=allowed)
 
 
 def cell(model: Model, column: str, scene: Scene, *checks: Check, row: str = "", **options: Any) -> Cell:
     """Return the cell of a model with options, in a row of its name by default."""
-    case = Case(scene=scene, model=model.name, options=Options(**options))
-    return Cell(row=row or model.name, column=column, case=case, checks=checks)
+    return Cell(row=row or model.name, column=column, case=case(scene, model, **options), checks=checks)
 
 
 def beam(column: str, scene: Scene, kind: ElementType, elements: int | None, row: str = "") -> Cell:
@@ -194,7 +192,7 @@ def _load_step(counts: Sequence[int]) -> Iterator[Cell]:
 def _penalty(powers: Sequence[int]) -> Iterator[Cell]:
     strip = cantilever()
     for surface, power in product(("axis", "face"), powers):
-        plain = Case(scene=half_circle(strip, surface=surface), model=SOLID.name, options=Options(mesh=MESH))
+        plain = case(half_circle(strip, surface=surface), SOLID, mesh=MESH)
         penalty = 10.0**power * 25.0 * strip.youngs_modulus * (1 / SLENDERNESS)
         allowed = Allowance(40 * (10 * strip.EI / penalty) + 1e-6, "what the penalty lets the beam give way")
         check = Against(case=plain, name="itself with the default penalty", allowed=allowed)

@@ -10,6 +10,7 @@ from comparisons.answer import Response
 from comparisons.answer.errors import difference
 from comparisons.frozen import Value
 from comparisons.models import TSM
+from comparisons.models.shared import kept
 from comparisons.models.theory import FLOOR, Bending, bending, chord_term, element_lengths, ordinal
 from comparisons.models.verify import CHECK_FAILED
 from comparisons.output import Row as TableRow
@@ -190,8 +191,7 @@ def judged(cell: Cell, results: Results) -> Judgement:
         "status": own.status,
         "reached": float(max(own.load_parameter, default=0.0)),
         **{column: decisive and getattr(decisive, name) for column, name in about.items()},
-        "iterations": own.iterations,
-        "cutbacks": own.cutbacks,
+        **kept(own, "iterations cutbacks"),
         "seconds": measured.seconds,
         "message": own.message,
     }

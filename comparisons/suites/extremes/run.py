@@ -1,20 +1,20 @@
-"""Run the matrix, judge every cell, write the maps: one table for each axis, models down, values across."""
+"""Run the matrix, judge every cell, draw the maps: one table for each axis, models down, values across."""
 
 import math
 from collections import Counter
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
-from comparisons.output import write_numbers, write_rows
+from comparisons.output import Row
 from comparisons.report.brief import Brief
-from comparisons.report.pages import Section, rendered, write_page
+from comparisons.report.pages import Section, rendered
 from comparisons.suite import Case
 from comparisons.suite.progress import Runner
 from comparisons.suites.extremes.axes import AXES, matrix
 from comparisons.suites.extremes.cell import VERDICTS, Judgement, judged
+from comparisons.suites.found import Found
 
 MARKS = dict(zip(VERDICTS, ("", "■ ", "□ ", "✗ "), strict=True))
 """Marks that distinguish the verdicts without colour."""
@@ -27,58 +27,51 @@ ABSENT = ("·", {"class": "none"})
 """Text and attributes of a cell of the map without a cell of the matrix."""
 
 
-def extremes(
-    folder: Path, run: Runner, *, quick: bool = False
-) -> tuple[Brief, list[Judgement], tuple[Path, ...]]:
-    """Run the matrix, judge it, and write page, table and numbers; return what is found, the judgements and the files."""
+def extremes(run: Runner, *, quick: bool = False) -> Found:
+    """Run the matrix and judge it."""
     cells = matrix(quick=quick)
     cases = dict.fromkeys(case for cell in cells for case in cell.cases)
     results = run(sorted(cases, key=_cost, reverse=True))
     judgements = [judged(cell, results) for cell in cells]
-    html, rows = folder / "extremes.html", [item.row for item in judgements]
-    numbers = {"quick": quick, "verdicts": counts(judgements), "cells": rows}
-    tables = (write_rows(folder / "extremes.csv", rows), write_numbers(folder / "extremes.json", numbers))
-    found = brief(judgements, quick=quick)
-    write_page(folder, "Where it holds, where it stops", found, _sections(judgements), (), tables, html.name)
-    return found, judgements, (html, *tables)
+    rows = [item.row for item in judgements]
+    number = Counter((row["axis"], row["verdict"]) for row in rows)
+    axes = dict.fromkeys(row["axis"] for row in rows)
+    counts = {axis: {verdict: number[axis, verdict] for verdict in VERDICTS} for axis in axes}
+    wrong = [item.sentence for item in judgements if item.row["verdict"] == "wrong"]
+    answer = [{"axis": axis, **of} for axis, of in counts.items()]
+    about = f"The cells of each axis{', a part of them (quick)' * quick}:"
+    return Found(
+        title="Where it holds, where it stops",
+        brief=Brief(_sentence(rows), [*wrong[:MOST], *_reasons(rows)], answer, about),
+        files={"extremes.csv": rows, "extremes.json": {"quick": quick, "verdicts": counts, "cells": rows}},
+        sections=lambda _: _sections(judgements),
+        wrong=wrong,
+        page="extremes.html",
+    )
 
 
-def brief(judgements: Sequence[Judgement], *, quick: bool) -> Brief:
-    """Return how many cells have each verdict, and why cells stop and are wrong."""
-    rows = [row for _, row in judgements]
-    number, needless = Counter(row["verdict"] for row in rows), sum(row["needless"] for row in rows)
-    said = f"{number['right']} of {len(rows)} cells are right, {number['stopped']} stop by name"
+def _sentence(rows: Sequence[Row]) -> str:
+    """Return how many cells have each verdict."""
+    number = Counter(row["verdict"] for row in rows)
+    withdrawn = f", {number['withdrawn']} are withdrawn by their own checks" if number["withdrawn"] else ""
     wrong = f"{number['wrong'] or 'none'} {'are' if number['wrong'] > 1 else 'is'} wrong"
-    points = [item.sentence for item in judgements if item.row["verdict"] == "wrong"][:MOST]
+    return f"{number['right']} of {len(rows)} cells are right, {number['stopped']} stop by name{withdrawn}, {wrong}."
+
+
+def _reasons(rows: Sequence[Row]) -> Iterator[str]:
+    """Yield why cells stop and are withdrawn."""
     for verdict in ("stopped", "withdrawn"):
         why = Counter(row["status"] for row in rows if row["verdict"] == verdict)
-        points += [
-            f"{verdict[0].upper()}{verdict[1:]}: {', '.join(f'{n} {name}' for name, n in why.most_common())}."
-        ] * bool(why)
-    points += [
-        f"{needless} of the withdrawn cells needlessly: their errors are within what is allowed."
-    ] * bool(needless)
-    answer = [{"axis": axis, **of} for axis, of in counts(judgements).items()]
-    withdrawn = f", {number['withdrawn']} are withdrawn by their own checks" if number["withdrawn"] else ""
-    return Brief(
-        f"{said}{withdrawn}, {wrong}.",
-        points,
-        answer,
-        f"The cells of each axis{', a part of them (quick)' * quick}:",
-    )
+        if why:
+            yield f"{verdict.capitalize()}: {', '.join(f'{n} {name}' for name, n in why.most_common())}."
+    if needless := sum(row["needless"] for row in rows):
+        yield f"{needless} of the withdrawn cells needlessly: their errors are within what is allowed."
 
 
 def _cost(case: Case) -> int:
     """Return steps times elements: the long cases come first, so that no worker ends up alone with one."""
     along, across = case.options.mesh or (0, 0)
     return case.scene.load_parameters * ((case.options.elements or 1) + 40 * along * across)
-
-
-def counts(judgements: Sequence[Judgement]) -> dict[str, dict[str, int]]:
-    """Return how many cells of each axis are right, stopped, withdrawn and wrong."""
-    number = Counter((row["axis"], row["verdict"]) for _, row in judgements)
-    axes = dict.fromkeys(row["axis"] for _, row in judgements)
-    return {axis: {verdict: number[axis, verdict] for verdict in VERDICTS} for axis in axes}
 
 
 def _sections(judgements: Sequence[Judgement]) -> list[Section]:

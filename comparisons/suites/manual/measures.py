@@ -7,7 +7,7 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from comparisons.answer import Array, Response
 from comparisons.answer.axis import STATIONS, axes_at_stations
@@ -18,9 +18,10 @@ from comparisons.models.model import Options
 from comparisons.models.solid import to_solid
 from comparisons.models.tsm import to_structure
 from comparisons.scene import LoadSpec, Scene, read_scene
+from comparisons.suite.settings import changed
 from comparisons.suites.drawing import Line
 from comparisons.suites.formula import value_of
-from comparisons.suites.manual.problem import Problem, Quantity, Trial, varied
+from comparisons.suites.manual.problem import Problem, Quantity, Trial
 from comparisons.suites.solid_accuracy import solved
 
 ANSWER = "exact answer"
@@ -72,7 +73,7 @@ def readings(answers: Answers) -> Iterable[float]:
     found: dict[str, Response] = {}
     for one in answers.problem.quantities:
         if repr(one.changes) not in found:
-            found[repr(one.changes)] = answers.solved(varied(answers.scene, one.changes))
+            found[repr(one.changes)] = answers.solved(changed(answers.scene, one.changes))
         of, beam = partial(value, found[repr(one.changes)]), answers.scene.beams[0]
         yield value_of(one.formula, of=of, read=one.read, at=one.at, beam=beam)
 
@@ -93,13 +94,8 @@ def value(response: Response, words: str, at: float) -> float:
         beam, part, direction = more
         station = round(float(part) * (len(STATIONS) - 1))
         return float(axes_at_stations(response, beam, [k])[0, station, "xy".index(direction)])
-    found = histories(response)
+    found = table(response, along=False)
     return float(found[what][k] if what in found else np.hypot(found[f"{what}_x"][k], found[f"{what}_y"][k]))
-
-
-def histories(response: Response) -> dict[str, NDArray[Any]]:
-    """Return `comparisons.answer.table` without extremes along the beams, which take long."""
-    return table(replace(response, definition=None))
 
 
 def step(response: Response, load_parameter: float) -> int:
@@ -126,7 +122,7 @@ def critical_load(answers: Answers) -> Iterable[float]:
     scene, estimate = answers.scene, answers.problem.quantities[0].exact
 
     def sideways(load: float) -> float:
-        loaded = varied(scene, {"scene.load_parameters": 1, "load.force": (0.0, -load)})
+        loaded = changed(scene, {"scene.load_parameters": 1, "load.force": (0.0, -load)})
         return value(answers.solved(loaded, draw=False), "column.end.force_x", 1.0)
 
     aside, loads = scene.supports[0].motion[0] or 1.0, (estimate * np.linspace(0.1, 1.2, 12)).tolist()
@@ -142,7 +138,7 @@ def greatest_load(answers: Answers) -> Iterable[float]:
     given, response, pin = answers.problem.settings, answers.solved(draw=False), answers.scene.pins[-1]
     t, a = response.load_parameter, pin.points[0][0]
     rise = np.array([pin.position(one)[1] for one in t]) / a
-    load = histories(response)[given["load"]] * given["times"] * a**2 / answers.scene.beams[0].EI
+    load = table(response, along=False)[given["load"]] * given["times"] * a**2 / answers.scene.beams[0].EI
     answers.draw(rise, load)
     _draw_levels(answers, answers.problem.quantities[::2], rise.max())
     there = t <= max(pin.corners, default=1.0)
@@ -198,7 +194,7 @@ def power_law(answers: Answers) -> Iterable[float]:
     given, found = answers.problem.settings, list[float]()
     for one in given["values"]:
         elements = given["varies"] == "elements"
-        scene = answers.scene if elements else varied(answers.scene, {given["varies"]: one})
+        scene = answers.scene if elements else changed(answers.scene, {given["varies"]: one})
         options = replace(answers.trial.options, elements=one) if elements else None
         response = answers.solved(scene, options=options, draw=False)
         if given["of"] == "penetration":
@@ -252,7 +248,7 @@ def work_over_energy(answers: Answers) -> Iterable[float]:
 def invariance(answers: Answers) -> Iterable[float]:
     """Largest changes of contact force and clamp moment in the scene that is moved, mirrored or named from the other end."""
     other = read_scene(answers.problem.settings["other"], answers.problem.name)
-    found = [histories(answers.solved(draw=False)), histories(answers.solved(other))]
+    found = [table(answers.solved(draw=False), along=False), table(answers.solved(other), along=False)]
     answers.lines.extend(undeformed(other))
     for name in ("force", "moment"):
         a, b = (

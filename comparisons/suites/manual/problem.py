@@ -10,13 +10,11 @@ from typing import Any
 from comparisons.frozen import Value
 from comparisons.models.model import Options
 from comparisons.scene import InputError, Scene, built_in_scenes, load_scene, read_scene
-from comparisons.suite.settings import changed
+from comparisons.suite.settings import Changes, changed
 
 FOLDER = Path(__file__).parent / "problems"
 ORDER = FOLDER / "order.txt"
 """The names of the problems in the order of the manual; those that are not named follow by name."""
-Changes = Mapping[str, Any]
-"""New values of a scene's settings by the names of a study file, ``contact.friction``."""
 
 
 class Picture(Value):
@@ -100,12 +98,7 @@ def _scene(table: dict[str, Any], path: Path, scene: Scene | None = None) -> Sce
     if stated is not None:
         scene = load_scene(stated) if stated in built_in_scenes() else read_scene(stated, path.name)
     assert scene is not None, "a problem has a scene"
-    return varied(scene, changes)
-
-
-def varied(scene: Scene, changes: Changes) -> Scene:
-    """Return a scene with changed settings."""
-    return changed(scene, {tuple(key.split(".")): value for key, value in changes.items()})
+    return changed(scene, changes)
 
 
 def _trial(row: dict[str, Any], scene: Scene, path: Path) -> Trial:

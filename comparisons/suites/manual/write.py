@@ -1,7 +1,8 @@
-"""The manual as a folder: ``index.md``, a picture for each problem, ``manual.json``; and as JUnit checks."""
+"""The manual: judgements on the answers, a picture for each problem, and what is found as a page, Markdown, numbers and JUnit checks."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import chain
 from math import inf, nan
 from pathlib import Path
@@ -11,12 +12,15 @@ from typing import Any
 import numpy as np
 
 from comparisons import models as registry
-from comparisons.files import writable_folder, write_text
-from comparisons.output import Report, write_numbers
+from comparisons.models.shared import kept
+from comparisons.output import Report, Row, markdown
 from comparisons.report import palette
+from comparisons.report.brief import Brief
+from comparisons.report.pages import Section, picture, piece, table
 from comparisons.suites.drawing import Line, draw_lines
 from comparisons.suites.finding import Finding, junit_text
 from comparisons.suites.formula import sentence
+from comparisons.suites.found import Found
 from comparisons.suites.manual.measures import (
     ANSWER,
     MEASURES,
@@ -29,7 +33,6 @@ from comparisons.suites.manual.measures import (
 from comparisons.suites.manual.problem import Problem, Trial, read_problem
 from comparisons.version import versions
 
-FILES = ("index.md", "manual.json", "junit.xml")
 PAGE = Path(__file__).with_name("page.md.jinja")
 GUIDE = "exact order"
 EXACT = {"color": palette.GREY, "linewidth": 0.8, "linestyle": (0, (4, 3)), "zorder": 3}
@@ -57,6 +60,16 @@ class Judgement:
     def passed(self) -> bool:
         """Whether every error is within what is allowed."""
         return all(one.holds for one in self.findings)
+
+    @property
+    def verdict(self) -> str:
+        """The verdict in a word."""
+        return "passed" if self.passed else "FAILED"
+
+    @property
+    def reason(self) -> str:
+        """The reason of the tolerance, and why there is no answer."""
+        return f"{self.trial.why}.{f' Stopped: {self.stopped}.' if self.stopped else ''}"
 
     @property
     def worst(self) -> Finding:
@@ -95,8 +108,8 @@ def _judged(answers: Answers) -> Judgement:
     return Judgement(**vars(answers), findings=findings, seconds=seconds, stopped=stopped)
 
 
-def draw_case(case: Sequence[Judgement], path: Path) -> None:
-    """Draw what is exact and what the models found on a problem, in the format of the path's suffix."""
+def draw_case(case: Sequence[Judgement], *paths: Path) -> None:
+    """Draw what is exact and what the models found on a problem."""
     problem, picture, lines = case[0].problem, case[0].problem.picture, list[Line]()
     length = problem.scene.units.split(",")[1].strip()
     x, y = picture.axes or (f"x [{length}]", f"y [{length}]")
@@ -110,7 +123,7 @@ def draw_case(case: Sequence[Judgement], path: Path) -> None:
     lines += (drawn._replace(style=STYLES[drawn.label]) for drawn in _exact(problem, case[0].lines))
     scales: dict[str, Any] = {} if picture.axes else {"aspect": "equal", "adjustable": "datalim"}
     scales |= {"xscale": "log", "yscale": "log"} if picture.guide else {}
-    draw_lines({problem.title: lines}, path, tall=3.6, xlabel=x, ylabel=y, **scales)
+    draw_lines({problem.title: lines}, *paths, tall=3.6, xlabel=x, ylabel=y, **scales)
 
 
 def _exact(problem: Problem, found: Sequence[Line]) -> Iterator[Line]:
@@ -126,33 +139,70 @@ def _exact(problem: Problem, found: Sequence[Line]) -> Iterator[Line]:
         yield from deflected(scene, answered(scene, picture.exact), ANSWER, picture.shown)
 
 
-def page(cases: Sequence[Sequence[Judgement]]) -> str:
-    """Return the manual as Markdown: a table of all answers, then a section for each problem."""
-    template, judgements = PAGE.read_text(encoding="utf-8"), list(chain.from_iterable(cases))
-    return sentence(template, cases=cases, judgements=judgements, versions=versions())
+def _answer(item: Judgement) -> Row:
+    """Return the row of an answer in the table of all."""
+    worst = item.worst
+    return {
+        "case": item.problem.title,
+        "model": item.trial.label,
+        "quantity of the largest error": worst.name,
+        "exact": f"{worst.exact:.9g}",
+        "computed": item.stopped or f"{worst.value:.9g}",
+        "error": f"{worst.error:.1e}",
+        "tolerance": f"{worst.allowed:.2g}",
+        "verdict": item.verdict,
+    }
+
+
+def _answers(case: Sequence[Judgement]) -> list[Row]:
+    """Return the rows of a problem: each quantity by each model, tolerances, verdicts and seconds."""
+
+    def row(name: str, exact: str, cells: Iterable[str]) -> Row:
+        labels = (item.trial.label for item in case)
+        return {"quantity": name, "exact": exact, **dict(zip(labels, cells, strict=True))}
+
+    found = zip(*(item.findings for item in case), strict=True)
+    return [
+        *(
+            row(of[0].name, f"{of[0].exact:.12g}", (f"{one.value:.9g} ({one.error:.1e})" for one in of))
+            for of in found
+        ),
+        row("tolerance", "", (f"{item.trial.allowed:.2g}" for item in case)),
+        row("verdict", "", (item.verdict for item in case)),
+        row("seconds", "", (f"{item.seconds:.2f}" for item in case)),
+    ]
+
+
+def _section(case: Sequence[Judgement], folder: Path) -> Section:
+    """Return a problem on the page."""
+    problem = case[0].problem
+    about = {"Problem": problem.statement, "Purpose": problem.purpose, "Exact value": problem.source}
+    reasons = {item.trial.label: item.reason for item in case}
+    parts = (
+        picture(folder / f"{problem.name}.svg", problem.title),
+        piece("definitions", about),
+        table("Answers, their errors in brackets", _answers(case)),
+        piece("definitions", reasons),
+    )
+    return Section(problem.title, "\n".join(parts))
 
 
 def _numbers(case: Sequence[Judgement]) -> dict[str, Any]:
     """Return everything but the picture as nested numbers."""
     problem = case[0].problem
-    stated = ("name", "title", "purpose", "statement", "source", "uncertainty")
+    runs = [
+        {
+            **kept(item.trial, "model setting"),
+            "tolerance": item.trial.allowed,
+            "reason": item.trial.why,
+            **{f"{name}s": [getattr(one, name) for one in item.findings] for name in ("value", "error")},
+            **kept(item, "seconds stopped passed"),
+        }
+        for item in case
+    ]
     return {
-        **{name: getattr(problem, name) for name in stated},
-        "quantities": problem.quantities,
-        "runs": [
-            {
-                "model": item.trial.model,
-                "setting": item.trial.setting,
-                "tolerance": item.trial.allowed,
-                "reason": item.trial.why,
-                "values": [one.value for one in item.findings],
-                "errors": [one.error for one in item.findings],
-                "seconds": item.seconds,
-                "stopped": item.stopped,
-                "passed": item.passed,
-            }
-            for item in case
-        ],
+        **kept(problem, "name title purpose statement source uncertainty quantities"),
+        "runs": runs,
         "picture": f"{problem.name}.svg",
         "passed": all(item.passed for item in case),
         "seconds": sum(item.seconds for item in case),
@@ -165,29 +215,11 @@ def _check(item: Judgement) -> tuple[str, str, float, str | None, str]:
     return f"manual.{item.problem.name}", item.trial.label, item.seconds, item.failure, measured
 
 
-def write_manual(folder: Path, report: Report, files: Sequence[Path]) -> tuple[list[Judgement], list[Path]]:
-    """Solve problems, judge the answers and write the manual; return the judgements and the files, the text first.
-
-    Parameters
-    ----------
-    folder : Path
-        Made if it is not there.
-    report : callable
-        Takes a line for each problem.
-    files : sequence of Path
-        The problems, of `comparisons.suites.manual.problem.problems`.
-
-    Raises
-    ------
-    OutputError
-        If the folder cannot be written in.
-    """
-    writable_folder(folder)
-    cases, pictures = [], []
+def manual(files: Sequence[Path], report: Report) -> Found:
+    """Solve problems, the files of `comparisons.suites.manual.problem.problems`, and judge the answers; `report` takes a line for each problem."""
+    cases = []
     for problem in map(read_problem, files):
         case = judged(problem)
-        pictures.append(folder / f"{problem.name}.svg")
-        draw_case(case, pictures[-1])
         cases.append(case)
         failed = [item for item in case if not item.passed]
         report(
@@ -195,9 +227,33 @@ def write_manual(folder: Path, report: Report, files: Sequence[Path]) -> tuple[l
         )
         for item in failed:
             report(f"  {item.trial.label}: {item.failure}")
-    write_text(folder / "index.md", page(cases))
     judgements = list(chain.from_iterable(cases))
-    write_text(folder / "junit.xml", junit_text("crossval run manual", map(_check, judgements)))
-    numbers = {"passed": all(item.passed for item in judgements), "cases": list(map(_numbers, cases))}
-    write_numbers(folder / "manual.json", numbers)
-    return judgements, [*(folder / name for name in FILES[:2]), *pictures, folder / FILES[2]]
+    wrong = [
+        f"{item.problem.name}, {item.trial.label}: {item.failure}" for item in judgements if not item.passed
+    ]
+    every = [_answer(item) for item in judgements]
+    linked = [
+        row | {"case": f"[{row['case']}](#{item.problem.name})"}
+        for row, item in zip(every, judgements, strict=True)
+    ]
+    words: dict[str, Any] = {"cases": cases, "judgements": judgements, "versions": versions()}
+    template = PAGE.read_text(encoding="utf-8")
+    text = sentence(template, **words, every=markdown(linked), answers=lambda case: markdown(_answers(case)))
+    return Found(
+        title="Verification manual",
+        brief=Brief(
+            f"{len(cases)} cases, {len(judgements)} answers, {len(wrong)} beyond their tolerance.", wrong
+        ),
+        files={
+            "index.md": text.replace(" FAILED ", " **FAILED** "),
+            "manual.json": {"passed": not wrong, "cases": list(map(_numbers, cases))},
+            "junit.xml": junit_text("crossval run manual", map(_check, judgements)),
+        },
+        sections=lambda folder: [
+            Section("Answers", table("Of every answer the quantity with the largest error", every)),
+            *(_section(case, folder) for case in cases),
+        ],
+        pictures={case[0].problem.name: partial(draw_case, case) for case in cases},
+        kinds=(".svg",),
+        wrong=wrong,
+    )

@@ -26,6 +26,7 @@ from comparisons.suites.paper.figure import (
     Numbers,
     Study,
     line,
+    pictures,
     shapes,
     stops,
 )
@@ -39,6 +40,7 @@ TOLERANCES = (1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12)
 RATIOS = 10.0 ** -np.arange(1.0, 16.5, 0.5)
 FITTED = (1e-13, 1e-2)
 """Ratios of the fitted slopes: below, a ratio has no digits left; above, it is no small one."""
+DOTTED = {"color": "0.6", "linestyle": ":"}
 MOVES = 0.5
 """A median critical area beyond half the element means that the tolerance is below the round-off everywhere in it."""
 FLOORS: tuple[dict[str, Any], ...] = (
@@ -50,13 +52,13 @@ FLOORS: tuple[dict[str, Any], ...] = (
 
 def lifted(start: float) -> Scene:
     """Return the scene of section 4.1 with a starting position of the pin [m]."""
-    return changed(load_scene("cantilever-critical-area"), {("pin", "start"): (start, 0.0)})
+    return changed(load_scene("cantilever-critical-area"), {"pin.start": (start, 0.0)})
 
 
 def critical_areas(*, quick: bool, report: Report) -> Study:
     """Measure both; `quick` takes fewer starting positions, tolerances and samples."""
     tolerances, shown = (TOLERANCES[::3], 1e-9) if quick else (TOLERANCES, 1e-10)
-    areas, curves = list[Row](), list[tuple[Row, Array, Array]]()
+    areas, curves, panels = list[Row](), list[Row](), dict[str, list[Line]]()
     for tolerance in tolerances:
         report(f"approach to the nodes at tolerance {tolerance:.0e}")
         for element, start in product(LABELS, STARTS[::4] if quick else STARTS):
@@ -65,87 +67,81 @@ def critical_areas(*, quick: bool, report: Report) -> Study:
                 place = {"element": element, "start": start, "node": way.node}
                 areas.append({"element": element, "tolerance": tolerance, **place, "smallest": way.smallest})
                 if tolerance == shown:
-                    curves.append((place, way.load_parameter * scene.pins[0].points[1][1], way.ratio))
+                    raised = way.load_parameter * scene.pins[0].points[1][1]
+                    both = zip(raised, way.ratio, strict=True)
+                    curves += ({**place, "displacement": d, "ratio": ratio} for d, ratio in both)
+                    wide = {"markevery": [-1], "linewidth": 3.2 - 0.7 * list(LABELS).index(element)}
+                    curve = Line(
+                        LABELS[element], (raised, np.maximum(way.ratio, NEAREST)), wide | line(element)
+                    )
+                    title = f"pin at {start:g} m, tolerance {shown:.0e} EI/L$^2$"
+                    panels.setdefault(title, []).append(curve)
     report("floor of the unbalanced force")
-    floors = np.array([
-        [force_floor(of["element"], ratio, of["end"], of["psi"], samples=8 if quick else 50) for ratio in RATIOS]
-        for of in FLOORS
-    ])  # fmt: skip
-    numbers = measured(areas, floors, shown)
-    cases = zip(product(FLOORS, RATIOS), floors.ravel(), strict=True)
-    panels: dict[str, list[Line]] = {}
-    for place, raised, ratio in curves:
-        element, title = place["element"], f"pin at {place['start']:g} m, tolerance {shown:.0e} EI/L$^2$"
-        style = {"markevery": [-1], "linewidth": 3.2 - 0.7 * list(LABELS).index(element), **line(element)}
-        curve = Line(LABELS[element], (raised, np.maximum(ratio, NEAREST)), style)
-        panels.setdefault(title, []).append(curve)
+    samples = 8 if quick else 50
+    floors = np.array(
+        [[force_floor(**of, ratio=ratio, samples=samples) for ratio in RATIOS] for of in FLOORS]
+    )
+    numbers, cases = measured(areas, floors, shown), zip(product(FLOORS, RATIOS), floors.ravel(), strict=True)
     return Study(
         tables={
-            "fig7b": [
-                {**place, "displacement": d, "ratio": one}
-                for place, raised, ratio in curves
-                for d, one in zip(raised, ratio, strict=True)
-            ],
+            "fig7b": curves,
             "fig7b-tolerance": areas,
             "fig7b-floor": [{**of, "ratio": ratio, "floor": floor} for (of, ratio), floor in cases],
         },
         numbers=numbers,
-        pictures={
-            "fig7b": panels,
-            "fig7b-tolerance": {"": _areas(numbers)},
-            "fig7b-floor": {"": _floors(floors, numbers)},
-        },
+        pictures=pictures(
+            fig7b=panels, fig7b_tolerance={"": _areas(numbers)}, fig7b_floor={"": _floors(floors, numbers)}
+        ),
     )
 
 
 def measured(areas: Sequence[Row], floors: Array, shown: float) -> Numbers:
     """Return the numbers of critical areas, and of floors by `FLOORS` and `RATIOS`; an area of 1 stands for no equilibrium."""
     tolerances = list(dict.fromkeys(row["tolerance"] for row in areas))
-    # by tolerance and way, from a start to a node, which may have a way from the same start before it
-    count = len(areas) // len(tolerances) // len(LABELS)
-    found = np.array([row["smallest"] for row in areas]).reshape(len(tolerances), len(LABELS), count)
-    ways = dict(zip(LABELS, np.moveaxis(found, 1, 0), strict=True))
-    later = [before["start"] == after["start"] for before, after in pairwise(areas[:count])]
+    # by tolerance and way, from a start to a node
+    found = np.reshape([row["smallest"] for row in areas], (len(tolerances), len(LABELS), -1))
+    ways = {name: found[:, k] for k, name in enumerate(LABELS)}
+    # ways that have one from the same start before them
+    later = np.diff([row["start"] for row in areas[: found.shape[2]]]) == 0.0
     of_parts: dict[str, Any] = {"smallest": np.min, "median": np.median, "largest": np.max}
     critical = {
         name: {part: of(np.nan_to_num(one, nan=1.0), axis=1) for part, of in of_parts.items()}
         for name, one in ways.items()
     }
-    takes, meets, smaller, gain, printed_gain = {}, {}, {}, {}, {}
+    takes, meets, smaller, gain = {}, {}, {}, {}
     for name, (least, most) in PRINTED.items():
+        area = critical[name]
         # where the median is in the middle, interpolated in logarithms; nan outside what was measured
-        medians = np.log(np.maximum(critical[name]["median"], 1e-300))
-        rising, middle = np.argsort(medians), np.log(least * most) / 2.0
-        at = np.interp(middle, medians[rising], np.log(tolerances)[rising], left=np.nan, right=np.nan)
+        known = np.log([np.maximum(area["median"], 1e-300), tolerances])
+        medians, sharp = known[:, np.argsort(known[0])]
+        at = np.interp(np.log(least * most) / 2.0, medians, sharp, left=np.nan, right=np.nan)
         takes[name] = float(np.exp(at))
         # where the measured range meets the printed one, and whether the printed one lies between two that do not
-        meeting = (critical[name]["smallest"] <= most) & (critical[name]["largest"] >= least)
+        meeting = (area["smallest"] <= most) & (area["largest"] >= least)
         meets[name] = [*meeting, *[True] * (takes[name] > 0.0)]
     # the tolerances at which the Euler-Bernoulli contact still moves
     usable = critical[SIMPLE]["median"] < MOVES
     for above, below in pairwise(PRINTED):
         both = usable[:, None] & np.isfinite(ways[above] + ways[below])
         smaller[above] = _part((ways[above] > ways[below])[both])
-        medians = np.maximum(critical[below]["median"][usable], NEAREST)
-        gain[above] = critical[above]["median"][usable] / medians
-        printed_gain[above] = float(np.sqrt(np.prod(PRINTED[above]) / np.prod(PRINTED[below])))
+        gain[above] = (critical[above]["median"] / np.maximum(critical[below]["median"], NEAREST))[usable]
+    middle = {name: np.sqrt(np.prod(ends)) for name, ends in PRINTED.items()}
     fitted = (FITTED[0] * 0.999 < RATIOS) & (FITTED[1] * 1.001 > RATIOS)
     slopes = np.polyfit(np.log(RATIOS[fitted]), np.log(floors[:, fitted]).T, 1)[0]
     near = np.argmin(np.abs(RATIOS - 1e-3))
     below_printed = critical[TIMOSHENKO]["largest"] <= PRINTED[TIMOSHENKO][0]
-    ends = slopes[:-1].reshape(-1, 2).tolist()
     return {
         "tolerances": tolerances,
         "tolerance_of_the_curves": shown,
         "critical_area": critical,
         "printed": PRINTED,
         "tolerance_for_the_printed": takes,
-        "slopes_of_the_floor": dict(zip((*LABELS, TURNED), ends, strict=True)),
+        "slopes_of_the_floor": dict(zip((*LABELS, TURNED), slopes[:-1].reshape(-1, 2).tolist(), strict=True)),
         "stiff": floors[-1, near] / floors[1, near],  # with the printed G, over that of Euler-Bernoulli
         "meets": meets,
         "smaller": smaller,
         "gain": gain,
-        "printed_gain": printed_gain,
+        "printed_gain": {above: float(middle[above] / middle[below]) for above, below in pairwise(PRINTED)},
         "passed": {name: _part(np.isfinite(one[:, 1:][:, later])) for name, one in ways.items()},
         "search_ends": NEAREST,
         "below_printed": np.array(tolerances)[below_printed].tolist(),
@@ -168,8 +164,7 @@ def _areas(numbers: Numbers) -> Iterator[Line]:
             yield Line(words, (tolerances, np.maximum(area, NEAREST)), style)
         for edge in PRINTED.get(element, ()):
             yield Line("printed in the paper", (beside, (edge, edge)), faint | {"linewidth": 3.0})
-    ends = {"color": "0.6", "linestyle": ":"}
-    yield Line(f"search ends at {NEAREST:.0e}", (tolerances, [NEAREST] * len(tolerances)), ends)
+    yield Line(f"search ends at {NEAREST:.0e}", (tolerances, [NEAREST] * len(tolerances)), DOTTED)
 
 
 def _floors(floors: Array, numbers: Numbers) -> Iterator[Line]:
@@ -180,8 +175,7 @@ def _floors(floors: Array, numbers: Numbers) -> Iterator[Line]:
         yield Line(f"{LABELS[element]}: slope {slope:z.2f}", (RATIOS, floor), style)
     stiff = {**line(TIMOSHENKO), "marker": "v", "linestyle": "-."}
     yield Line(f"{LABELS[TIMOSHENKO]}, printed G of section 4.2", (RATIOS, floors[-1]), stiff)
-    for edge in FITTED:
-        yield Line("fitted between", ((edge, edge), (1e-16, 1.0)), {"color": "0.6", "linestyle": ":"})
+    yield from (Line("fitted between", ((edge, edge), (1e-16, 1.0)), DOTTED) for edge in FITTED)
 
 
 ELEMENTS = (18, 72)
@@ -203,42 +197,48 @@ def cantilever_shapes(*, quick: bool, report: Report) -> Study:
             scene = replace(scene, load_parameters=scene.load_parameters // 4)
         scenes.append(scene)
         pair, travel = scene.contacts[0].pair, scene.pins[0].points[1][1]
-        elements = (TIMOSHENKO, MIXED) if quick else LABELS
-        tried = {one: solve(scene, TSM.name, Options(element=one)) for one in elements}
+        tried = {
+            one: solve(scene, TSM.name, Options(element=one))
+            for one in ((TIMOSHENKO, MIXED) if quick else LABELS)
+        }
         finer = solve(scene, TSM.name, Options(elements=ELEMENTS[1]))
         beams, rod = tried[MIXED], solve(scene, ROD.name)
         runs |= {f"{place}, {one.model}": one for one in (beams, rod)}
         own, exact = beams.contacts[pair], rod.contacts[pair]
         # forces [N] and arc positions [m] against the displacement of the pin [m], where both are in contact
-        columns = (beams.load_parameter, own.force, exact.force, own.arc_position, exact.arc_position)
+        columns = (
+            travel * beams.load_parameter,
+            own.force,
+            exact.force,
+            own.arc_position,
+            exact.arc_position,
+        )
         history = np.array([row for row in zip(*columns, strict=False) if np.isfinite(row).all()])
-        history[:, 0] *= travel
         names = ("start", "displacement", "force", "rod_force", "arc", "rod_arc")
-        histories += [dict(zip(names, (start, *row), strict=True)) for row in history]
-        slip_off = {
-            n: travel * run.contacts[pair].slip_off for n, run in zip(ELEMENTS, (beams, finer), strict=True)
-        }
+        histories += (dict(zip(names, (start, *row), strict=True)) for row in history)
         # up to the slip-off, or the end of the run before it
+        off = {one: travel * one.contacts[pair].slip_off for one in (*tried.values(), finer, rod)}
         ends = {
-            element: travel * np.nanmin([run.contacts[pair].slip_off, max(run.load_parameter, default=0.0)])
-            for element, run in tried.items()
+            name: np.nanmin([off[one], travel * max(one.load_parameter, default=0.0)])
+            for name, one in tried.items()
         }
+        slip_off = dict(zip(ELEMENTS, (off[beams], off[finer]), strict=True))
         lifts.append({
             "start": start,
-            "slip_off_rod": travel * exact.slip_off,
+            "slip_off_rod": off[rod],
             "slip_off": slip_off,
-            "slip_off_error": {n: abs(value / (travel * exact.slip_off) - 1.0) for n, value in slip_off.items()},
+            "slip_off_error": {n: abs(value / off[rod] - 1.0) for n, value in slip_off.items()},
             "force_error": np.abs(history[:, 2] - history[:, 1]).max() / history[:, 2].max(),
             "reached_in_contact": ends,
-            "paper_followed": bool(np.isclose(ends[TIMOSHENKO], travel * exact.slip_off, rtol=FOLLOWED)),
+            "paper_followed": bool(np.isclose(ends[TIMOSHENKO], off[rod], rtol=FOLLOWED)),
         })  # fmt: skip
         last = int(np.flatnonzero(np.isfinite(own.arc_position))[-1])
         shown = {"exact rod": rod, f"TSM mixed, {ELEMENTS[0]} elements": beams}
-        title = f"{place}: slips off at {slip_off[ELEMENTS[0]]:.4f} m"
+        title = f"{place}: slips off at {off[beams]:.4f} m"
         panels[title] = list(shapes(scene, shown, [round(part * last) for part in DEPTHS]))
     return Study(
         tables={"fig7a": histories},
         numbers={"starting_positions": lifts, "stopped": stops(runs)},
-        pictures={"fig7a": panels},
+        pictures=pictures(fig7a=panels),
         scenes=scenes,
     )

@@ -10,6 +10,7 @@ from comparisons.answer.errors import errors
 from comparisons.answer.quantities import KEPT, SCOPES
 from comparisons.models import find, solve
 from comparisons.models.model import Options
+from comparisons.models.shared import kept
 from comparisons.output import Report, Row
 from comparisons.report.motion import motion_section, tracks
 from comparisons.report.pages import Section
@@ -67,9 +68,7 @@ def _compared(scene: Scene, label: str, responses: Mapping[str, Response]) -> Ro
     return {
         "reading": scene.name,
         "label": label,
-        "status": response.status,
-        "unknowns": response.unknowns,
-        "iterations": response.iterations,
+        **kept(response, "status unknowns iterations"),
         "seconds": response.wall_seconds,
         "shape_difference": apart,
         "follows_the_rod": response.status == "COMPLETED" and found["path"]["shape"] < OTHER_BRANCH,

@@ -15,7 +15,16 @@ from comparisons.report.motion import motion_section, tracks
 from comparisons.scene import Scene, load_scene
 from comparisons.suite.settings import changed
 from comparisons.suites.drawing import Line
-from comparisons.suites.paper.figure import CANTILEVER, SIMPLE, STATED, TIMOSHENKO, Study, shapes, stops
+from comparisons.suites.paper.figure import (
+    CANTILEVER,
+    SIMPLE,
+    STATED,
+    TIMOSHENKO,
+    Study,
+    pictures,
+    shapes,
+    stops,
+)
 
 UPPER, TIP, LOWER = "pin->upper", "upper.end->lower", "pin->lower"
 """The contact pairs."""
@@ -77,7 +86,7 @@ def double_beam(*, quick: bool, report: Report) -> Study:
             "fig9": [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
         },
         numbers=numbers,
-        pictures={**({"fig9": drawn} if stages else {}), "fig9-forces": forces},
+        pictures=pictures(**({"fig9": drawn} if stages else {}), fig9_forces=forces),
         scenes=[finer],
         moving=[
             motion_section("Double beam: shapes and histories", finer, {BEAMS: response}, shown, focus=BEAMS)
@@ -123,7 +132,7 @@ def _stages(depth: Array) -> list[Row]:
 def _attempt(scene: Scene, element: str, place: float) -> Row:
     """How deep [m] `tsm.solve` comes with a formulation and a place of the pin, and the nodes passed."""
     # at_hand_over: a second contact on an element that knows one stops it where the exact rods hand over
-    moved = changed(scene, {("pin", "start"): (place, scene.pins[0].points[0][1])})
+    moved = changed(scene, {"pin.start": (place, scene.pins[0].points[0][1])})
     response, travel = solve(moved, TSM.name, Options(element=element)), _travel(moved)
     last, over = float(max(response.load_parameter, default=0.0)), HAND_OVER[place] / travel
     at_hand_over = response.status == "TWO_CONTACTS" and last < over <= last + scene.times[0]

@@ -3,13 +3,14 @@
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import Any
 
 from comparisons.answer import Response
 from comparisons.models import find
-from comparisons.output import Row, write_numbers, write_rows
+from comparisons.output import Row
 from comparisons.report import palette
 from comparisons.report.pages import Section
 from comparisons.scene import Scene
@@ -26,28 +27,21 @@ Numbers = Mapping[str, Any]
 class Study:
     """What is found for a figure: its scenes, rows and numbers, pictures, and moving shapes for the page.
 
-    `tables` and `pictures` go by the names of their files; a picture is its panels, or draws to the paths that it is given.
+    `tables` and `pictures` go by the names of their files; a picture draws to the paths that it is given.
     ``numbers["stopped"]`` names the runs that the figure needs and that did not go through.
     """
 
     tables: Mapping[str, list[Row]]
     numbers: Numbers
-    pictures: Mapping[str, Mapping[str, Iterable[Line]] | Callable[..., None]]
+    pictures: Mapping[str, Callable[..., None]]
     scenes: Sequence[Scene] = ()
     moving: Sequence[Section] = ()
 
-    def write(self, name: str, folder: Path) -> list[Path]:
-        """Draw the pictures and write the numbers, those of the JSON file under a name; return the files."""
-        files = []
-        for stem, drawn in self.pictures.items():
-            paths = [folder / f"{stem}.png", folder / f"{stem}.svg"]
-            if callable(drawn):
-                drawn(*paths)
-            else:
-                draw_lines(drawn, *paths, **STATED["picture"][stem])
-            files += paths
-        files += [write_rows(folder / f"{stem}.csv", rows) for stem, rows in self.tables.items()]
-        return [*files, write_numbers(folder / f"{name}.json", self.numbers)]
+
+def pictures(**drawn: Mapping[str, Iterable[Line]]) -> dict[str, Callable[..., None]]:
+    """Return what draws pictures, the panels of each by the name of its file, with a line below for a hyphen."""
+    names = {name.replace("_", "-"): panels for name, panels in drawn.items()}
+    return {name: partial(draw_lines, panels, **STATED["picture"][name]) for name, panels in names.items()}
 
 
 def stops(runs: Mapping[str, Response]) -> list[str]:

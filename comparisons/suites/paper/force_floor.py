@@ -2,7 +2,7 @@
 # An element and its node are put into a state with a given contact force in extended precision, which is then
 # rounded to double precision; what the forces differ by, no iteration in double precision goes below but by
 # chance. To expect is a contact stiffness times the last bit of a coordinate: 3 EI/b^3 (Euler-Bernoulli) or
-# GA/b (Timoshenko, b below sqrt(Psi)); with the force as an unknown nothing is multiplied. The reference has
+# GA/b (Timoshenko, b below sqrt(psi)); with the force as an unknown nothing is multiplied. The reference has
 # the same amplification with a last bit 2000 times smaller (x86).
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ _ELEMENTS = 10  # of the beam, over whose length the element lies anywhere
 
 
 def force_floor(
-    element: str, ratio: float, end: Literal["start", "end"] = "start", Psi: float = 9.0, *, samples: int = 50
+    element: str, ratio: float, end: Literal["start", "end"] = "start", psi: float = 9.0, *, samples: int = 50
 ) -> float:
     """Return the unbalanced force [EI/L^2] that round-off leaves, the median over random states."""
     kind = None if element == TURNED else CLOSED_FORM[element]
@@ -58,13 +58,13 @@ def force_floor(
         raise ValueError("numpy.longdouble: this platform's is no wider than double precision")
     rng = np.random.default_rng(0)
     xi = _Extended(ratio) if end == "start" else 1 - _Extended(ratio)
-    return float(np.median([_sample(kind, xi, Psi, rng) for _ in range(samples)]))
+    return float(np.median([_sample(kind, xi, psi, rng) for _ in range(samples)]))
 
 
-def _sample(kind: ClosedForm | None, xi: Any, Psi: float, rng: np.random.Generator) -> float:
+def _sample(kind: ClosedForm | None, xi: Any, psi: float, rng: np.random.Generator) -> float:
     """Floor at one random state of an element with ``l0 = EI = 1``, ``EA = 3 GA`` as of a solid section."""
     angle = rng.uniform(0, 2 * np.pi)
-    p = Properties(np.cos(angle), np.sin(angle), 1.0, 3 / Psi, 1.0, 12 * Psi)
+    p = Properties(np.cos(angle), np.sin(angle), 1.0, 3 / psi, 1.0, 12 * psi)
     p = p if kind is None else kind.constants(p)
     start, contact_force = _ELEMENTS * rng.uniform(-1, 1, 2), 1 / _ELEMENTS**2
     # rigid motion, end rotations about 0.05 from the chord and a strain about 1e-3

@@ -1,18 +1,19 @@
 """The claims of [P], which ``claims.toml`` states, and its figures: verdicts, files and a page."""
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from comparisons.files import writable_folder, write_text
 from comparisons.output import Report, Row, markdown
 from comparisons.report.brief import Brief
-from comparisons.report.pages import Section, picture, table, write_page
+from comparisons.report.pages import Section, picture, table
 from comparisons.suites.formula import sentence, value_of
+from comparisons.suites.found import Found
 from comparisons.suites.names import FIGURES
 from comparisons.suites.paper.fig7 import cantilever_shapes, critical_areas
 from comparisons.suites.paper.fig8 import ks_shapes
@@ -116,7 +117,6 @@ def counted(judgements: Judgements) -> str:
 
 def claims_text(judgements: Judgements, *, quick: bool) -> str:
     """Return the verdicts as Markdown."""
-    rows = list(judgements.values())
     return f"""# The claims of the paper and what became of them
 
 {PAPER}: {counted(judgements)}.
@@ -125,7 +125,7 @@ Every number below is computed by the run that wrote this file{", with coarse se
 Timoshenko, Euler-Bernoulli: the paper's elements with their misprints corrected. Mixed: the element of this project
 whose contact force is an unknown. EI/L^2 is the unit of the unbalanced force.
 
-{markdown([list(rows[0]), *(list(row.values()) for row in rows)])}"""
+{markdown(list(judgements.values()))}"""
 
 
 def brief(judgements: Judgements, *, quick: bool) -> Brief:
@@ -144,29 +144,36 @@ def brief(judgements: Judgements, *, quick: bool) -> Brief:
     return Brief(sentence, points[1:], answer, "The verdicts, and the numbers of the claims below:")
 
 
-def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[Brief, list[Path], list[str]]:
-    """Draw a figure of `FIGURES` or "all" and judge its claims; return what is found, the files and what stopped."""
-    folder = writable_folder(folder)
-    found: dict[str, Study] = {}
-    files: list[Path] = []
-    for number, figure in enumerate(names := list(FIGURES) if name == "all" else [name], 1):
+def reproduce(name: str, *, quick: bool, report: Report) -> Found:
+    """Draw a figure of `FIGURES` or "all", and judge its claims."""
+    found, names = dict[str, Study](), list(FIGURES) if name == "all" else [name]
+    for number, figure in enumerate(names, 1):
         report(f"[{number}/{len(names)}] {figure}: {FIGURES[figure]}")
         found[figure] = STUDIES[figure](quick=quick, report=lambda line: report(f"  {line}"))
-        files += found[figure].write(figure, folder)
     judgements = judged({figure: study.numbers for figure, study in found.items()}, quick=quick)
-    files.append(folder / ("claims.md" if name == "all" else f"claims-{name}.md"))
-    write_text(files[-1], claims_text(judgements, quick=quick))
-    told = brief(judgements, quick=quick)
-    claims = Section("Claims", table(f"{counted(judgements)}.", list(judgements.values()), prose=True))
-    sections = list[Section]()
+    files: dict[str, Any] = {
+        "claims.md" if name == "all" else f"claims-{name}.md": claims_text(judgements, quick=quick)
+    }
     for figure, study in found.items():
-        title = FIGURES[figure]
-        drawn = (picture(folder / f"{stem}.svg", f"{stem}: {title}") for stem in study.pictures)
-        sections += [Section(f"{figure}: {title}", "\n".join(drawn)), *study.moving]
-    sections.insert(1, claims)
-    scenes = dict.fromkeys(scene for study in found.values() for scene in study.scenes)
-    page = write_page(folder, "The paper's figures and claims", told, sections, scenes, files)
-    stopped = [
-        f"{figure}: {one}" for figure, study in found.items() for one in study.numbers.get("stopped", ())
-    ]
-    return told, [page, *files], stopped
+        files |= {f"{stem}.csv": rows for stem, rows in study.tables.items()}
+        files[f"{figure}.json"] = study.numbers
+
+    def sections(folder: Path) -> Iterator[Section]:
+        claims = Section("Claims", table(f"{counted(judgements)}.", list(judgements.values()), prose=True))
+        for figure, study in found.items():
+            title = FIGURES[figure]
+            shown = (picture(folder / f"{stem}.svg", f"{stem}: {title}") for stem in study.pictures)
+            yield Section(f"{figure}: {title}", "\n".join(shown))
+            yield from (*([claims] if figure == names[0] else ()), *study.moving)
+
+    return Found(
+        title="The paper's figures and claims",
+        brief=brief(judgements, quick=quick),
+        files=files,
+        sections=sections,
+        pictures={stem: draw for study in found.values() for stem, draw in study.pictures.items()},
+        scenes=dict.fromkeys(scene for study in found.values() for scene in study.scenes),
+        stopped=[
+            f"{figure}: {one}" for figure, study in found.items() for one in study.numbers.get("stopped", ())
+        ],
+    )

@@ -12,7 +12,7 @@ from comparisons.answer.quantities import forces, moments, scales, size
 from comparisons.frozen import Frozen
 from comparisons.models import ROD
 from comparisons.scene import Scene
-from comparisons.suite import Case
+from comparisons.suite import Case, case
 from comparisons.suite.run import Results
 from comparisons.suites.trade.settings import beams, limit_cases
 from tsm.elements import EXACT
@@ -52,13 +52,13 @@ def _end(response: Response) -> float:
 
 def reference_cases(scene: Scene) -> list[Case]:
     """Return the exact rods, and the exact elements that confirm them."""
-    return [Case(scene=scene, model=ROD.name), beams(scene, EXACT, 1, tolerance=1e-12)]
+    return [case(scene, ROD), beams(scene, EXACT, 1, tolerance=1e-12)]
 
 
 def best_reference(scene: Scene, measured: Results) -> Reference:
     """Return the answer of the exact rods, as uncertain as its difference from exact TSM elements."""
     # the rods and not the elastica: every model of the sweep stretches and shears
-    rod, exact = (measured[case].response for case in reference_cases(scene))
+    rod, exact = (measured[one].response for one in reference_cases(scene))
     if not rod.completed:
         raise NoReferenceError(f"{scene.name}: the exact rods stopped: {rod.message}")
     apart = errors(exact if exact.completed else rod, rod, scene, end=_end(rod))
@@ -75,12 +75,12 @@ def best_reference(scene: Scene, measured: Results) -> Reference:
 def solid_limit(scene: Scene, measured: Results, *, quick: bool = False) -> Reference | None:
     """Return what the solid converges to, as uncertain as its last meshes differ; None if one stopped."""
     cases = limit_cases(scene, quick=quick)
-    series = [measured[case].response for case in cases]
+    series = [measured[one].response for one in cases]
     if not all(response.completed for response in series):
         return None
     limit = extrapolated(series)
     apart = errors(series[-2], series[-1], scene, scale=scales(limit), end=_end(limit))
-    meshes = ", ".join(case.label.removeprefix(f"{case.family} ") for case in cases)
+    meshes = ", ".join(one.label.removeprefix(f"{one.family} ") for one in cases)
     sentence = f"extrapolated from {meshes}, known to {apart['path']['force']:.1e} of the largest force"
     return Reference(response=limit, scene=scene, uncertainty=apart, sentence=sentence)
 

@@ -5,11 +5,10 @@ from dataclasses import replace
 from math import log
 
 from comparisons.models import MODELS, SOLID, TSM, Model
-from comparisons.models.model import Options
 from comparisons.models.solid import REFINED
 from comparisons.scene import Scene
-from comparisons.suite import Case
-from comparisons.suite.settings import Changes, changed
+from comparisons.suite import Case, case
+from comparisons.suite.settings import changed
 from tsm.elements import EXACT, MIXED_NO_BOW, PAPER, ElementType
 
 LIMIT = REFINED[1:]
@@ -22,7 +21,7 @@ PENETRATION = 1e-10
 
 def sweep_cases(scene: Scene, *, quick: bool = False) -> list[Case]:
     """Return the cases of the sweep, each once, without the longest if quick."""
-    every = (case for model in MODELS.values() for case in _settings(model, scene, quick=quick))
+    every = (one for model in MODELS.values() for one in _settings(model, scene, quick=quick))
     return list(dict.fromkeys(every))
 
 
@@ -42,7 +41,7 @@ def _settings(model: Model, scene: Scene, *, quick: bool) -> Iterator[Case]:
     """Yield the resolutions of a model with several numbers of load steps, and variants of one resolution with all of them."""
     if not model.meshed:
         if model.reference is None:  # the exact rod is among the references
-            yield Case(scene=scene, model=model.name)
+            yield case(scene, model)
         return
     plain, steps = solid(scene).scene if model.continuum else scene, load_steps(scene)
     for count in (steps[0], *steps[-2:]) if quick else steps:
@@ -67,8 +66,7 @@ def _settings(model: Model, scene: Scene, *, quick: bool) -> Iterator[Case]:
 
 def beams(scene: Scene, kind: ElementType, elements: int, tolerance: float | None = None) -> Case:
     """Return TSM with elements of a type."""
-    options = Options(element=kind.name, elements=elements, integration_tolerance=tolerance)
-    return Case(scene=scene, model=TSM.name, options=options)
+    return case(scene, TSM, element=kind.name, elements=elements, integration_tolerance=tolerance)
 
 
 def solid(
@@ -76,16 +74,16 @@ def solid(
 ) -> Case:
     """Return the solid with elements of an order, and with another penalty or penetration of every contact if one is given."""
     given = {"penalty": None, "penetration": None, **contact} if contact else {}
-    changes: Changes = {("contact", key): value for key, value in given.items()}
-    scene = changed(scene, {("beam", "solid_element"): order, **changes})
-    return Case(scene=scene, model=SOLID.name, options=Options(mesh=mesh))
+    changes = {f"contact.{key}": value for key, value in given.items()}
+    scene = changed(scene, {"beam.solid_element": order, **changes})
+    return case(scene, SOLID, mesh=mesh)
 
 
 def chains(cases: Iterable[Case]) -> Iterator[list[Case]]:
     """Yield the cases that differ in resolution only, three or more, coarse to fine; solids are refined alike in both directions."""
     found: dict[Case, list[Case]] = {}
-    for case in cases:
-        if case.options.mesh in (None, *REFINED):
-            alike = replace(case, options=replace(case.options, elements=None, mesh=None))
-            found.setdefault(alike, []).append(case)
-    return (sorted(chain, key=lambda case: case.resolution) for chain in found.values() if len(chain) > 2)
+    for one in cases:
+        if one.options.mesh in (None, *REFINED):
+            alike = replace(one, options=replace(one.options, elements=None, mesh=None))
+            found.setdefault(alike, []).append(one)
+    return (sorted(chain, key=lambda one: one.resolution) for chain in found.values() if len(chain) > 2)

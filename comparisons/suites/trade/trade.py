@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from math import inf, isfinite, nan
+from math import nan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -131,43 +131,33 @@ def short(row: Row) -> str:
     return f"{setting.replace('tolerance', 'tol')} [{row.case.scene.load_parameters}]"
 
 
-def cheapest(trade: Trade, scope: str, quantity: str, target: float) -> Line:
-    """Return the settings with the least seconds for an error of `target`, and their ratios to TSM's."""
-
-    def least(model: str, *own: bool) -> Row | None:
-        """The larger error counts: on a coarse mesh, discretisation and model error may cancel."""
-
-        def error(row: Row) -> float:
-            errors = (row.error(scope, quantity, own=one) for one in own)
-            return max(filter(isfinite, errors), default=inf)
-
-        good = (row for row in trade.of_model(model, scope) if error(row) <= target)
-        return min(good, key=lambda row: row.seconds, default=None)
-
-    doubt = trade.uncertainty(SOLID.name, scope, quantity)
-    fast = least(TSM.name, False)
-    solids = {
-        SOLID.name: (least(SOLID.name, True) if doubt <= target else None, "ratio"),
-        THERE: (least(SOLID.name, False, True), "ratio_against_reference"),
-    }
-    line: Line = {"scope": scope, "quantity": quantity, "target": target, "limit_uncertainty": doubt}
-    line |= {TSM.name: fast and short(fast), f"{TSM.name}_seconds": fast and fast.seconds}
-    for name, (row, ratio) in solids.items():
-        times = row.seconds / fast.seconds if row and fast else None
-        line |= {name: row and short(row), f"{name}_seconds": row and row.seconds, ratio: times}
-    return line
-
-
 def front(trade: Trade, model: str, scope: str, quantity: str, cost: str) -> list[Line]:
-    """Return the Pareto front of a model against its limit, known no better than its uncertainty."""
-    rows, doubt = trade.of_model(model, scope), trade.uncertainty(model, scope, quantity)
+    """Return the Pareto front of a model against its limit, known no better than its uncertainty; for `THERE`, also against the reference."""
+    name, own = (SOLID.name, False) if model == THERE else (model, True)
+    rows, doubt = trade.of_model(name, scope), trade.uncertainty(name, scope, quantity)
     costs = [row.spent(cost) for row in rows]
-    errors = [max(row.error(scope, quantity, own=True), doubt) for row in rows]
+    # the larger error counts: on a coarse mesh, discretisation and model error may cancel
+    known = [[row.error(scope, quantity, own=one) for row in rows] for one in (True, own)]
+    errors = np.maximum(known[0], doubt) if own else np.fmax(known[0], known[1])
     of = {"model": model, "scope": scope, "quantity": quantity, "cost": cost}
     return [
-        {**of, "setting": short(rows[k]), "spent": costs[k], "own_error": errors[k]}
+        {**of, "setting": short(rows[k]), "spent": costs[k], "own_error": float(errors[k])}
         for k in pareto(costs, errors)
     ]
+
+
+def cheapest(trade: Trade, scope: str, quantity: str, target: float) -> Line:
+    """Return the settings with the least seconds for an error of `target`, and their ratios to TSM's."""
+    doubt = trade.uncertainty(SOLID.name, scope, quantity)
+    line: Line = {"scope": scope, "quantity": quantity, "target": target, "limit_uncertainty": doubt}
+    for model, ratio in ((TSM.name, ""), (SOLID.name, "ratio"), (THERE, "ratio_against_reference")):
+        points = front(trade, model, scope, quantity, COSTS[0])
+        least = next((point for point in points if point["own_error"] <= target), None)
+        line |= {model: least and least["setting"], f"{model}_seconds": least and least["spent"]}
+        if ratio:
+            fast = line[f"{TSM.name}_seconds"]
+            line[ratio] = least["spent"] / fast if least and fast else None
+    return line
 
 
 def orders(trade: Trade, quantity: str) -> Iterator[Line]:

@@ -129,4 +129,4 @@ def test_a_case_without_an_answer_has_no_errors():
 
 def test_a_change_of_a_kind_that_the_scene_does_not_have_changes_nothing():
     scene = load_scene("tip-load")
-    assert changed(scene, {("contact", "penalty"): None, ("pin", "radius"): 1.0}) == scene
+    assert changed(scene, {"contact.penalty": None, "pin.radius": 1.0}) == scene

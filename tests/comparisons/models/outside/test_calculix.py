@@ -89,8 +89,7 @@ def test_pin_on_the_face_up_to_a_tenth(stated):
 @pytest.mark.slow
 @pytest.mark.long
 def test_study_is_within_its_bars(stated):
-    reported: list[str] = []
-    rows = list(peers(reported.append))
+    rows = list(peers())
     tips = [row for row in rows if row["case"].startswith("tip load")]
     assert len(tips) == 8
     assert all(row["difference"] <= 1e-3 for row in tips)
@@ -100,15 +99,14 @@ def test_study_is_within_its_bars(stated):
     assert min(reached.values()) >= 0.02
     assert max(reached.values()) >= 0.5
     for row in pins:
-        assert row["message"] or row["calculix"]
+        assert row["message"] or row.get("calculix")
         assert row["largest"] <= 1e-3
-    assert len(reported) == 12
     for clamp in ("rod", "full"):
         for mesh in ("50x2", "100x4"):
             found = [row["difference"] for row in tips if (row["clamp"], row["mesh"]) == (clamp, mesh)]
             stated(f"calculix.{clamp}-{mesh}", *found)
     for step in reached:
         of_step = [row for row in pins if row["step"] == step]
-        there = [row["difference"] for row in of_step if row["difference"] is not None]
+        there = [row["difference"] for row in of_step if "difference" in row]
         stated(f"calculix.pin-{step:g}", of_step[0]["reached"], *there)
         stated(f"calculix.largest-{step:g}", of_step[0]["largest"])

@@ -15,6 +15,7 @@ from comparisons.suites.manual import judged, problems, read_problem
 
 # not public: measures that no model has
 from comparisons.suites.manual.measures import MEASURES, StoppedError
+from tests.comparisons.report.pages.markup import check_alone
 
 PROBLEMS = {path.stem: path for path in problems()}
 FAST = (
@@ -126,6 +127,10 @@ def test_errors_are_relative_and_the_worst_is_named_on_every_way_out(tmp_path, m
         assert f'<a id="{target}"></a>' in page
     for picture in re.findall(r"\]\((\S+\.svg)\)", page):
         assert ET.parse(folder / picture).getroot().tag.endswith("svg")  # noqa: S314 our own file
+    html = (folder / "report.html").read_text()
+    check_alone(html, folder)
+    assert html.count(">FAILED<") == 10
+    assert html.count("data:image/svg+xml") == 2
     # lines that agree are all seen
     widths = re.findall(r"stroke-width: ([\d.]+)", (folder / "roll-up.svg").read_text())
     assert {"1.5", "3.5", "5.5"} <= set(widths)

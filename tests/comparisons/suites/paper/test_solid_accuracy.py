@@ -94,7 +94,7 @@ def test_solid_of_the_rods_law_is_the_rod_at_every_load_parameter(name, stated):
     """After extrapolation of the mesh, without penetration, past t = .1."""
     scene = load_scene(name)
     (rod,) = solve(scene, "rod").contacts.values()
-    ideal = changed(scene, {("beam", "material"): "biot-linear", ("contact", "penetration"): 1e-10})
+    ideal = changed(scene, {"beam.material": "biot-linear", "contact.penetration": 1e-10})
     coarse, fine = (
         next(iter(fem_reference.solve(to_solid(ideal, mesh=mesh), np.array(scene.times)).contacts.values()))
         for mesh in ((50, 2), (100, 4))
