@@ -12,8 +12,8 @@ from comparisons.answer.table import unit_names
 from comparisons.report import palette
 from comparisons.report.brief import at_largest, spring_rate, travel
 from comparisons.report.plot import WIDTH, figure
-from comparisons.report.sketch import ARROW, Sketch, axis
-from comparisons.report.symbols import LEFT
+from comparisons.report.sketch import ARROW, Sketch
+from comparisons.report.symbols import LEFT, axis
 from comparisons.scene import Scene
 from comparisons.version import release
 

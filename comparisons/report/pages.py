@@ -113,9 +113,14 @@ def table(caption: str, rows: Sequence[Mapping[str, Any]], *, prose: bool = Fals
 
 
 def picture(path: Path, caption: str) -> str:
-    """Return an SVG or PNG file as an image: markup of two SVGs in one page would share names and styles."""
-    content = base64.b64encode(path.read_bytes()).decode("ascii")
-    return piece("picture", caption, f"data:{TYPES[path.suffix]};base64,{content}")
+    """Return an SVG or PNG file as an image: markup of two SVGs in one page would share names and styles. An SVG has a dark variant."""
+    content = path.read_bytes()
+    if path.suffix == ".svg":
+        content = content.replace(
+            b"<defs>", b"<style>%s</style><defs>" % (FOLDER / "picture.css").read_bytes(), 1
+        )
+    text = base64.b64encode(content).decode("ascii")
+    return piece("picture", caption, f"data:{TYPES[path.suffix]};base64,{text}")
 
 
 def folded(summary: str, inner: str) -> str:

@@ -15,7 +15,7 @@ from comparisons.models.model import ModelError
 from comparisons.models.outside.programs import offered
 from comparisons.report import palette
 from comparisons.report.plot import WIDTH, arrow, figure, save
-from comparisons.report.symbols import LEFT, arc, chain, draw_symbols, legend_symbol
+from comparisons.report.symbols import LEFT, Axis, arc, axis, chain, draw_symbols, legend_symbol
 from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene
 from comparisons.scene.conditions import LoadSpec
 
@@ -34,8 +34,6 @@ NAME, WEIGHT = 0.25, 0.65
 """Fractions of the length at which a beam's name and its weight stand."""
 CORNER = np.array([1.0, 1.0])
 """Way from a moment to its value, which arrows along the axes leave free."""
-Axis = tuple[Array, Array, Array]
-"""Arc lengths (n,), points (n, 2), and unit normals to the left (n, 2)."""
 
 
 def stated(scene: Scene, others: Sequence[str] = ()) -> Iterator[str]:
@@ -174,12 +172,6 @@ class Sketch:
                 corners = free[-1].transformed(self.axes.transData.inverted()).corners()
                 self.axes.update_datalim(corners)
             self.axes.autoscale_view()
-
-
-def axis(beam: BeamSpec) -> Axis:
-    """Return the undeformed axis of a beam."""
-    points, tangents = (np.array([read(part) for part in PARTS]) for read in (beam.place, beam.tangent))
-    return beam.length * np.array(PARTS), points, tangents @ LEFT
 
 
 def _reach(scene: Scene, lines: Mapping[str, Axis]) -> Array:

@@ -21,8 +21,8 @@ from tests.comparisons.report.pages.conftest import KS
 from tests.comparisons.report.pages.markup import block, check_alone
 
 FILES = {
-    "report.html", "summary.json", "table.csv", "shapes.png", "shapes.svg", "side-by-side.png", "tsm/tsm.pvd", "solid/solid.pvd",
-    "budget.png", "budget.svg", "budget.json",
+    "report.html", "summary.json", "table.csv", "shapes.png", "stress.svg", "tsm/tsm.pvd", "solid/solid.pvd",
+    "budget.svg", "budget.json",
 }  # fmt: skip
 LABELS = [run.label for run in RUNS]
 
