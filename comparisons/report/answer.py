@@ -21,7 +21,7 @@ COLOURS = (palette.BLUE, palette.ORANGE, palette.GREEN, palette.PURPLE, palette.
 """Colours of the beams, and of the forces, in turn."""
 HEIGHT, DIAGRAM, HISTORY = 3.6, 1.25, 1.9
 """Heights of the shape, of each diagram and of the forces over the load parameter [inch]."""
-DIAGRAMS = (("N", "axial", "force"), ("V", "shear", "force"), ("M", "moment", "moment"))
+DIAGRAMS = (("N", "axial", "force"), ("V", "shear", "force"), ("M", "bending", "moment"))
 
 
 def picture(response: Response, scene: Scene | None = None) -> Any:

@@ -55,10 +55,14 @@ def _templates() -> "Environment":
         undefined=StrictUndefined,
     )
     found.filters["cell"] = cell
-    found.filters["whole"] = lambda text: re.sub(
-        r"(?<=\de)-(?=\d)", "\u2011", text
-    )  # a line may end at a hyphen
+    found.filters["whole"] = whole
     return found
+
+
+def whole(text: str) -> str:
+    """Return words such that no line ends within a number, a percentage, a pair or a unit."""
+    text = re.sub(r"(?<=\de)-(?=\d)", "\u2011", text).replace("->", "-\u2060>").replace(" %", "\u00a0%")
+    return re.sub(r"\[[^\]]*\]", lambda unit: unit[0].replace(" ", "\u00a0").replace("/", "/\u2060"), text)
 
 
 def rendered(name: str, **values: Any) -> "Markup":

@@ -166,8 +166,10 @@ def compare(
             end = f"{one.wall_seconds:.2f} s" if one.completed else f"{one.status}: {one.message}"
             report(f"{head}: {end}")
         except ModelError as error:
-            report(f"{head}: left out, {error}")
-            left_out[find(run.model).family(scene, run.options)] = str(error).removeprefix(f"{run.model}: ")
+            left_out[find(run.model).family(scene, run.options)] = why = str(error).removeprefix(
+                f"{run.model}: "
+            )
+            report(f"{head}: left out, {why}")
     rows = [_row(scene, run, response, answers[ROD]) for run, response in answers.items()]
     with staging("measuring the error budget") as count:
         budget, lack = None, "it takes the solid"
