@@ -43,12 +43,15 @@ def write_rows(path: Path, rows: Sequence[Mapping[str, Any]]) -> Path:
     return path
 
 
-def tabulated(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Return rows of equal keys as aligned text, numbers to the right; columns beyond the width of the terminal follow below, after the first one."""
+def tabulated(rows: Sequence[Mapping[str, Any]], *, folded: bool = False) -> str:
+    """Return rows of equal keys as aligned text, numbers to the right; columns beyond the width of the terminal follow below, after the first one.
+
+    If `folded`, cells go on below in their columns instead.
+    """
     cells = [list(rows[0]), *([cell(value) for value in row.values()] for row in rows)]
     columns = list(zip(*cells, strict=True))
     right = [all(one == NO_VALUE or one[:1] in "-0123456789" for one in column[1:]) for column in columns]
-    room = get_terminal_size().columns
+    room = math.inf if folded else get_terminal_size().columns
     parts, used = [[0]], 0
     for k in range(1, len(columns)):
         wide = 2 + max(map(len, columns[k]))

@@ -43,7 +43,7 @@ class Brief(NamedTuple):
         """Return lines that fit the terminal; no word is broken."""
         head = [BOLD.format(line) if bold else line for line in filled(self.sentence)]
         points = [line for point in self.points[:POINTS] for line in filled(point, "- ", "  ")]
-        answer = ["", *filled(self.about), "", tabulated(self.answer)] if self.answer else []
+        answer = ["", *filled(self.about), "", tabulated(self.answer, folded=True)] if self.answer else []
         return "\n".join([*head, *points, *answer])
 
 

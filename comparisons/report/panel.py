@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from comparisons.answer import CONTACT_STATES, OPEN, SLIPS, Array, Grid, Response
 from comparisons.report.export import CONTACTS, HINGES, POINTS, SUPPORTS, blocks
 from comparisons.report.palette import PIN
-from comparisons.report.symbols import HINGE, LEFT, SYMBOL, Segments, axis, fixings
+from comparisons.report.symbols import HINGE, LEFT, SYMBOL, Segments, at_arcs, axis, fixings
 from comparisons.scene import BeamSpec, Scene
 
 Body = tuple[Array, Array]
@@ -87,14 +87,14 @@ def mises_panels(beams: Response, solid: Response, scene: Scene, t: float) -> tu
         data["axial_stress_right"], data["axial_stress_left"] = direct + bent, direct - bent
         data["shear_stress"], data["height"] = 1.5 * data["V"] / area, wide * height
         arc, y = _material(beam, body.points)
-        middle = _interpolated(arc, *solid.axis_line(beam.name, steps[1]))
+        middle = at_arcs(arc, *solid.axis_line(beam.name, steps[1]))
         body.point_data["deformed"] = middle + wide * (body.point_data["deformed"] - middle)
         stress = _stress(data, data["arc"], arc, 2.0 * y / np.interp(arc, data["arc"], height))
         less[beam.name] = replace(
             body, point_data=body.point_data | {"von_mises": stress - body.point_data["von_mises"]}
         )
     named = {"beams": ribbons, "solid": bodies, "beams less solid": less}
-    found = [panel([grids], title, stress="von_mises") for title, grids in named.items()]
+    found = [panel(grids, title, stress="von_mises") for title, grids in named.items()]
     return [one._replace(forces=0.0 * one.forces) for one in found], wide
 
 
@@ -113,38 +113,29 @@ def _material(beam: BeamSpec, points: Array) -> tuple[Array, Array]:
     return arcs[foot] + np.sum(apart * (normal @ LEFT.T), axis=1), np.sum(apart * normal, axis=1)
 
 
-def _interpolated(at: Array, arc: Array, line: Array) -> Array:
-    return np.stack([np.interp(at, arc, values) for values in line.T], axis=-1)
-
-
 def panel(
-    states: Sequence[Mapping[str, Grid]], title: str, factor: float = 1.0, *, stress: str = "axial_stress"
+    grids: Mapping[str, Grid], title: str, factor: float = 1.0, *, stress: str = "axial_stress"
 ) -> Panel:
-    """Return states, each as its `blocks`, over each other, with displacements enlarged by `factor`."""
-    structure = [grid for grids in states for name, grid in grids.items() if name not in POINTS]
+    """Return a state, given as its `blocks`, with displacements enlarged by `factor`."""
+    structure = [grid for name, grid in grids.items() if name not in POINTS]
     size = float(np.ptp(np.concatenate([grid.points for grid in structure]), axis=0).max())
     bodies = [
         _solid(grid, stress, factor) if QUARTERS.keys() & grid.cells.keys() else _ribbon(grid, size, factor)
         for grid in structure
     ]
-    contacts = [grids[CONTACTS].point_data for grids in states if CONTACTS in grids]
-
-    def every(name: str, otherwise: float = 0.0, *more: int) -> Array:
-        parts = [data.get(name, np.full(len(data["radius"]), otherwise)) for data in contacts]
-        return np.concatenate([np.zeros((0, *more)), *parts])
-
-    forces, moved = every("contact_force", 0.0, 2), every("beam_displacement", 0.0, 2)
-    symbols = [
-        place + SYMBOL * size * symbol for grids in states for place, symbol in _symbols(grids, factor)
-    ]
+    none = dict.fromkeys(("contact_force", "beam_displacement", "deformed"), np.zeros((0, 2)))
+    contacts = grids[CONTACTS].point_data if CONTACTS in grids else {**none, "radius": np.zeros(0)}
+    forces = contacts["contact_force"]
+    slips = contacts.get("slip", np.full(len(forces), np.nan))
+    symbols = [place + SYMBOL * size * symbol for place, symbol in _symbols(grids, factor)]
     return Panel(
         title=title if factor == 1.0 else f"{title}, deformation x {factor:g}",
         quads=np.concatenate([quads for quads, _ in bodies]),
         stress=np.concatenate([values for _, values in bodies]),
-        pins=every("deformed", 0.0, 2) + (factor - 1.0) * moved,
-        radii=every("radius"),
+        pins=contacts["deformed"] + (factor - 1.0) * contacts["beam_displacement"],
+        radii=contacts["radius"],
         forces=forces,
-        states=np.array([_state(*one) for one in zip(forces, every("slip", np.nan), strict=True)], dtype=str),
+        states=np.array([_state(*one) for one in zip(forces, slips, strict=True)], dtype=str),
         supports=np.concatenate([np.zeros((0, 2, 2)), *symbols]),
     )
 

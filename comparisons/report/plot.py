@@ -42,7 +42,7 @@ COLUMNS = 3
 """Panels beside each other."""
 WIDTH = 6.3
 """Width of a picture [inch]: 160 mm, so that letters have their size in points on paper, and are legible on a telephone."""
-PIXELS, SHARP = 1400, 150.0
+PIXELS, SHARP = 1400, 120.0
 """Least width of a picture in pixels, and pixels of an inch of it and of what is no line in an SVG."""
 
 

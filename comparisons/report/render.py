@@ -52,7 +52,7 @@ def film(series: Sequence[Series], factor: float = 1.0) -> Film:
 
 def _panel(series: Series, t: float, factor: float) -> Panel:
     k = int(np.flatnonzero(series.load_parameter == t)[0])
-    return panel([series.blocks(k)], f"{series.title}, t = {t:.3f}", factor)
+    return panel(series.blocks(k), f"{series.title}, t = {t:.3f}", factor)
 
 
 def write_stress(panels: Sequence[Panel], wide: float, scene: Scene, t: float, path: Path) -> None:

@@ -15,7 +15,7 @@ from comparisons.models.model import ModelError
 from comparisons.models.outside.programs import offered
 from comparisons.report import palette
 from comparisons.report.plot import WIDTH, arrow, figure, save
-from comparisons.report.symbols import LEFT, Axis, arc, axis, chain, draw_symbols, legend_symbol
+from comparisons.report.symbols import LEFT, Axis, arc, at_arcs, axis, chain, draw_symbols, legend_symbol
 from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene
 from comparisons.scene.conditions import LoadSpec
 
@@ -84,9 +84,7 @@ class Sketch:
 
     def at(self, beam: str, parts: ArrayLike) -> Array:
         """Return the points (n, 2) of an axis at parts of the undeformed length."""
-        arcs, points, _ = self.lines[beam]
-        arc = self.scene.beam(beam).length * np.asarray(parts)
-        return np.stack([np.interp(arc, arcs, values) for values in points.T], axis=1)
+        return at_arcs(self.scene.beam(beam).length * np.asarray(parts), *self.lines[beam][:2])
 
     def symbols(self) -> None:
         """Draw supports, springs and hinges at the ends of the axes."""

@@ -41,6 +41,11 @@ def axis(beam: BeamSpec, points: int = 41) -> Axis:
     return beam.length * parts, line, tangents @ LEFT
 
 
+def at_arcs(arc: Array, arcs: Array, line: Array) -> Array:
+    """Return the points (n, 2) at arc lengths of a line that is given at others."""
+    return np.stack([np.interp(arc, arcs, values) for values in line.T], axis=-1)
+
+
 def chain(points: Any) -> Segments:
     """Return the segments between neighbouring points."""
     points = np.asarray(points, dtype=float)

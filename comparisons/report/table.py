@@ -58,13 +58,7 @@ def table_csv(rows: Sequence[Row]) -> str:
 def budget_section(budget: Budget, drawn: Path) -> Section:
     """Return the figure `drawn`, the numbers, and what each part measures."""
     rows = [
-        {
-            "quantity": row["quantity"].replace("_", " "),
-            "load parameter": row["load_parameter"],
-            "difference": row["total"],
-            **row["parts"],
-            "rest": row["rest_over_total"],
-        }
+        {name.replace("_", " "): value for name, value in {**row, **row["parts"]}.items() if name != "parts"}
         for row in budget_rows(budget)
     ]
     caption = "(TSM - solid) / exact rod; parts are measured by themselves, the rest is over the difference"

@@ -49,7 +49,7 @@ def test_beams_and_solid_show_the_same_bodies_and_stress(responses):
     assert np.abs(share).max() < 0.12
     assert share[np.argmax(mises[1].stress[high])] < 0.0
     grids = [blocks(one, SCENE, 2) for one in responses]
-    axial = [panel([grid], "") for grid in grids]
+    axial = [panel(grid, "") for grid in grids]
     assert [area(one) for one in axial] == pytest.approx([0.02] * 2, rel=0.01)
     assert axial[0].pins == pytest.approx(axial[1].pins)
     assert axial[0].forces == pytest.approx(axial[1].forces, rel=0.01)
@@ -67,8 +67,8 @@ def test_supports_hinges_and_the_heights_of_curved_beams_are_drawn():
     scene = SPECIMEN
     whole = blocks(solve(scene, "tsm"), scene, 0)
     unhinged = {name: grid for name, grid in whole.items() if name != HINGES}
-    assert len(panel([whole], "t").supports) > len(panel([unhinged], "t").supports) > 0
-    quads = panel([{"hook": whole["hook"]}], "t").quads.reshape(-1, 4, 4, 2)  # four layers, four corners
+    assert len(panel(whole, "t").supports) > len(panel(unhinged, "t").supports) > 0
+    quads = panel({"hook": whole["hook"]}, "t").quads.reshape(-1, 4, 4, 2)  # four layers, four corners
     across = np.concatenate([quads[:, -1, 3] - quads[:, 0, 0], quads[-1:, -1, 2] - quads[-1:, 0, 1]])
     heights = np.hypot(*across.T)
     assert heights[[0, -1]] == pytest.approx([6.0, 2.0])
