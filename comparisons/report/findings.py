@@ -72,11 +72,9 @@ def findings(
         shown = {"beam": finest[-1].response} if finest else {}
         shown |= {row.family: row.response for row in others if row.response.continuum}
         answer = in_units(scene, {**shown, reference: exact.response}, t)
-        beam = [f"beam: {finest[-1].label}"] if finest else []
-        one, *others_shown = [*shown, reference]
-        apart = [f"apart: {others_shown[0]} less {one}"] if others_shown else []
-        more = f" ({'; '.join([*beam, *apart])})" if beam or apart else ""
-        about = f"The answer at load parameter {t:.4g}, where the force is largest{more}:"
+        other = [*shown, reference][-1 if len(shown) < 2 else 1]
+        beam = f" (beam: {finest[-1].label}; apart: {other} less beam)" if finest else ""
+        about = f"The answer at load parameter {t:.4g}, where the force is largest{beam}:"
     return Brief(sentence, list(filter(None, points)), answer, about)
 
 

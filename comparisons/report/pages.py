@@ -101,7 +101,7 @@ def write_page(
     name: str = NAME,
 ) -> Path:
     """Write a `page` that ends with scenes, versions, machine and links to files; return its file."""
-    inputs = [folded(f"{scene.name}.toml", piece("code", to_toml(scene))) for scene in scenes]
+    inputs = [piece("code", to_toml(scene)) for scene in scenes]
     closing = [
         *([Section("Input", "\n".join(inputs))] if inputs else []),
         Section("Versions and machine", piece("definitions", {**versions(), **machine()})),
@@ -125,10 +125,3 @@ def picture(path: Path, caption: str) -> str:
         )
     text = base64.b64encode(content).decode("ascii")
     return piece("picture", caption, f"data:{TYPES[path.suffix]};base64,{text}")
-
-
-def folded(summary: str, inner: str) -> str:
-    """Return markup that opens on demand."""
-    from markupsafe import Markup
-
-    return piece("folded", summary, Markup(inner))  # noqa: S704 - markup of this module

@@ -54,10 +54,6 @@ class Panel(NamedTuple):
     states: NDArray[np.str_]  # (p,)
     supports: Segments  # (l, 2, 2)
 
-    def shown(self) -> list[str]:
-        """Return the states of the pins in the order of drawing."""
-        return [state for state in COLOURS if state in self.states]
-
     def outline(self) -> list[Array]:
         """Return points (..., 2) within which all is drawn but the arrows."""
         reach = self.radii[:, None]

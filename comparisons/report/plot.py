@@ -1,8 +1,7 @@
-"""Pictures by matplotlib: what all of them share, the overlay of deflected shapes, and the error budget as stacked bars."""
+"""Pictures by matplotlib: what all of them share, and the overlay of deflected shapes."""
 
 import re
 from collections.abc import Iterator
-from math import ceil
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,6 @@ from comparisons.models import find
 from comparisons.report import palette
 from comparisons.report.symbols import SYMBOL, draw_symbols
 from comparisons.scene import Scene
-from comparisons.suite.budget import TIMES, Budget
 
 SOLID = {"linewidth": 6.0, "alpha": 0.55, "solid_capstyle": "butt", "zorder": 1.8}
 EXACT = {"linewidth": 1.0}
@@ -33,13 +31,6 @@ SHOWN = (0.2, 0.4, 0.6, 0.8, 1.0)
 """Load parameters of the overlay over the scene's last; the nearest ones of the scene are drawn."""
 LABELS = 0.06
 """Least distance of two labels of pins, over the size of the picture."""
-COLOURS = (
-    palette.ORANGE, palette.YELLOW, palette.SKY, palette.VERMILION, palette.GREEN, palette.PURPLE, palette.GREY,
-)  # fmt: skip
-HATCHES = ("", "////", "||||", "", "xxx", "\\\\\\\\", "+++")
-"""Colours and hatches of the parts, in their order; hatches distinguish neighbours in grey print."""
-COLUMNS = 3
-"""Panels beside each other."""
 WIDTH = 6.3
 """Width of a picture [inch]: 160 mm, so that letters have their size in points on paper, and are legible on a telephone."""
 PIXELS, SHARP = 1400, 120.0
@@ -178,43 +169,3 @@ def _zoom_on_tip(whole: Any, detail: Any, scene: Scene, exact: Response) -> None
     detail.locator_params(nbins=3)
     box = whole.indicate_inset(bounds=(x - half, y - half, 2.0 * half, 2.0 * half), edgecolor="0.3")
     box.rectangle.set_zorder(4)
-
-
-def plot_budget(budget: Budget, *paths: Path) -> None:
-    """Draw every quantity's parts stacked at the load parameters of the budget, and the total as a mark."""
-    rows = ceil(len(budget.total) / COLUMNS)
-    fig = figure(figsize=(WIDTH, 2.6 * rows + 1.1))
-    panels = fig.subplots(rows, COLUMNS, squeeze=False).ravel()
-    for axes in panels[len(budget.total) :]:
-        axes.set_axis_off()
-    for axes, quantity in zip(panels, budget.total, strict=False):
-        # the limits would lie on the edge of a thin part, and cut the parts beyond it
-        axes.use_sticky_edges = False
-        _stack(axes, budget, quantity)
-        kind, _, column = quantity.partition(" ")
-        axes.set_title(f"{kind.replace('_', ' ')}\n{column}".strip(), fontsize="medium")
-        axes.set_xlabel("load parameter", fontsize="small")
-        axes.tick_params(labelsize="small")
-        axes.margins(y=0.08)
-    fig.supylabel("(TSM - solid) / exact rod [%]", fontsize="medium")
-    fig.suptitle(f"{budget.scene}: what the difference is made of")
-    handles, words = fig.axes[0].get_legend_handles_labels()
-    fig.legend(handles, words, loc="outside lower center", ncols=3, fontsize="small", frameon=False)
-    save(fig, *paths)
-
-
-def _stack(axes: Any, budget: Budget, quantity: str) -> None:
-    places = np.arange(len(TIMES))
-    above, below = np.zeros(len(TIMES)), np.zeros(len(TIMES))
-    for (name, values), colour, hatch in zip(budget.parts[quantity].items(), COLOURS, HATCHES, strict=True):
-        height = 100.0 * np.nan_to_num(values)
-        bottom = np.where(height >= 0.0, above, below)
-        style = {"color": colour, "hatch": hatch, "edgecolor": "0.25", "linewidth": 0.0, "width": 0.6}
-        axes.bar(places, height, bottom=bottom, label=name, **style)
-        above, below = above + np.maximum(height, 0.0), below + np.minimum(height, 0.0)
-    total = 100.0 * budget.total[quantity]
-    axes.hlines(total, places - 0.4, places + 0.4, colors="black", linewidth=1.8, label="difference")
-    axes.axhline(0.0, color="0.3", linewidth=0.6)
-    axes.set_xticks(places, [f"{t:g}" for t in TIMES])
-    axes.grid(visible=True, axis="y", linewidth=0.3)
-    axes.set_axisbelow(True)

@@ -171,11 +171,11 @@ def _draw(axes: Any, one: Panel, scale: Scale) -> Any:
     )
     axes.add_collection(LineCollection(list(one.supports), colors=palette.BLACK, linewidths=1.0))
     lengths = np.hypot(*one.forces.T)
-    for state in one.shown():
+    for state, colour in COLOURS.items():
         for k in np.flatnonzero(one.states == state):
-            axes.add_patch(Circle(tuple(one.pins[k]), one.radii[k], facecolor=COLOURS[state], alpha=0.35))
+            axes.add_patch(Circle(tuple(one.pins[k]), one.radii[k], facecolor=colour, alpha=0.35))
+            axes.plot(*one.pins[k], ".", color=colour, markersize=6)
             if scale.force * lengths[k] > LEAST * scale.half:
                 tip = one.pins[k] + one.radii[k] / lengths[k] * one.forces[k]
-                arrow(axes, tip - scale.force * one.forces[k], tip, COLOURS[state])
-        axes.plot(*one.pins[one.states == state].T, ".", color=COLOURS[state], markersize=6)
+                arrow(axes, tip - scale.force * one.forces[k], tip, colour)
     return bodies

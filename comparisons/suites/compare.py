@@ -24,7 +24,7 @@ from comparisons.report.motion import motion_section, states_section, tracks
 from comparisons.report.pages import Section, picture, table, write_page
 from comparisons.report.palette import style
 from comparisons.report.panel import mises_panels
-from comparisons.report.plot import plot_budget, plot_shapes
+from comparisons.report.plot import plot_shapes
 from comparisons.report.render import write_stress
 from comparisons.report.table import budget_section, caption, line, table_csv, write_budget
 from comparisons.scene import Scene, to_toml
@@ -32,6 +32,7 @@ from comparisons.scene.keys import special_keys
 from comparisons.suite import Case, Row
 from comparisons.suite.budget import Budget, error_budget
 from comparisons.suite.measure import verdict
+from comparisons.suites.drawing import plot_budget
 from comparisons.version import versions
 from tsm.elements import MIXED as MIXED_KIND
 from tsm.elements import TIMOSHENKO
