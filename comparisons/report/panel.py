@@ -89,7 +89,7 @@ def mises_panels(beams: Response, solid: Response, scene: Scene, t: float) -> tu
         less[beam.name] = replace(
             body, point_data=body.point_data | {"von_mises": stress - body.point_data["von_mises"]}
         )
-    named = {"beams": ribbons, "solid": bodies, "beams less solid": less}
+    named = {"beams": ribbons, "the solid": bodies, "beams less solid": less}
     found = [panel(grids, title, stress="von_mises") for title, grids in named.items()]
     return [one._replace(forces=0.0 * one.forces) for one in found], wide
 

@@ -15,7 +15,7 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 
 from comparisons.answer import Grid
-from comparisons.files import OutputError
+from comparisons.files import OutputError, replacing, write_text
 
 LABEL = '<InformationKey name="UNITS_LABEL" location="vtkDataArray">{}</InformationKey>\n</DataArray>'
 ARRAY = re.compile(r'(<DataArray [^>]*Name="(\w+)"[^>]*>[^<]*)</DataArray>')
@@ -33,8 +33,9 @@ def write_grid(path: Path, grid: Grid, units: Mapping[str, str]) -> None:
         return array[0] if unit is None else array[1] + LABEL.format(escape(unit))
 
     data = {name: in_space(values) for name, values in grid.point_data.items()}
-    vtu.write(path, Mesh(in_space(grid.points), grid.cells, point_data=data))
-    path.write_text(ARRAY.sub(labelled, path.read_text("utf-8")), encoding="utf-8")
+    with replacing(path) as temporary:
+        vtu.write(temporary, Mesh(in_space(grid.points), grid.cells, point_data=data))
+        temporary.write_text(ARRAY.sub(labelled, temporary.read_text("utf-8")), encoding="utf-8")
 
 
 def read_grid(path: Path) -> Grid:
@@ -72,7 +73,7 @@ def write_list(path: Path, entries: Iterable[tuple[float, str]]) -> None:
 def _write(path: Path, kind: str, sets: Iterable[str], more: str = "") -> None:
     inner = "".join(f"<DataSet {attributes}/>\n" for attributes in sets)
     head = f'<?xml version="1.0"?>\n<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian">\n'
-    path.write_text(f"{head}<{kind}>\n{inner}</{kind}>\n{more}</VTKFile>\n", encoding="utf-8")
+    write_text(path, f"{head}<{kind}>\n{inner}</{kind}>\n{more}</VTKFile>\n")
 
 
 def read_entries(path: Path, attribute: str) -> list[tuple[str, Path]]:
