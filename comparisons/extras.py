@@ -11,13 +11,12 @@ class Extra(NamedTuple):
 
 
 EXTRAS = {
-    "pyvista": Extra("view", "pictures and windows of stressed bodies"),
     "distributed": Extra("cluster", "studies on a Dask cluster (--workers ADDRESS)"),
     "openseespy": Extra("peers", "--model opensees"),
     "exudyn": Extra("peers", "--model exudyn"),
     "felupe": Extra("peers", "--model felupe"),
 }
-"""By library. A plain installation has that of `view`."""
+"""By library."""
 
 
 def install(library: str) -> str:

@@ -6,8 +6,11 @@ import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
+from functools import partial
+from itertools import zip_longest
 from pathlib import Path
 from shutil import get_terminal_size
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -45,13 +48,16 @@ def write_rows(path: Path, rows: Sequence[Mapping[str, Any]]) -> Path:
     return path
 
 
-def tabulated(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Return rows as aligned text, numbers to the right; columns beyond the width of the terminal follow below, after the first one."""
+def tabulated(rows: Sequence[Mapping[str, Any]], *, folded: bool = False) -> str:
+    """Return rows as aligned text, numbers to the right; columns beyond the width of the terminal follow below, after the first one.
+
+    If `folded`, cells go on below in their columns instead.
+    """
     names = keys(rows)
     cells = [names, *([cell(row.get(name)) for name in names] for row in rows)]
     columns = list(zip(*cells, strict=True))
     right = [all(one == NO_VALUE or one[:1] in "-0123456789" for one in column[1:]) for column in columns]
-    room = get_terminal_size().columns
+    room = math.inf if folded else get_terminal_size().columns
     parts, used = [[0]], 0
     for k in range(1, len(columns)):
         wide = 2 + max(map(len, columns[k]))
@@ -64,12 +70,39 @@ def tabulated(rows: Sequence[Mapping[str, Any]]) -> str:
     return "\n\n".join(map("\n".join, tables))
 
 
-def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool]) -> list[str]:
-    """Return rows of cells as lines with columns of equal width, to the left or to the `right`."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool], indent: int = 0) -> list[str]:
+    """Return rows of cells as lines with columns of equal width, to the left or to the `right`.
+
+    As few cells as can be go on below, so that lines fit the terminal behind an indentation; no word is broken, and no number from its unit.
+    """
+    columns = list(zip(*rows, strict=True))
+    widths = [max(map(len, column)) for column in columns]
+    whole = (
+        [head.split(), *([cell] if one else cell.split() for cell in rest)]
+        for (head, *rest), one in zip(columns, right, strict=True)
+    )
+    words = [max(len(word) for cell in column for word in cell or [""]) for column in whole]
+    while sum(widths) + 2 * len(widths) - 2 > get_terminal_size().columns - indent:
+        folded = {
+            (sum(len(cell) >= width for cell in columns[k]), -width): k
+            for k, width in enumerate(widths)
+            if width > words[k]
+        }
+        if not folded:
+            break
+        widths[folded[min(folded)]] -= 1
+    fold = partial(wrap, break_long_words=False, break_on_hyphens=False)
     sides = [str.rjust if one else str.ljust for one in right]
-    lines = (zip(sides, row, widths, strict=True) for row in rows)
-    return ["  ".join(side(text, width) for side, text, width in line).rstrip() for line in lines]
+    lines = []
+    for row in rows:
+        cells = (
+            fold(text, width) if len(text) > width else [text]
+            for text, width in zip(row, widths, strict=True)
+        )
+        for line in zip_longest(*cells, fillvalue=""):
+            parts = zip(sides, line, widths, strict=True)
+            lines.append("  ".join(side(text, width) for side, text, width in parts).rstrip())
+    return lines
 
 
 def markdown(rows: Sequence[Mapping[str, str]]) -> str:

@@ -52,16 +52,25 @@ def text(response: Answer, more: Sequence[tuple[str, str]] = (), rule: str = "")
     return "\n\n".join(map(_lines, _blocks(response, more, rule)))
 
 
-def html(response: Answer) -> str:
-    """Return the page as HTML."""
-    return "".join(map(_markup, _blocks(response)))
+def html(response: Answer, k: int = -1) -> str:
+    """Return the page as HTML; reactions, contacts and tips are those at load parameter number k."""
+    return "".join(map(_markup, _blocks(response, k=k)))
 
 
-def _blocks(response: Answer, more: Sequence[tuple[str, str]] = (), rule: str = "") -> Iterator[Block]:
+def _blocks(
+    response: Answer, more: Sequence[tuple[str, str]] = (), rule: str = "", k: int = -1
+) -> Iterator[Block]:
     yield Block(response.scene, (), [*_head(response, rule), *more])
     if len(response.load_parameter):
-        page = _Page(response)
-        found = (page.reactions(), page.contacts(), page.tips(), page.extremes(), page.events())
+        page = _Page(response, k)
+        found = (
+            page.reactions(),
+            page.contacts(),
+            page.friction(),
+            page.tips(),
+            page.extremes(),
+            page.events(),
+        )
         yield from (block for block in found if block.rows)
 
 
@@ -104,14 +113,15 @@ def stability(response: Answer) -> str:
 
 
 class _Page:
-    """The tables of an answer that reached a load parameter."""
+    """The tables of an answer that reached a load parameter, now number k."""
 
-    def __init__(self, response: Answer) -> None:
+    def __init__(self, response: Answer, k: int) -> None:
         scene = response.definition
-        self.response, self.scene = response, scene
+        self.response, self.scene, self.k = response, scene, k
         self.round_off = RoundOff() if scene is None else round_off(response, scene)
         self.units = {} if scene is None else unit_names(scene.units)
-        self.now = f"at load parameter {response.load_parameter[-1]:.6g}"
+        self.t = float(response.load_parameter[k])
+        self.now = f"at load parameter {self.t:.6g}"
 
     def with_unit(self, value: float, kind: str) -> str:
         return f"{self.round_off.text(float(value), kind)} {self.units.get(kind, '')}".rstrip()
@@ -135,38 +145,48 @@ class _Page:
         ):
             held = {spec.node: ", ".join(spec.held) for spec in specs}
             for node, one in reactions.items():
-                rows.append((f"{node}{what}", held.get(node, ""), *one.force[-1], one.moment[-1]))
+                rows.append((f"{node}{what}", held.get(node, ""), *one.force[self.k], one.moment[self.k]))
         if len(rows) > 1:
             rows.append(("sum", "", *(sum(float(row[k]) for row in rows) for k in (2, 3)), ""))
         columns = {"support": "", "holds": "", "x": "force", "y": "force", "moment": "moment"}
         return self.block(f"Reactions on the beams {self.now}", columns, rows)
 
     def contacts(self) -> Block:
-        forces, contacts = dict.fromkeys(("force", "x", "y"), "force"), self.response.contacts
-        columns = {"contact": "", "state": "", **forces, "arc position": "length"}
-        if any(contact.friction is not None for contact in contacts.values()):
-            columns |= {"tangential": "force", "normal": "force", "dissipated": "energy"}
+        columns = {
+            "contact": "",
+            "state": "",
+            **dict.fromkeys(("force", "x", "y"), "force"),
+            "arc position": "length",
+        }
         rows: list[Row] = []
-        for pair, contact in contacts.items():
-            vector = (np.nan, np.nan) if contact.vector is None else contact.vector[-1]
-            rubs = contact.friction
-            more = ("",) * 3 if rubs is None else (rubs.tangential[-1], rubs.normal[-1], rubs.dissipated[-1])
-            rows.append(
-                (pair, self._state(pair), contact.force[-1], *vector, contact.arc_position[-1], *more)
-            )
+        for pair, contact in self.response.contacts.items():
+            vector = (np.nan, np.nan) if contact.vector is None else contact.vector[self.k]
+            found = contact.force[self.k], *vector, contact.arc_position[self.k]
+            rows.append((pair, self._state(pair), *found))
         return self.block(f"Contact forces on the beams {self.now}", columns, rows)
+
+    def friction(self) -> Block:
+        columns = {"contact": "", "tangential": "force", "normal": "force", "dissipated": "energy"}
+        found = {pair: contact.friction for pair, contact in self.response.contacts.items()}
+        rows: list[Row] = [
+            (pair, *(float(values[self.k]) for values in (one.tangential, one.normal, one.dissipated)))
+            for pair, one in found.items()
+            if one is not None
+        ]
+        return self.block(f"Friction on the beams {self.now}", columns, rows)
 
     def _state(self, pair: str) -> str:
         contact = self.response.contacts[pair]
-        if contact.force[-1] != 0.0 or np.isfinite(contact.arc_position[-1]):
-            return "closed" if contact.friction is None else contact.friction.states(contact.force)[-1]
+        if contact.force[self.k] != 0.0 or np.isfinite(contact.arc_position[self.k]):
+            return "closed" if contact.friction is None else contact.friction.states(contact.force)[self.k]
         for event in reversed(self.response.events or ()):
-            if event.pair == pair and event.kind in OPENED:
+            if event.pair == pair and event.kind in OPENED and event.load_parameter <= self.t:
                 return f"{OPENED[event.kind]} at {event.load_parameter:.6g}"
-        if np.isfinite(contact.slip_off):
+        if contact.slip_off <= self.t:
             return f"slipped off at {contact.slip_off:.6g}"
         forces = self._forces(pair)
-        return f"open after {forces[-1][0]:.6g}" if forces else "never touched"
+        before = [t for t, *_ in forces if t <= self.t]
+        return f"open after {before[-1]:.6g}" if before else "not touched yet" if forces else "never touched"
 
     def _forces(self, pair: str) -> list[tuple[float, float, float]]:
         """Return load parameter, force and arc position of a contact where it pushes: at the load parameters and before the events."""
@@ -177,10 +197,10 @@ class _Page:
 
     def tips(self) -> Block:
         columns = {"tip": "", "x": "length", "y": "length"}
-        rows: list[Row] = [(beam, *tip[-1]) for beam, tip in self.response.tips.items()]
+        rows: list[Row] = [(beam, *tip[self.k]) for beam, tip in self.response.tips.items()]
         if self.scene is not None:
             columns |= {"displacement x": "length", "displacement y": "length"}
-            ends = {f"{beam}.{self.scene.tip(beam)}": tip[-1] for beam, tip in self.response.tips.items()}
+            ends = {f"{beam}.{self.scene.tip(beam)}": tip[self.k] for beam, tip in self.response.tips.items()}
             rows = [(end, *tip, *(tip - self.scene.place(end))) for end, tip in ends.items()]
         return self.block(f"Tips {self.now}", columns, rows)
 
@@ -248,7 +268,7 @@ def _lines(block: Block) -> str:
     rows = [block.columns, *block.rows] if block.columns else block.rows
     columns = zip(*block.rows, strict=True)
     right = [all(not cell or cell[0] in "-0123456789" for cell in column) for column in columns]
-    return "\n  ".join([block.title, *aligned(rows, right)])
+    return "\n  ".join([block.title, *aligned(rows, right, 2)])
 
 
 def _markup(block: Block) -> str:

@@ -121,8 +121,6 @@ def _version() -> int:
     import shutil
     from importlib import metadata
 
-    from comparisons.report.render import renders
-
     def found(name: str) -> str | None:
         with suppress(metadata.PackageNotFoundError):
             return metadata.version(name)
@@ -132,14 +130,9 @@ def _version() -> int:
     rows += (
         (name, found(name), f"missing, extra {extra.name}: {extra.use}") for name, extra in EXTRAS.items()
     )
-    rows += [
-        ("ccx", shutil.which("ccx"), "missing, Debian's calculix-ccx: --model calculix, crossval run peers"),
-        (
-            "OpenGL",
-            "off-screen rendering works" if renders() else None,
-            "missing: no picture of stressed bodies, by compare and view",
-        ),
-    ]
+    rows.append(
+        ("ccx", shutil.which("ccx"), "missing, Debian's calculix-ccx: --model calculix, crossval run peers")
+    )
     print(f"crossval {metadata.version('tsm-crossval')}")
     for name, state, absent in rows:
         mark = "ok" if state else "-" if absent else "MISSING"

@@ -12,8 +12,8 @@ from comparisons.answer.table import unit_names
 from comparisons.report import palette
 from comparisons.report.brief import at_largest, spring_rate, travel
 from comparisons.report.plot import WIDTH, figure
-from comparisons.report.sketch import ARROW, Sketch, axis
-from comparisons.report.symbols import LEFT
+from comparisons.report.sketch import ARROW, Sketch
+from comparisons.report.symbols import LEFT, axis
 from comparisons.scene import Scene
 from comparisons.version import release
 
@@ -21,7 +21,7 @@ COLOURS = (palette.BLUE, palette.ORANGE, palette.GREEN, palette.PURPLE, palette.
 """Colours of the beams, and of the forces, in turn."""
 HEIGHT, DIAGRAM, HISTORY = 3.6, 1.25, 1.9
 """Heights of the shape, of each diagram and of the forces over the load parameter [inch]."""
-DIAGRAMS = (("N", "axial", "force"), ("V", "shear", "force"), ("M", "moment", "moment"))
+DIAGRAMS = (("N", "axial", "force"), ("V", "shear", "force"), ("M", "bending", "moment"))
 
 
 def picture(response: Response, scene: Scene | None = None) -> Any:

@@ -19,8 +19,8 @@ from comparisons.scene import Scene
 POINTS = 5
 """Points of a brief at most."""
 BOLD = "\x1b[1m{}\x1b[0m"
-DIGITS = 4
-"""Significant digits of an answer in a brief."""
+DIGITS, LEAST = 4, 1e-9
+"""Significant digits of an answer in a brief, and the least relative difference that is no round-off."""
 
 
 def filled(words: str, first: str = "", rest: str = "") -> list[str]:
@@ -43,7 +43,7 @@ class Brief(NamedTuple):
         """Return lines that fit the terminal; no word is broken."""
         head = [BOLD.format(line) if bold else line for line in filled(self.sentence)]
         points = [line for point in self.points[:POINTS] for line in filled(point, "- ", "  ")]
-        answer = ["", *filled(self.about), "", tabulated(self.answer)] if self.answer else []
+        answer = ["", *filled(self.about), "", tabulated(self.answer, folded=True)] if self.answer else []
         return "\n".join([*head, *points, *answer])
 
 
@@ -79,15 +79,27 @@ def spring_rate(response: Response, scene: Scene) -> float:
 
 
 def in_units(scene: Scene, responses: Mapping[str, Response], t: float) -> list[Row]:
-    """Return the answers of models at a load parameter, a row for each quantity and a column for each model; what none has is left out."""
+    """Return the answers of models at a load parameter, a row for each quantity and a column for each model; what none has is left out.
+
+    With several models a column says how far the second is apart from the first.
+    """
     columns = {label: _values(scene, one, t) for label, one in responses.items()}
     named = dict.fromkeys(name for values in columns.values() for name in values)
-    return [
-        {"": name, **{label: values.get(name, "-") for label, values in columns.items()}} for name in named
-    ]
+    rows = []
+    for name in named:
+        found = [values.get(name) for values in columns.values()]
+        cells = ["-" if value is None else f"{value:.{DIGITS}g}" for value in found]
+        row = {"": name, **dict(zip(columns, cells, strict=True))}
+        if len(found) > 1:
+            one, other = found[:2]
+            apart = (other - one) / abs(one) if one and other is not None else np.nan
+            row["apart"] = f"{100.0 * apart * (abs(apart) > LEAST):.2g} %" if np.isfinite(apart) else "-"
+        rows.append(row)
+    return rows
 
 
-def _values(scene: Scene, response: Response, t: float) -> dict[str, str]:
+def _values(scene: Scene, response: Response, t: float) -> dict[str, float]:
+    """Return quantities by their names with units; zero for what is below round-off."""
     at = np.flatnonzero(np.isclose(response.load_parameter, t, rtol=0.0, atol=1e-9))
     if not len(at):
         return {}
@@ -120,6 +132,6 @@ def _values(scene: Scene, response: Response, t: float) -> dict[str, str]:
     if np.isfinite(rate):
         found["spring rate at first touch"] = "rate", rate
     return {
-        f"{name} [{units[kind]}]": f"{value:.{DIGITS}g}" if abs(value) > getattr(least, kind, 0.0) else "0"
+        f"{name} [{units[kind]}]": value if abs(value) > getattr(least, kind, 0.0) else 0.0
         for name, (kind, value) in found.items()
     }

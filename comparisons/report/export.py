@@ -14,7 +14,7 @@ import numpy as np
 from comparisons.answer import Array, Grid, Response
 from comparisons.answer.table import unit_names
 from comparisons.files import OutputError, alone_in, check_free, interrupts_held, move, own, staging
-from comparisons.report.symbols import fixed, inward
+from comparisons.report.symbols import at_arcs, fixed, inward
 from comparisons.report.vtk import read_entries, read_grid, read_units, write_blocks, write_grid, write_list
 from comparisons.scene import ContactSpec, Scene
 
@@ -89,9 +89,10 @@ def _contact(response: Response, scene: Scene, contact: ContactSpec, k: int) -> 
     history, moved = response.contacts[contact.pair], deformed - start
     arc = float(history.arc_position[k])
     if np.isfinite(arc):
-        stations, line = response.axis_line(contact.beam, k)
         beam = scene.beam(contact.beam)
-        moved = np.array([np.interp(arc, stations, x) for x in line.T]) - beam.place(arc / beam.length)
+        moved = at_arcs(history.arc_position[k], *response.axis_line(beam.name, k)) - beam.place(
+            arc / beam.length
+        )
     if history.vector is not None:  # a model without force vectors has one pair, which the supports balance
         return start, deformed, moved, history.vector[k]
     return start, deformed, moved, -sum((one.force[k] for one in response.supports.values()), np.zeros(2))

@@ -1,12 +1,13 @@
 """The findings of a comparison: a sentence, points and the answer in units, each made from the data."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 from math import inf, isfinite, log, nan
-from typing import Any
 
 import numpy as np
 
+from comparisons.answer import Response
 from comparisons.answer.quantities import table_columns
 from comparisons.models import find
 from comparisons.referee import Verdict
@@ -21,6 +22,16 @@ AGREES = 1e-9
 """Error below which two answers agree."""
 ASKED = 0.01
 """The error for which it is said which model is enough."""
+MEANINGS = {
+    "TSM mesh": "the beam's elements",
+    "TSM theory": "the beam's theory",
+    "solid beside the rod": "a body dents, warps and contracts, a rod does not",
+    "material law": "the solid's stress is not linear in the rod's strain",
+    "solid mesh": "the solid's elements",
+    "penalty": "the solid's penetration at contacts",
+    "load steps": "the number of load parameters",
+}
+"""What the parts of the error budget are, in a few words."""
 LEAST_PART = 0.05
 """Part of the difference of beams and solid, over the largest part, below which it is not named."""
 STATES = {
@@ -45,26 +56,26 @@ def findings(
     by `BUDGET`.
     """
     others = [row for row in rows if row.label != reference and isfinite(_worst(row, scene)[0])]
+    sentence = _sentence(others, scene, reference, bodies, budget)
     points = [
         _enough(others, scene, reference),
-        "" if budget is None else _parts(budget),
+        "" if budget is None else _parts(budget, sentence),
         _causes(others, scene, explained=budget is not None),
         " ".join([*_stopped(rows), *_apart(others, reference), *_left_out(left_out)]),
         " ".join([_certified(rows), *_stability(rows)]),
     ]
     exact = next(row for row in rows if row.label == reference)
-    answer, about = list[dict[str, Any]](), ""
+    answer, about = list[dict[str, str]](), ""
     if len(exact.response.load_parameter):
         t = float(exact.response.load_parameter[at_largest(exact.response)])
         finest = [bodies] if bodies else [row for row in others if find(row.response.model).meshed]
         shown = {"beam": finest[-1].response} if finest else {}
         shown |= {row.family: row.response for row in others if row.response.continuum}
         answer = in_units(scene, {**shown, reference: exact.response}, t)
-        beam = f" (beam: {finest[-1].label})" if finest else ""
+        other = [*shown, reference][-1 if len(shown) < 2 else 1]
+        beam = f" (beam: {finest[-1].label}; apart: {other} less beam)" if finest else ""
         about = f"The answer at load parameter {t:.4g}, where the force is largest{beam}:"
-    return Brief(
-        _sentence(others, scene, reference, bodies, budget), list(filter(None, points)), answer, about
-    )
+    return Brief(sentence, list(filter(None, points)), answer, about)
 
 
 def _sentence(
@@ -81,14 +92,16 @@ def _sentence(
     apart, quantity = (nan, "") if bodies is None else _worst(bodies, scene)
     if not isfinite(apart):
         return f"{enough[0].upper()}{enough[1:]}."
-    said = f"Beam and solid are {_size(apart)} apart in the {quantity}"
+    over = next(one.relative_to for one in table_columns().values() if one.called(scene) == quantity)
+    over = "its largest value" if over.startswith("the largest") else over
+    said = f"Beam and solid differ in the {quantity} by {_size(apart)} of {over}"
     if budget is not None and apart > AGREES:
         measured, _, parts = _largest(budget)
         most = max(parts, key=lambda name: abs(parts[name]))
         # the parts are those of the quantity that differs most in the budget, which may be another one
-        same = measured.partition(" ")[0].replace("_", " ") == quantity
+        same = _named(measured).startswith(quantity)
         if same and 2.0 * abs(parts[most]) > sum(map(abs, parts.values())):
-            said += f", most of it by the {most}"
+            said += f", most of it by the {most} ({MEANINGS[most]})"
     return f"{said}; {enough if apart <= ASKED else f'for {_size(ASKED)} of the solid a beam is not enough'}."
 
 
@@ -161,26 +174,39 @@ def _largest(budget: Budget) -> tuple[str, int, dict[str, float]]:
     )
 
 
-def _parts(budget: Budget) -> str:
-    """Return what makes the largest difference between beams and solid."""
+def _parts(budget: Budget, sentence: str) -> str:
+    """Return what makes the largest difference between beams and solid, and what the parts are that the `sentence` does not explain."""
     quantity, k, parts = _largest(budget)
     total = float(budget.total[quantity][k])
     if not abs(total) >= AGREES:
         return f"In the error budget, beams and solid agree to {_size(abs(total))}."
     greatest = max(map(abs, parts.values()))
     shown = sorted((n for n in parts if abs(parts[n]) > LEAST_PART * greatest), key=lambda n: -abs(parts[n]))
-    words = _listed(f"{_size(parts[name])} {name}" for name in shown)
-    kind, _, column = quantity.partition(" ")
-    name = f"{kind.replace('_', ' ')} {column}".strip()
-    return f"In the error budget, beams and solid differ most in the {name}, at load parameter {TIMES[k]:g}: by {_size(total)}, made of {words}."
+    meanings = {name: f" ({words})" for name, words in MEANINGS.items() if words not in sentence}
+    words = _listed(f"{_size(parts[name])} {name}{meanings.get(name, '')}" for name in shown)
+    return f"In the error budget, beams and solid differ most in the {_named(quantity)}, at load parameter {TIMES[k]:g}: by {_size(total)} of its value there, made of {words}."
+
+
+def _named(quantity: str) -> str:
+    """Return a quantity of the budget in the words of a page."""
+    kind, _, where = quantity.partition(" ")
+    return f"{kind.replace('_', ' ').replace('clamp', 'support')} {where}".strip()
 
 
 def _stopped(rows: Sequence[Row]) -> Iterator[str]:
-    for response, label in ((row.response, row.label) for row in rows):
-        if not response.completed:
-            reached = float(response.load_parameter.max(initial=0.0))
-            why = f"{response.status}: {response.message}"
-            yield f"{label} did not complete ({why}); its errors are those up to load parameter {reached:.4g}."
+    stopped = [row for row in rows if not row.response.completed]
+    # the message of the first run of a family stands for those that differ from it in numbers only
+    for label, response in _together(stopped, lambda row: re.sub(r"[\d.]+", "", row.response.message)):
+        reached = float(response.load_parameter.max(initial=0.0))
+        why = f"{response.status}: {response.message}"
+        yield f"{label} did not complete ({why}); errors are those up to load parameter {reached:.4g}."
+
+
+def _together(rows: Iterable[Row], key: Callable[[Row], str]) -> Iterator[tuple[str, Response]]:
+    """Yield neighbours of one family with the same key as one label, and the first response."""
+    for _, same in groupby(rows, key=lambda row: (row.family, row.response.status, key(row))):
+        first, *more = same
+        yield f"{first.family} ({len(more) + 1} runs)" if more else first.label, first.response
 
 
 def _left_out(left_out: Mapping[str, str]) -> Iterator[str]:
@@ -204,17 +230,24 @@ def _stability(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _certified(rows: Sequence[Row]) -> str:
-    rest = []
-    for row in rows:
-        found = row.response.certificate
-        if found is None:
-            rest.append(f"{row.label} was not judged")
-        elif not found.certified:
-            said = "not judged" if found.verdict is Verdict.NOT_JUDGED else "refused"
-            rest.append(f"{row.label} was {said} ({found.reason})")
-    if not rest:
-        return "The referee certified every answer."
-    return f"The referee certified {len(rows) - len(rest)} of {len(rows)} answers; {'; '.join(rest)}."
+    doubtful = [
+        row for row in rows if row.response.certificate is None or not row.response.certificate.certified
+    ]
+    if not doubtful:
+        return "The referee, an independent solver, certified every answer."
+    rest = [
+        f"{label} was {_judged(one)}" for label, one in _together(doubtful, lambda row: _judged(row.response))
+    ]
+    certified = len(rows) - len(doubtful)
+    return f"The referee, an independent solver, certified {certified} of {len(rows)} answers; {'; '.join(rest)}."
+
+
+def _judged(response: Response) -> str:
+    found = response.certificate
+    if found is None:
+        return "not judged"
+    said = "not judged" if found.verdict is Verdict.NOT_JUDGED else "refused"
+    return f"{said} ({found.reason})"
 
 
 def _size(value: float) -> str:

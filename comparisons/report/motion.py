@@ -149,7 +149,7 @@ def motion_section(
         "tracks": shown,
         "vtu": vtu or {},
     }
-    picture = rendered("motion", runs=runs, last=len(times) - 1, start=start)
+    picture = rendered("motion", runs=runs, pins=scene.pins, last=len(times) - 1, start=start)
     more = rendered("charts", runs=runs, tracks=shown, across=across["title"])
     return Section(title, picture.rstrip("\n"), data, more.rstrip("\n"))
 

@@ -55,10 +55,14 @@ def _templates() -> "Environment":
         undefined=StrictUndefined,
     )
     found.filters["cell"] = cell
-    found.filters["whole"] = lambda text: re.sub(
-        r"(?<=\de)-(?=\d)", "\u2011", text
-    )  # a line may end at a hyphen
+    found.filters["whole"] = whole
     return found
+
+
+def whole(text: str) -> str:
+    """Return words such that no line ends within a number, a percentage, a pair or a unit."""
+    text = re.sub(r"(?<=\de)-(?=\d)", "\u2011", text).replace("->", "-\u2060>").replace(" %", "\u00a0%")
+    return re.sub(r"\[[^\]]*\]", lambda unit: unit[0].replace(" ", "\u00a0").replace("/", "/\u2060"), text)
 
 
 def rendered(name: str, **values: Any) -> "Markup":
@@ -97,7 +101,7 @@ def write_page(
     name: str = NAME,
 ) -> Path:
     """Write a `page` that ends with scenes, versions, machine and links to files; return its file."""
-    inputs = [folded(f"{scene.name}.toml", piece("code", to_toml(scene))) for scene in scenes]
+    inputs = [piece("code", to_toml(scene)) for scene in scenes]
     closing = [
         *([Section("Input", "\n".join(inputs))] if inputs else []),
         Section("Versions and machine", piece("definitions", {**versions(), **machine()})),
@@ -113,13 +117,11 @@ def table(caption: str, rows: Sequence[Mapping[str, Any]], *, prose: bool = Fals
 
 
 def picture(path: Path, caption: str) -> str:
-    """Return an SVG or PNG file as an image: markup of two SVGs in one page would share names and styles."""
-    content = base64.b64encode(path.read_bytes()).decode("ascii")
-    return piece("picture", caption, f"data:{TYPES[path.suffix]};base64,{content}")
-
-
-def folded(summary: str, inner: str) -> str:
-    """Return markup that opens on demand."""
-    from markupsafe import Markup
-
-    return piece("folded", summary, Markup(inner))  # noqa: S704 - markup of this module
+    """Return an SVG or PNG file as an image: markup of two SVGs in one page would share names and styles. An SVG has a dark variant."""
+    content = path.read_bytes()
+    if path.suffix == ".svg":
+        content = content.replace(
+            b"<defs>", b"<style>%s</style><defs>" % (FOLDER / "picture.css").read_bytes(), 1
+        )
+    text = base64.b64encode(content).decode("ascii")
+    return piece("picture", caption, f"data:{TYPES[path.suffix]};base64,{text}")

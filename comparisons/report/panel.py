@@ -4,6 +4,7 @@ Beams are ribbons of their height, so that beams and solids are shown on one foo
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -12,8 +13,8 @@ from numpy.typing import NDArray
 from comparisons.answer import CONTACT_STATES, OPEN, SLIPS, Array, Grid, Response
 from comparisons.report.export import CONTACTS, HINGES, POINTS, SUPPORTS, blocks
 from comparisons.report.palette import PIN
-from comparisons.report.symbols import HINGE, LEFT, SYMBOL, Segments, fixings
-from comparisons.scene import Scene
+from comparisons.report.symbols import HINGE, LEFT, SYMBOL, Segments, at_arcs, axis, fixings
+from comparisons.scene import BeamSpec, Scene
 
 Body = tuple[Array, Array]
 """Quadrilaterals (m, 4, 2) of a deformed body, and the stress (m, 4) at their corners."""
@@ -24,6 +25,10 @@ QUARTERS = {
 """The quadrilaterals in the cells of a solid, in VTK's order of points."""
 PARTS, LAYERS = 8, (4, 8)
 """Quadrilaterals along an element of a beam, and over its height for a stress linear in it or not."""
+VISIBLE = 0.06
+"""Least height of the tallest beam in a picture of stress, over the size of the undeformed beams; its heights are enlarged to it."""
+FINE = 1001
+"""Points of an undeformed axis near which the nodes of a solid lie."""
 THIN = 2e-3
 """Height of a beam whose section has none, over the size of the picture."""
 ARROW = 0.2
@@ -49,10 +54,6 @@ class Panel(NamedTuple):
     states: NDArray[np.str_]  # (p,)
     supports: Segments  # (l, 2, 2)
 
-    def shown(self) -> list[str]:
-        """Return the states of the pins in the order of drawing."""
-        return [state for state in COLOURS if state in self.states]
-
     def outline(self) -> list[Array]:
         """Return points (..., 2) within which all is drawn but the arrows."""
         reach = self.radii[:, None]
@@ -61,54 +62,76 @@ class Panel(NamedTuple):
         ]
 
 
-def mises_panel(response: Response, scene: Scene, ks: Sequence[int], title: str) -> Panel:
-    """Return the von Mises stress at the load parameters numbered `ks`, over each other, without arrows.
+def mises_panels(beams: Response, solid: Response, scene: Scene, t: float) -> tuple[list[Panel], float]:
+    """Return the von Mises stress of beams, of the solid, and of beams less solid on the body of the solid, at the nearest load parameter.
 
     In a beam it is that of the rectangle with its area and second moment: ``sigma^2 = sigma_x^2 + 3 tau^2``
-    with ``sigma_x = N/A - M y/I`` and ``tau = 3/2 V/A (1 - (2 y/h)^2)``. Arrows would hide the bodies.
+    with ``sigma_x = N/A - M y/I`` and ``tau = 3/2 V/A (1 - (2 y/h)^2)``. Distances from the axes are enlarged by the factor that is
+    returned, so that the bodies are `VISIBLE`. There are no arrows, which would hide the bodies.
     """
-    states = [blocks(response, scene, k) for k in ks]
+    steps = [int(np.argmin(np.abs(one.load_parameter - t))) for one in (beams, solid)]
+    ribbons, bodies = (blocks(one, scene, k) for one, k in zip((beams, solid), steps, strict=True))
+    less = dict(bodies)
+    reach = np.ptp(np.concatenate([ribbons[beam.name].points for beam in scene.beams]), axis=0).max()
+    ends = np.concatenate([_section(beam, np.array([0.0, beam.length])) for beam in scene.beams], axis=1)
+    wide = max(1.0, float(np.round(VISIBLE * reach / np.sqrt(12.0 * ends[1] / ends[0]).max())))
     for beam in scene.beams:
-        for data in (state[beam.name].point_data for state in states):
-            if "M" in data:
-                sections = np.array([beam.section(part) for part in data["arc"] / beam.length])
-                area, inertia = sections[:, 0], sections[:, 1]
-                data["height"] = np.sqrt(12.0 * inertia / area)
-                direct, bent = data["N"] / area, data["M"] * data["height"] / (2.0 * inertia)
-                data["axial_stress_right"], data["axial_stress_left"] = direct + bent, direct - bent
-                data["shear_stress"] = 1.5 * data["V"] / area
-    found = panel(states, title, stress="von_mises")
-    return found._replace(forces=0.0 * found.forces)
+        data, body = ribbons[beam.name].point_data, bodies[beam.name]
+        area, inertia = _section(beam, data["arc"])
+        height = np.sqrt(12.0 * inertia / area)
+        direct, bent = data["N"] / area, data["M"] * height / (2.0 * inertia)
+        data["axial_stress_right"], data["axial_stress_left"] = direct + bent, direct - bent
+        data["shear_stress"], data["height"] = 1.5 * data["V"] / area, wide * height
+        arc, y = _material(beam, body.points)
+        middle = at_arcs(arc, *solid.axis_line(beam.name, steps[1]))
+        body.point_data["deformed"] = middle + wide * (body.point_data["deformed"] - middle)
+        stress = _stress(data, data["arc"], arc, 2.0 * y / np.interp(arc, data["arc"], height))
+        less[beam.name] = replace(
+            body, point_data=body.point_data | {"von_mises": stress - body.point_data["von_mises"]}
+        )
+    named = {"beams": ribbons, "the solid": bodies, "beams less solid": less}
+    found = [panel(grids, title, stress="von_mises") for title, grids in named.items()]
+    return [one._replace(forces=0.0 * one.forces) for one in found], wide
+
+
+def _section(beam: BeamSpec, arc: Array) -> Array:
+    """Return areas and second moments at arc lengths, shape (2, n)."""
+    return np.array([beam.section(part)[:2] for part in arc / beam.length]).T
+
+
+def _material(beam: BeamSpec, points: Array) -> tuple[Array, Array]:
+    """Return the arc lengths and the distances to the left of points (n, 2) of an undeformed body."""
+    from scipy.spatial import cKDTree
+
+    arcs, line, left = axis(beam, FINE)
+    _, foot = cKDTree(line).query(points)
+    apart, normal = points - line[foot], left[foot]
+    return arcs[foot] + np.sum(apart * (normal @ LEFT.T), axis=1), np.sum(apart * normal, axis=1)
 
 
 def panel(
-    states: Sequence[Mapping[str, Grid]], title: str, factor: float = 1.0, *, stress: str = "axial_stress"
+    grids: Mapping[str, Grid], title: str, factor: float = 1.0, *, stress: str = "axial_stress"
 ) -> Panel:
-    """Return states, each as its `blocks`, over each other, with displacements enlarged by `factor`."""
-    structure = [grid for grids in states for name, grid in grids.items() if name not in POINTS]
+    """Return a state, given as its `blocks`, with displacements enlarged by `factor`."""
+    structure = [grid for name, grid in grids.items() if name not in POINTS]
     size = float(np.ptp(np.concatenate([grid.points for grid in structure]), axis=0).max())
     bodies = [
         _solid(grid, stress, factor) if QUARTERS.keys() & grid.cells.keys() else _ribbon(grid, size, factor)
         for grid in structure
     ]
-    contacts = [grids[CONTACTS].point_data for grids in states if CONTACTS in grids]
-
-    def every(name: str, otherwise: float = 0.0, *more: int) -> Array:
-        parts = [data.get(name, np.full(len(data["radius"]), otherwise)) for data in contacts]
-        return np.concatenate([np.zeros((0, *more)), *parts])
-
-    forces, moved = every("contact_force", 0.0, 2), every("beam_displacement", 0.0, 2)
-    symbols = [
-        place + SYMBOL * size * symbol for grids in states for place, symbol in _symbols(grids, factor)
-    ]
+    none = dict.fromkeys(("contact_force", "beam_displacement", "deformed"), np.zeros((0, 2)))
+    contacts = grids[CONTACTS].point_data if CONTACTS in grids else {**none, "radius": np.zeros(0)}
+    forces = contacts["contact_force"]
+    slips = contacts.get("slip", np.full(len(forces), np.nan))
+    symbols = [place + SYMBOL * size * symbol for place, symbol in _symbols(grids, factor)]
     return Panel(
         title=title if factor == 1.0 else f"{title}, deformation x {factor:g}",
         quads=np.concatenate([quads for quads, _ in bodies]),
         stress=np.concatenate([values for _, values in bodies]),
-        pins=every("deformed", 0.0, 2) + (factor - 1.0) * moved,
-        radii=every("radius"),
+        pins=contacts["deformed"] + (factor - 1.0) * contacts["beam_displacement"],
+        radii=contacts["radius"],
         forces=forces,
-        states=np.array([_state(*one) for one in zip(forces, every("slip", np.nan), strict=True)], dtype=str),
+        states=np.array([_state(*one) for one in zip(forces, slips, strict=True)], dtype=str),
         supports=np.concatenate([np.zeros((0, 2, 2)), *symbols]),
     )
 
@@ -143,14 +166,10 @@ def _ribbon(grid: Grid, size: float, factor: float) -> Body:
     along = curve(at, 1)
     normal = along @ LEFT / np.hypot(*along.T)[:, None]
 
-    def read(name: str) -> Array:
-        return np.asarray(np.interp(at, arc, data.get(name, 0.0 * arc)))[:, None]
-
-    half = np.where(read("height") > 0.0, read("height"), THIN * size) / 2.0
+    height = np.interp(at, arc, data.get("height", 0.0 * arc))[:, None]
+    half = np.where(height > 0.0, height, THIN * size) / 2.0
     across = np.linspace(-1.0, 1.0, LAYERS["shear_stress" in data] + 1)
-    stress = read("axial_stress_right") * (1 - across) / 2 + read("axial_stress_left") * (1 + across) / 2
-    if "shear_stress" in data:
-        stress = np.sqrt(stress**2 + 3.0 * (read("shear_stress") * (1.0 - across**2)) ** 2)
+    stress = _stress(data, arc, at[:, None], across)
     points = curve(at)[:, None] + (half * across)[..., None] * normal[:, None]
 
     def corners(values: Array) -> Array:
@@ -158,6 +177,18 @@ def _ribbon(grid: Grid, size: float, factor: float) -> Body:
         return np.stack(found, axis=2).reshape(-1, 4, *values.shape[2:])
 
     return corners(points), corners(stress)
+
+
+def _stress(data: Mapping[str, Array], arc: Array, at: Array, across: Array) -> Array:
+    """Return the stress of a beam at arc lengths and at parts of half its height, from what it has at the arc lengths `arc`."""
+
+    def read(name: str) -> Array:
+        return np.asarray(np.interp(at, arc, data.get(name, 0.0 * arc)))
+
+    direct = read("axial_stress_right") * (1 - across) / 2 + read("axial_stress_left") * (1 + across) / 2
+    if "shear_stress" not in data:
+        return direct
+    return np.asarray(np.sqrt(direct**2 + 3.0 * (read("shear_stress") * (1.0 - across**2)) ** 2))
 
 
 def _symbols(grids: Mapping[str, Grid], factor: float) -> Iterator[tuple[Array, Segments]]:

@@ -1,5 +1,6 @@
 """Pictures by matplotlib: what all of them share, and the overlay of deflected shapes."""
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -32,8 +33,8 @@ LABELS = 0.06
 """Least distance of two labels of pins, over the size of the picture."""
 WIDTH = 6.3
 """Width of a picture [inch]: 160 mm, so that letters have their size in points on paper, and are legible on a telephone."""
-PIXELS = 1400
-"""Least width of a picture in pixels."""
+PIXELS, SHARP = 1400, 120.0
+"""Least width of a picture in pixels, and pixels of an inch of it and of what is no line in an SVG."""
 
 
 def figure(**options: Any) -> Any:
@@ -47,12 +48,19 @@ def figure(**options: Any) -> Any:
 
 
 def save(fig: Any, *paths: Path) -> None:
-    """Write the figure to `paths`, in the formats of their suffixes; it is laid out once."""
+    """Write the figure to `paths`, in the formats of their suffixes; it is laid out once. The letters of an SVG file are those of its page."""
+    from matplotlib import rc_context
+
     fig.draw_without_rendering()
     fig.set_layout_engine(None)  # with "none", each file would be drawn twice
     for path in paths:
-        with replacing(path) as temporary:
-            fig.savefig(temporary, dpi=max(150.0, PIXELS / fig.get_figwidth()))
+        with replacing(path) as temporary, rc_context({"svg.fonttype": "none"}):
+            fig.savefig(
+                temporary, dpi=SHARP if path.suffix == ".svg" else max(SHARP, PIXELS / fig.get_figwidth())
+            )
+            if path.suffix == ".svg":
+                text = re.sub(r"'DejaVu Sans'[^;\"]*", "system-ui, sans-serif", temporary.read_text("utf-8"))
+                temporary.write_text(text, encoding="utf-8")
 
 
 def arrow(axes: Any, tail: Array, tip: Array, colour: str, width: float = 1.2) -> None:

@@ -19,12 +19,13 @@ def write_sheet(path: Path, response: Response, scene: Scene) -> None:
     with TemporaryDirectory() as folder:
         given, found = Path(folder) / "input.svg", Path(folder) / "result.svg"
         draw(scene, given)
-        shown = ""
+        shown, k = "", -1
         if len(response.load_parameter):
+            k = at_largest(response)
             save(drawn(response, scene), found)
             shown = picture(found, "The result, and the section forces with their peaks.")
         beside = picture(given, f"The input, in {scene.units}.")
-    tables = html(response).partition("</table>")[2]  # the head is said above
+    tables = html(response, k).partition("</table>")[2]  # the head is said above
     section = Section("Result", shown, more=f'<div class="sheet">{tables}</div>', beside=beside)
     write_text(path, page(f"{scene.name}: {response.named}", _brief(response, scene), [section]))
 
@@ -49,4 +50,9 @@ def _brief(response: Response, scene: Scene) -> Brief:
     if not response.completed:
         points.insert(0, sentence)
         sentence = f"{response.status}: {response.message}."
-    return Brief(sentence, points, answer, "The answer there:")
+    return Brief(
+        sentence,
+        points,
+        answer,
+        "The answer there; moments of supports act on the beam, anticlockwise positive:",
+    )

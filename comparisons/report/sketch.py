@@ -15,7 +15,7 @@ from comparisons.models.model import ModelError
 from comparisons.models.outside.programs import offered
 from comparisons.report import palette
 from comparisons.report.plot import WIDTH, arrow, figure, save
-from comparisons.report.symbols import LEFT, arc, chain, draw_symbols, legend_symbol
+from comparisons.report.symbols import LEFT, Axis, arc, at_arcs, axis, chain, draw_symbols, legend_symbol
 from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene
 from comparisons.scene.conditions import LoadSpec
 
@@ -34,8 +34,6 @@ NAME, WEIGHT = 0.25, 0.65
 """Fractions of the length at which a beam's name and its weight stand."""
 CORNER = np.array([1.0, 1.0])
 """Way from a moment to its value, which arrows along the axes leave free."""
-Axis = tuple[Array, Array, Array]
-"""Arc lengths (n,), points (n, 2), and unit normals to the left (n, 2)."""
 
 
 def stated(scene: Scene, others: Sequence[str] = ()) -> Iterator[str]:
@@ -86,9 +84,7 @@ class Sketch:
 
     def at(self, beam: str, parts: ArrayLike) -> Array:
         """Return the points (n, 2) of an axis at parts of the undeformed length."""
-        arcs, points, _ = self.lines[beam]
-        arc = self.scene.beam(beam).length * np.asarray(parts)
-        return np.stack([np.interp(arc, arcs, values) for values in points.T], axis=1)
+        return at_arcs(self.scene.beam(beam).length * np.asarray(parts), *self.lines[beam][:2])
 
     def symbols(self) -> None:
         """Draw supports, springs and hinges at the ends of the axes."""
@@ -174,12 +170,6 @@ class Sketch:
                 corners = free[-1].transformed(self.axes.transData.inverted()).corners()
                 self.axes.update_datalim(corners)
             self.axes.autoscale_view()
-
-
-def axis(beam: BeamSpec) -> Axis:
-    """Return the undeformed axis of a beam."""
-    points, tangents = (np.array([read(part) for part in PARTS]) for read in (beam.place, beam.tangent))
-    return beam.length * np.array(PARTS), points, tangents @ LEFT
 
 
 def _reach(scene: Scene, lines: Mapping[str, Axis]) -> Array:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from comparisons.answer import Array
 from comparisons.answer.table import unit_names
 from comparisons.report import palette
-from comparisons.scene import HingeSpec, Scene, SpringSpec, SupportSpec
+from comparisons.scene import BeamSpec, HingeSpec, Scene, SpringSpec, SupportSpec
 from comparisons.scene.conditions import COMPONENTS
 
 Segments = NDArray[np.float64]
@@ -26,8 +26,24 @@ LARGEST = 13.0
 """Largest size of a symbol in a legend, so that it stays in its row [point]."""
 LEFT = np.array([[0.0, 1.0], [-1.0, 0.0]])
 """Turns rows of tangents to the left."""
+Axis = tuple[Array, Array, Array]
+"""Arc lengths (n,), points (n, 2), and unit normals to the left (n, 2)."""
 HATCHES = 5
 """Strokes below a ground."""
+
+
+def axis(beam: BeamSpec, points: int = 41) -> Axis:
+    """Return the undeformed axis of a beam."""
+    parts = np.linspace(0.0, 1.0, points)
+    line, tangents = (
+        np.array([read(part) for part in parts.tolist()]) for read in (beam.place, beam.tangent)
+    )
+    return beam.length * parts, line, tangents @ LEFT
+
+
+def at_arcs(arc: Array, arcs: Array, line: Array) -> Array:
+    """Return the points (n, 2) at arc lengths of a line that is given at others."""
+    return np.stack([np.interp(arc, arcs, values) for values in line.T], axis=-1)
 
 
 def chain(points: Any) -> Segments:

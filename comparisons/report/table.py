@@ -1,12 +1,15 @@
-"""The table of a comparison: one row per run."""
+"""The tables of a comparison: one row per run, and the error budget."""
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
 from comparisons.answer.quantities import SCOPES, names, table_columns
-from comparisons.output import NO_VALUE, csv_text
+from comparisons.output import NO_VALUE, csv_text, write_numbers
+from comparisons.report.pages import Section, picture, piece, table
 from comparisons.suite import Row
+from comparisons.suite.budget import PARTS, STEPS, Budget, budget_rows
 
 
 def caption(reference: str) -> str:
@@ -50,3 +53,29 @@ def table_csv(rows: Sequence[Row]) -> str:
         last = {"stable": row.stable, **spent, "wall_seconds": response.wall_seconds}
         records.append({**first, "unknowns": response.unknowns, **found, **last})
     return csv_text(records)
+
+
+def budget_section(budget: Budget, drawn: Path) -> Section:
+    """Return the figure `drawn`, the numbers, and what each part measures."""
+    rows = [
+        {name.replace("_", " "): value for name, value in {**row, **row["parts"]}.items() if name != "parts"}
+        for row in budget_rows(budget)
+    ]
+    caption = "(TSM - solid) / exact rod; parts are measured by themselves, the rest is over the difference"
+    numbers = table(caption, rows)
+    shown = picture(drawn, "What the difference of TSM and solid is made of.")
+    return Section("Error budget", f"{shown}\n{numbers}\n{piece('definitions', PARTS)}")
+
+
+def write_budget(budget: Budget, path: Path) -> None:
+    """Write the budget's numbers and what each part measures."""
+    rests = [float(np.nanmax(np.abs(budget.rest(quantity)))) for quantity in budget.total]
+    numbers = {
+        "scene": budget.scene,
+        "difference": "(q_TSM - q_solid) / q_rod",
+        "load_parameters_of_the_runs": STEPS,
+        "parts": PARTS,
+        "rows": list(budget_rows(budget)),
+        "largest_rest_over_total": max(rests),
+    }
+    write_numbers(path, numbers)

@@ -12,28 +12,27 @@ from comparisons import models
 from comparisons.answer import Response
 from comparisons.answer.file import as_dict
 from comparisons.answer.quantities import event_differences, names
-from comparisons.answer.table import unit_names
 from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.models import Model, certified, find, solve
 from comparisons.models.model import Count, ModelError, Options, Watch, uncounted, unwatched
 from comparisons.models.theory import bending
 from comparisons.output import Report, json_text
-from comparisons.report.brief import Brief
-from comparisons.report.budget_plot import budget_section, plot_budget, write_budget
+from comparisons.report.brief import Brief, at_largest
 from comparisons.report.export import check_series, write_series
 from comparisons.report.findings import BUDGET, findings
 from comparisons.report.motion import motion_section, states_section, tracks
 from comparisons.report.pages import Section, picture, table, write_page
 from comparisons.report.palette import style
-from comparisons.report.panel import mises_panel
-from comparisons.report.plot import nearest_steps, plot_shapes
-from comparisons.report.render import NoOpenGLError, write_picture
-from comparisons.report.table import caption, line, table_csv
+from comparisons.report.panel import mises_panels
+from comparisons.report.plot import plot_shapes
+from comparisons.report.render import write_stress
+from comparisons.report.table import budget_section, caption, line, table_csv, write_budget
 from comparisons.scene import Scene, to_toml
 from comparisons.scene.keys import special_keys
 from comparisons.suite import Case, Row
 from comparisons.suite.budget import Budget, error_budget
 from comparisons.suite.measure import verdict
+from comparisons.suites.drawing import plot_budget
 from comparisons.version import versions
 from tsm.elements import MIXED as MIXED_KIND
 from tsm.elements import TIMOSHENKO
@@ -72,7 +71,7 @@ DRAWN = tuple(
 )
 """The runs whose deflected axes are drawn over each other: the widest line first, the exact rod on top."""
 BRANCH = ("force", "moment", "tip")
-NAMES = ("report.html", "summary.json", "table.csv", "shapes.png", "shapes.svg", "side-by-side.png", "budget.png", "budget.svg", "budget.json")  # fmt: skip
+NAMES = ("report.html", "summary.json", "table.csv", "shapes.png", "stress.svg", "budget.svg", "budget.json")
 """The files beside those of ParaView."""
 APART = 0.5
 """Error of one of these quantities beyond which two answers are different equilibria."""
@@ -168,8 +167,10 @@ def compare(
             end = f"{one.wall_seconds:.2f} s" if one.completed else f"{one.status}: {one.message}"
             report(f"{head}: {end}")
         except ModelError as error:
-            report(f"{head}: left out, {error}")
-            left_out[find(run.model).family(scene, run.options)] = str(error).removeprefix(f"{run.model}: ")
+            left_out[find(run.model).family(scene, run.options)] = why = str(error).removeprefix(
+                f"{run.model}: "
+            )
+            report(f"{head}: left out, {why}")
     rows = [_row(scene, run, response, answers[ROD]) for run, response in answers.items()]
     with staging("measuring the error budget") as count:
         budget, lack = None, "it takes the solid"
@@ -209,18 +210,25 @@ def _cause(case: Case, reference: Response) -> str:
 def _write(found: Comparison, folder: Path, report: Report) -> list[Path]:
     """Write all files; return them, the page first."""
     scene, responses = found.scene, found.responses
-    page, summary, csv, *shapes, stress, plot, drawing, numbers = (folder / name for name in NAMES)
+    page, summary, csv, shapes, stress, budget, numbers = (folder / name for name in NAMES)
     write_text(csv, table_csv(found.rows))
-    plot_shapes(scene, {run.label: responses[run.label] for run in DRAWN if run.label in responses}, *shapes)
-    files = [summary, csv, *shapes, *_write_picture(found, stress, report)]
+    plot_shapes(scene, {run.label: responses[run.label] for run in DRAWN if run.label in responses}, shapes)
+    files, reached = [summary, csv, shapes], [len(one.load_parameter) for _, one in found.exported]
+    if len(reached) == 2 and all(reached):
+        (_, beams), (_, solid) = found.exported
+        t = float(beams.load_parameter[min(at_largest(beams), reached[1] - 1)])
+        write_stress(*mises_panels(beams, solid, scene, t), scene, t, stress)
+        files.append(stress)
+    else:
+        report(f"{stress.name}: left out, it takes beams and solid")
     if found.budget is not None:
-        plot_budget(found.budget, plot, drawing)
+        plot_budget(found.budget, budget)
         write_budget(found.budget, numbers)
-        files += plot, drawing, numbers
+        files += budget, numbers
     for run, response in found.exported:
         write_series(writable_folder(folder / run.model), response, scene)
         files.append(folder / run.model / f"{run.model}.pvd")
-    _write_page(found, files, stress, drawing)
+    _write_page(found, files, stress, budget)
     files.insert(0, page)
     told = {
         "scene": scene.name,
@@ -246,25 +254,8 @@ def _write_page(found: Comparison, files: list[Path], stress: Path, budget: Path
         *([] if found.budget is None else [budget_section(found.budget, budget)]),
     ]
     if stress in files:
-        sections.append(Section("Stress", picture(stress, "Beams and solid, von Mises stress.")))
+        sections.append(
+            Section("Stress", picture(stress, "Von Mises stress of beams and solid, and its difference."))
+        )
     title = f"{scene.name}: beams, solid and exact answers"
     write_page(stress.parent, title, found.brief, sections, [scene], files)
-
-
-def _write_picture(found: Comparison, path: Path, report: Report) -> list[Path]:
-    """Write the picture of beams and solid side by side at load parameters that both reached; return its file."""
-    scene = found.scene
-    times = min((response.load_parameter for _, response in found.exported), key=len, default=np.zeros(0))
-    lack = "it takes beams and solid"
-    if len(found.exported) == 2 and len(times):
-        ks = nearest_steps(times, scene.times[-1])
-        at = ", ".join(f"{times[k]:.3g}" for k in ks)
-        panels = [mises_panel(one, scene, ks, f"{run.label}\nt = {at}") for run, one in found.exported]
-        try:
-            write_picture(panels, f"von Mises stress [{unit_names(scene.units)['stress']}]", path)
-        except NoOpenGLError as error:
-            lack = str(error)
-        else:
-            return [path]
-    report(f"{path.name}: left out, {lack}")
-    return []

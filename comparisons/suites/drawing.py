@@ -1,4 +1,4 @@
-"""Pictures of panels with one legend."""
+"""Pictures of panels with one legend: of lines, and of the error budget as stacked bars."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
@@ -8,7 +8,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from comparisons.report import palette
 from comparisons.report.plot import WIDTH, figure, save
+from comparisons.suite.budget import TIMES, Budget
+
+COLOURS = (
+    palette.ORANGE, palette.YELLOW, palette.SKY, palette.VERMILION, palette.GREEN, palette.PURPLE, palette.GREY,
+)  # fmt: skip
+HATCHES = ("", "////", "||||", "", "xxx", "\\\\\\\\", "+++")
+"""Colours and hatches of the parts of a budget, in their order; hatches distinguish neighbours in grey print."""
 
 
 class Line(NamedTuple):
@@ -68,3 +76,33 @@ def _plot(axes: Any, *, lines: Iterable[Line], **settings: Any) -> None:
     for label, points, style in lines:
         axes.plot(*np.asarray(points), label=label, **style)
     axes.set(**settings)
+
+
+def plot_budget(budget: Budget, path: Path) -> None:
+    """Draw every quantity's parts stacked at the load parameters of the budget, and the total as a mark."""
+    panels = [partial(_stack, budget=budget, quantity=quantity) for quantity in budget.total]
+    title = f"{budget.scene}: what the difference is made of, (TSM - solid) / exact rod [%]"
+    draw(panels, path, tall=2.6, title=title, columns=3)
+
+
+def _stack(axes: Any, *, budget: Budget, quantity: str) -> None:
+    places = np.arange(len(TIMES))
+    above, below = np.zeros(len(TIMES)), np.zeros(len(TIMES))
+    for (name, values), colour, hatch in zip(budget.parts[quantity].items(), COLOURS, HATCHES, strict=True):
+        height = 100.0 * np.nan_to_num(values)
+        bottom = np.where(height >= 0.0, above, below)
+        style = {"color": colour, "hatch": hatch, "edgecolor": "0.25", "linewidth": 0.0, "width": 0.6}
+        axes.bar(places, height, bottom=bottom, label=name, zorder=3, **style)
+        above, below = above + np.maximum(height, 0.0), below + np.minimum(height, 0.0)
+    total = 100.0 * budget.total[quantity]
+    axes.hlines(
+        total, places - 0.4, places + 0.4, colors="black", linewidth=1.8, label="difference", zorder=4
+    )
+    axes.axhline(0.0, color="0.3", linewidth=0.6)
+    axes.set_xticks(places, [f"{t:g}" for t in TIMES])
+    axes.use_sticky_edges = (
+        False  # the limits would lie on the edge of a thin part, and cut the parts beyond it
+    )
+    axes.margins(y=0.08)
+    kind, _, column = quantity.partition(" ")
+    axes.set(title=f"{kind.replace('_', ' ')}\n{column}".strip(), xlabel="load parameter")

@@ -17,7 +17,7 @@ COMMANDS = {
     **{f"{name} mine.toml --out mine-{name}.png": [f"mine-{name}.png"] for name in ("check", "solve")},
     **{
         f"compare {scene} --out {name} --quiet": [
-            f"{name}/{one}.png" for one in ("shapes", "side-by-side", "budget")
+            f"{name}/{one}" for one in ("shapes.png", "stress.svg", "budget.svg")
         ]
         for scene, name in (("mine.toml", "mine"), ("ks-cantilever", "ks"))
     },
@@ -40,6 +40,9 @@ def draw(commands: dict[str, list[str]], folder: Path) -> list[Path]:
             assert main(command.split()) == 0, command
             for drawn in pictures:
                 written.append(folder / drawn.replace("/", "-"))
+                if drawn.endswith(".svg"):
+                    written[-1].write_bytes(Path(drawn).read_bytes())
+                    continue
                 with Image.open(drawn) as picture:
                     few = picture.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
                 few.save(written[-1], optimize=True)

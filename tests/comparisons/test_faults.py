@@ -1,4 +1,4 @@
-"""What goes wrong around a run: signals, company, no room, no permission, no OpenGL, a missing library. Each really happens."""
+"""What goes wrong around a run: signals, company, no room, no permission, a missing library. Each really happens."""
 
 import json
 import os
@@ -205,19 +205,3 @@ def test_a_missing_library(library, in_folder):
     cure = "install tsm-crossval[cluster]" if library == "distributed" else "install tsm-crossval again"
     assert cure in err
     assert library == "distributed" or re.match(rf"crossval: {library}\S*: cannot be imported, ", err)
-
-
-@pytest.mark.slow
-def test_no_opengl(tmp_path):
-    """The system's OpenGL libraries are hidden behind files that are none."""
-    hidden = tmp_path / "lib"
-    hidden.mkdir()
-    for library in ("GL.so", "GL.so.1", "EGL.so", "EGL.so.1", "OSMesa.so", "OSMesa.so.6", "OSMesa.so.8"):
-        (hidden / f"lib{library}").touch()
-    out, apart = tmp_path / "out", {"LD_LIBRARY_PATH": str(hidden), "DISPLAY": ""}
-    found = ended(COMMAND, "view", "tip-load", "--out", out, env=apart)
-    assert found.returncode == 2
-    assert found.stderr.splitlines()[-1].startswith(
-        "crossval: pyvista cannot draw here: it needs OpenGL, as Debian's libegl1"
-    )
-    assert names(out) == set()

@@ -37,7 +37,7 @@ def scene(tmp_path, monkeypatch):
 
 def test_every_place_has_a_new_quantity(scene, capsys):
     assert main(["compare", scene, "--out", "out", "--quiet"]) == 0
-    table, page = capsys.readouterr().out, Path("out/report.html").read_text()
+    table, page = capsys.readouterr().out, Path("out/report.html").read_text().replace("\u2011", "-")
     assert re.search(r" friction +rise +stable ", table)
     run, _ = json.loads(Path("out/summary.json").read_text())["runs"]
     row, _ = csv.DictReader(Path("out/table.csv").read_text().splitlines())

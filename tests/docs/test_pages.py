@@ -123,7 +123,7 @@ def test_make_targets_links_and_pictures_are_there():
     links = [Path(target) for target in re.findall(r"\]\(([^)]+)\)", README) if "://" not in target]
     assert len(shown) > 5 < len(links)
     assert [str(path) for path in (*shown, *links) if not (ROOT / path).is_file()] == []
-    kept = {name for text in TEXTS.values() for name in re.findall(r"\.figures/([\w-]+\.png)", text)}
+    kept = {name for text in TEXTS.values() for name in re.findall(r"\.figures/([\w-]+\.(?:png|svg))", text)}
     assert kept == {path.name for path in FOLDER.iterdir()}
     assert {name.replace("/", "-") for drawn in COMMANDS.values() for name in drawn} <= kept
     assert sum(path.stat().st_size for path in FOLDER.iterdir()) < 1.2e6

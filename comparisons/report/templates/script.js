@@ -1,7 +1,7 @@
 "use strict";
 
 const DATA = JSON.parse(document.getElementById("_data").textContent);
-const PAD = { left: 64, right: 14, top: 12, bottom: 40 };
+const PAD = { left: 64, right: 14, top: 22, bottom: 40 };
 const SEEN = 0.06; // the largest difference that is drawn, over the size of the drawing
 const LEAST = 1e-7; // smaller differences, over the size, are round-off of what the page has
 const NAMES = 150; // pixels for the names of the lines in a chart of errors
@@ -51,7 +51,7 @@ function axes(svg, box, height, titles, format) {
     write(svg, format(value), PAD.left - 6, PAD.top + y(value) + 4, "end");
   }
   write(svg, titles.x, PAD.left + width, PAD.top + height + 32, "end");
-  write(svg, titles.y, PAD.left + 6, PAD.top + 12, "start");
+  write(svg, titles.y, PAD.left - 6, PAD.top - 8, "end");
   return { plot, x, y, width, height };
 }
 
@@ -316,5 +316,5 @@ for (const one of document.querySelectorAll("details")) one.addEventListener("to
 addEventListener("resize", fit);
 fit();
 
-// A print has no switch to open what is folded.
-addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((one) => (one.open = true)));
+// A print has no switch to open what is folded; what is folded within it is left to the screen.
+addEventListener("beforeprint", () => document.querySelectorAll("section > details").forEach((one) => (one.open = true)));
