@@ -19,6 +19,7 @@ OTHER_WORDS = {
     "comparisons/version.py": "the package tsm",
     "comparisons/cli/command.py": "the package tsm",
     "comparisons/referee/certificate.py": "a key of a certificate in JSON",
+    "comparisons/suites/manual/write.py": "a column of a table",
 }
 
 
