@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import math
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from functools import partial
@@ -24,6 +25,7 @@ Report = Callable[[str], None]
 """Receives one line about the progress."""
 
 
+_NO_BREAK, _UNIT = "\N{NO-BREAK SPACE}", re.compile(r"(?<=\d) (?=(?:%|k?N|mm?|rad|m?s)(?!\w))")
 NO_VALUE = "no value"
 """In place of an infinite error: one of the two that are compared has no value."""
 
@@ -78,7 +80,7 @@ def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool], indent: int = 
     columns = list(zip(*rows, strict=True))
     widths = [max(map(len, column)) for column in columns]
     whole = (
-        [head.split(), *([cell] if one else cell.split() for cell in rest)]
+        [head.split(), *([cell] if one else _joined(cell).split(" ") for cell in rest)]
         for (head, *rest), one in zip(columns, right, strict=True)
     )
     words = [max(len(word) for cell in column for word in cell or [""]) for column in whole]
@@ -96,13 +98,19 @@ def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool], indent: int = 
     lines = []
     for row in rows:
         cells = (
-            fold(text, width) if len(text) > width else [text]
+            fold(_joined(text), width) if len(text) > width else [text]
             for text, width in zip(row, widths, strict=True)
         )
         for line in zip_longest(*cells, fillvalue=""):
             parts = zip(sides, line, widths, strict=True)
-            lines.append("  ".join(side(text, width) for side, text, width in parts).rstrip())
+            text = "  ".join(side(text, width) for side, text, width in parts).rstrip()
+            lines.append(text.replace(_NO_BREAK, " "))
     return lines
+
+
+def _joined(text: str) -> str:
+    """Text whose numbers do not part from their units when it is folded."""
+    return _UNIT.sub(_NO_BREAK, text)
 
 
 def markdown(rows: Sequence[Mapping[str, str]]) -> str:

@@ -1,6 +1,6 @@
 """Solve a problem and collect the histories."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from time import perf_counter
 
 import numpy as np
@@ -16,7 +16,7 @@ from fem_reference.statement.settings import Settings
 from fem_reference.statement.status import Status
 from fem_reference.statement.strip import Strip
 from fem_reference.system.model import Model, build
-from fem_reference.system.state import State, reactions
+from fem_reference.system.state import Reaction, State, reactions
 
 EVENTS = (Status.LIMIT_POINT, Status.BIFURCATION, Status.LINE_CONTACT, Status.END_CONTACT)
 _SMALL_STRAIN = 0.8
@@ -79,6 +79,8 @@ def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
     done = [step for step in steps if step.status is Status.CONVERGED]
     states = tuple(step.state for step in done)
     status, message = _outcome(model, steps[-1])
+    last = reactions(steps[-1].state)
+    supports, springs = ([each[kind] for each in map(reactions, states)] for kind in (0, 1))
     cells = dict[str, list[Ints]]()
     for body in model.bodies:
         cells.setdefault(CELL_TYPES[body.strip.element], []).append(body.mesh.cells + body.part.start)
@@ -90,8 +92,8 @@ def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
         contacts={
             pair.contact.name: _contact(states, steps, number) for number, pair in enumerate(model.pairs)
         },
-        supports=_histories(0, states, steps[-1].state),
-        springs=_histories(1, states, steps[-1].state),
+        supports=_histories(supports, last[0]),
+        springs=_histories(springs, last[1]),
         tips={strip.name: _tips(strip, states) for strip in model.problem.strips},
         newton_iterations=np.array([step.iterations for step in done], dtype=np.int64),
         cutbacks=sum(step.cutbacks for step in steps),
@@ -153,15 +155,14 @@ def _contact(states: tuple[State, ...], steps: list[Step], number: int) -> Conta
     )
 
 
-def _histories(kind: int, states: tuple[State, ...], last: State) -> dict[str, SupportHistory]:
-    """Histories of supports or springs by end, by their place in `reactions`."""
-    rows = [reactions(state)[kind] for state in states]
+def _histories(rows: list[dict[str, Reaction]], last: Iterable[str]) -> dict[str, SupportHistory]:
+    """Histories of supports or springs by end."""
     return {
         node: SupportHistory(
             force=np.array([row[node][0] for row in rows]).reshape(-1, 2),
             moment=np.array([row[node][1] for row in rows]),
         )
-        for node in reactions(last)[kind]
+        for node in last
     }
 
 

@@ -16,6 +16,8 @@ BALANCE = 1e-6
 
 _FEWEST = 8
 """Fewest load parameters up to which the work is compared with the strain energy."""
+_SAME = 1e-9
+"""Distance of load parameters that are one."""
 _NODES, _OWN = np.polynomial.legendre.leggauss(4)
 _PARTS = ((np.arange(20)[:, None] + (_NODES + 1.0) / 2.0) / 20).ravel()
 _WEIGHTS = np.tile(_OWN / 2.0, 20) / 20
@@ -89,14 +91,16 @@ def unpaid(
 
     ``W = sum int F dx + sum int M dtheta`` by the trapezoidal rule. Its error is bounded by three times the differences from the rule with
     every second load parameter, and by the work of a first interval without a partner. It is not bounded by few load parameters, by
-    forces that are largest at the first of them, or over the end of a stage; a jump releases energy, friction dissipates it, and the
-    rotation of a moment's end is not stated.
+    forces that are largest at the first of them, over the end of a stage, or over a corner of a pin's path between load parameters;
+    a jump releases energy, friction dissipates it, and the rotation of a moment's end is not stated.
     """
     rubbed = any(spec.friction for spec in scene.contacts)
     turned = any(any(history.at(t)[2] for t in scene.times) for history in scene.load_histories)
     if response.events is None or rubbed or turned or scene.stages or len(response.load_parameter) < _FEWEST:
         return
-    jumps = [event.load_parameter for event in response.events if event.released]
+    unknown = [event.load_parameter for event in response.events if event.released]
+    corners = (t for pin in scene.pins for t in pin.corners)
+    unknown += [t for t in corners if np.abs(response.load_parameter - t).min() > _SAME]
     actions = [*_supports(response, scene), *_loads(response, scene)]
     outer = _sum(response, [*actions, *_springs(response, scene)])
     if outer.any() and np.argmax(np.hypot(*outer.T)) == 0:
@@ -104,7 +108,7 @@ def unpaid(
     actions += _pins(response, scene, outer)[2]
     least = least_force(scene) * max(beam.length for beam in scene.beams)
     for k, exact in found.items():
-        if k + 1 < _FEWEST or any(t <= response.load_parameter[k] for t in jumps):
+        if k + 1 < _FEWEST or any(t <= response.load_parameter[k] for t in unknown):
             continue
         fine, coarse = (
             np.sum([item.work(np.array([0, *range(1 + k % step, k + 2, step)])) for item in actions], axis=0)

@@ -1,7 +1,7 @@
 """Sections of a page about answers: shapes under a slider with histories, bands of stick and slip."""
 
 from collections.abc import Container, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import groupby
 from typing import Any
 
@@ -11,6 +11,7 @@ from comparisons.answer import CONTACT_STATES, SLIPS, Array, Response
 from comparisons.answer.errors import error_columns
 from comparisons.answer.quantities import QUANTITIES, size
 from comparisons.answer.table import unit_names
+from comparisons.frozen import Frozen
 from comparisons.report import palette
 from comparisons.report.brief import at_largest, travel
 from comparisons.report.pages import Section, piece, rendered
@@ -32,8 +33,7 @@ STATES = {**CONTACT_STATES, SLIPS[-1]: HATCH.format(CONTACT_STATES[SLIPS[-1]])}
 """Backgrounds of the bands; one is hatched, which distinguishes it in grey print."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Track:
+class Track(Frozen):
     """A quantity over s load parameters: values (s,) by run, nan for none, and errors (s,)."""
 
     title: str

@@ -45,7 +45,8 @@ def _brief(response: Response, scene: Scene) -> Brief:
     for name, value in map(dict.values, answer):
         words, unit = name.removesuffix("]").split(" [")
         if value != "0":
-            said.setdefault(unit, f"{words} {value} {unit}")
+            number = f"{value} {unit}".replace(" ", "\N{NO-BREAK SPACE}")
+            said.setdefault(unit, f"{words} {number}")
     sentence = f"At load parameter {t:.4g}, where the force is largest: {', '.join(said.values())}."
     if not response.completed:
         points.insert(0, sentence)

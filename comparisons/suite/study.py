@@ -1,7 +1,7 @@
 """Studies: a scene and what is varied in it, as a TOML file, and the table of what is found."""
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from functools import partial
 from itertools import product
 from math import isclose, prod
@@ -12,6 +12,7 @@ import numpy as np
 
 from comparisons.answer import Response
 from comparisons.answer.table import table
+from comparisons.frozen import Frozen
 from comparisons.models import TSM, find
 from comparisons.models.model import BRANCHES, ModelError, Options
 from comparisons.output import keys, tabulated
@@ -55,8 +56,7 @@ RANGE: dict[str, Rule] = {
 """The keys of a range with the rules of their values."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Study:
+class Study(Frozen):
     """A sweep: its cases, each once, in the order of the file, and the number of runs timed for each."""
 
     name: str

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,6 +13,7 @@ from comparisons.answer import Response
 from comparisons.answer.file import as_dict
 from comparisons.answer.quantities import event_differences, names
 from comparisons.files import alone_in, writable_folder, write_text
+from comparisons.frozen import Frozen
 from comparisons.models import Model, certified, find, solve
 from comparisons.models.model import Count, ModelError, Options, Watch, uncounted, unwatched
 from comparisons.models.theory import bending
@@ -73,12 +74,12 @@ DRAWN = tuple(
 BRANCH = ("force", "moment", "tip")
 NAMES = ("report.html", "summary.json", "table.csv", "shapes.png", "stress.svg", "budget.svg", "budget.json")
 """The files beside those of ParaView."""
+MISES = "Von Mises stress of beams from section forces, of the solid from Cauchy's, and the difference."
 APART = 0.5
 """Error of one of these quantities beyond which two answers are different equilibria."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Comparison:
+class Comparison(Frozen):
     """Result of a comparison: rows, the budget, who is left out and why by family, and the files written."""
 
     scene: Scene
@@ -254,8 +255,6 @@ def _write_page(found: Comparison, files: list[Path], stress: Path, budget: Path
         *([] if found.budget is None else [budget_section(found.budget, budget)]),
     ]
     if stress in files:
-        sections.append(
-            Section("Stress", picture(stress, "Von Mises stress of beams and solid, and its difference."))
-        )
+        sections.append(Section("Stress", picture(stress, MISES)))
     title = f"{scene.name}: beams, solid and exact answers"
     write_page(stress.parent, title, found.brief, sections, [scene], files)

@@ -1,11 +1,12 @@
 """What a suite found, made from the rows of its cases, and where it goes: a page, files, a terminal, an exit status."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
 from comparisons.files import write_text
+from comparisons.frozen import Frozen
 from comparisons.output import write_numbers, write_rows
 from comparisons.report.brief import Brief
 from comparisons.report.pages import Section, write_page
@@ -15,8 +16,7 @@ WRITERS: dict[str, Callable[[Path, Any], object]] = {".csv": write_rows, ".json"
 """How a file is written, by its suffix; any other is a text."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Found:
+class Found(Frozen):
     """A page with its files: what every suite makes of its rows."""
 
     title: str

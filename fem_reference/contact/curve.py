@@ -30,8 +30,8 @@ _HERMITE = np.array(
     ],
     dtype=float,
 ).reshape(12, 4)
-_POWERS = np.arange(4.0)[:, None]
 """Coefficients of the powers of z in Hermite's cubic polynomials over [0, 1], and in their first two derivatives."""
+_POWERS = np.arange(4.0)[:, None]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

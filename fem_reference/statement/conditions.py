@@ -173,7 +173,7 @@ def require_held(problem: Any, touching: Iterable[tuple[str, Point, Point]]) -> 
     given = [(f"{name}.{end}", (0.0, 0.0, 0.0)) for name in names for end in strips[name].clamped]
     given += [(item.node, item.motion) for item in (*problem.supports, *problem.springs)]
     rows = [np.zeros(3 * len(names)), *(normal @ motion(name, place)[:2] for name, place, normal in touching)]
-    rows += [at(end)[k] for end, motion in given for k in range(3) if motion[k] is not None]
+    rows += [at(end)[k] for end, held in given for k in range(3) if held[k] is not None]
     rows += [
         at(end)[k] - at(joint.ends[0])[k]
         for joint in problem.joints
@@ -185,4 +185,4 @@ def require_held(problem: Any, touching: Iterable[tuple[str, Point, Point]]) -> 
         sorted(name for name, moves in zip(names, free.reshape(-1, 3), strict=True) if max(moves) > 1e-6)
     )
     rule = f"must hold {loose}, with the pins that touch at the start"
-    require(problem, "supports", not loose, rule, tuple(motion for _, motion in given))
+    require(problem, "supports", not loose, rule, tuple(held for _, held in given))

@@ -14,7 +14,14 @@ from unittest.mock import patch
 
 import numpy as np
 
+import fem_reference
+import tsm
+from comparisons.answer.errors import difference
 from comparisons.cli import main
+from comparisons.models import solve
+from comparisons.models.model import Options
+from comparisons.models.solid import to_solid
+from comparisons.models.tsm import to_structure
 from comparisons.scene import load_scene
 from comparisons.suite import budget
 from comparisons.suites import compare
@@ -22,6 +29,14 @@ from tests.benchmarks.measure import Gate, children
 
 KS = load_scene("ks-cantilever")
 T = np.array(KS.times)
+
+
+def beams_against_solid(bench):
+    structure, solid = to_structure(KS, elements=10), to_solid(KS, mesh=(50, 2))
+    beams, reference = bench.seconds(
+        tsm_mixed_10=lambda: tsm.solve(structure, T), solid_50x2=lambda: fem_reference.solve(solid, T)
+    )
+    bench.add(Gate("solid 50x2 over TSM mixed 10, seconds", reference / beams, 40, at_least=True))
 
 
 def equal_error(bench):
@@ -34,6 +49,66 @@ def equal_error(bench):
             row for row in rows if (row["scope"], row["quantity"], row["target"]) == (scope, "force", 1e-3)
         )
         bench.add(Gate(f"solid over TSM at .1 % of F, {state}, seconds", found["ratio"], 100, at_least=True))
+
+
+def exact_elements(bench):
+    """The exact element against `mixed`; the shortest of 15 repeats, which varies less than their median.
+
+    End states are timed eight in a row: a short action meets fewer slow moments than the long one that it is compared with.
+    """
+    rod = solve(KS, "rod")
+
+    def error(**options):
+        response = solve(KS, "tsm", Options(**options))
+        return max(difference(response, rod, KS, quantity) for quantity in ("force", "arc"))
+
+    assert error(element="exact") <= 1e-8
+    assert error(element="exact", integration_tolerance=1e-6) <= 1e-6
+    elements = next(n for n in range(2, 100, 2) if error(elements=n) <= 1e-6)
+    exact, ten, fine = (
+        to_structure(KS, elements=1, element="exact"), to_structure(KS, elements=10), to_structure(KS, elements=elements),
+    )  # fmt: skip
+    loose = tsm.Settings(integration_tolerance=1e-6)
+    path, end, path_loose, mixed, mixed_fine = bench.seconds(
+        15,
+        min,
+        exact_path=lambda: tsm.solve(exact, T),
+        exact_end_8_times=lambda: [tsm.solve(exact, T[-1:]) for _ in range(8)],
+        exact_loose=lambda: tsm.solve(exact, T, loose),
+        mixed_10_shortest=lambda: tsm.solve(ten, T),
+        mixed_fine=lambda: tsm.solve(fine, T),
+    )
+    bench.add(Gate("exact 1 over mixed 10, seconds", path / mixed, 2.5))
+    bench.add(Gate("exact 1, 50 load parameters over end state, seconds", 8 * path / end, 8, at_least=True))
+    ratio = mixed_fine / path_loose
+    bench.add(Gate(f"mixed {elements} over exact 1 at error 1e-6, seconds", ratio, 1, at_least=True))
+
+
+def scenes(bench):
+    """Double beam against KS."""
+    both = load_scene("double-beam")
+    one, two, depths = to_structure(KS, elements=20), to_structure(both, elements=10), np.array(both.times)
+    single, double = bench.seconds(
+        mixed_20_KS=lambda: tsm.solve(one, T), double_beam=lambda: tsm.solve(two, depths)
+    )
+    bench.add(Gate("double beam over KS with 20 elements, seconds", double / single, 4))
+
+
+PEAK = """
+import resource
+import numpy as np
+import fem_reference
+from comparisons.scene import load_scene
+from comparisons.models.solid import to_solid
+fem_reference.solve(to_solid(load_scene("ks-cantilever"), mesh=(1000, 20)), np.array([0.02]))
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+"""
+
+
+def memory(bench):
+    """Peak memory of one load parameter on 1000x20, 164,000 unknowns."""
+    done = subprocess.run([sys.executable, "-c", PEAK], check=True, capture_output=True, text=True)
+    bench.add(Gate("peak memory of 1000x20, GB", int(done.stdout) * 1024 / 1e9, 1.5))
 
 
 def comparison(bench):
@@ -98,4 +173,4 @@ def start_up(bench):
     bench.add(Gate("crossval solve without its solution over import numpy", rest, 3))
 
 
-PARTS = (equal_error, comparison, start_up)
+PARTS = (beams_against_solid, equal_error, exact_elements, scenes, memory, comparison, start_up)

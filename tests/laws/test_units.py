@@ -10,7 +10,7 @@ from tests.stated import ROOT
 
 @pytest.mark.parametrize(("model", "name"), [*cases(), ("mixed", "friction-12")])
 def test_an_answer_does_not_depend_on_the_units(model: str, name: str) -> None:
-    """Of a contact that turns a beam without bending it the rate of the force is round-off."""
+    """In ``friction-12`` a contact turns a beam without bending it, and the rate of its force is round-off."""
     own = scene(name)
     for change in (Change(length=1e3, force=1e-3), Change(length=1e-5, force=1e-7)):
         other = change.scene(own)

@@ -77,7 +77,9 @@ def hysteresis():
 def by_the_rod(name):
     """Values of one rod by collocation, of several by the referee; both share nothing with the models that are judged."""
     problem = PROBLEMS[name]
-    return list(readings(Answers(problem, replace(problem.trials[0], model="rod", options=Options()))))
+    return list(
+        readings(Answers(problem=problem, trial=replace(problem.trials[0], model="rod", options=Options())))
+    )
 
 
 def elastica_of_ks():

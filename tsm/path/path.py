@@ -39,9 +39,9 @@ from its prediction where no tangent is usable. With 2 instead of 1, one random 
 _PROMISED, _FIRST, _SHORT = 0.8, 0.4, 0.3
 """Longest step at the last speed, in the same measure, and part of both bounds that its prediction may reach; longest from
 a state before which none is known; longest that is tried without a look at its prediction. Most longer ones would be refused."""
-_LEAST, _MOST, _NEAR = 6, 9, 2
+_LEAST, _MOST, _NEAR, _VALUES = 6, 9, 2, 5
 """Data of the prediction, a polynomial through values of the last states, and slopes by their own tangents: at least
-and at most so many, two more after every prediction from which no more than two iterations led to equilibrium."""
+and at most so many, two more after every prediction from which no more than two iterations led to equilibrium; where no tangent is usable, the last."""
 SHORTEST = 1e-6
 """Step of the load parameter below which the tangent alone predicts: the others would be round-off."""
 FOLD = 100.0
@@ -77,11 +77,11 @@ class Track:
         The path has a kink where a contact passes from element to element, and one state before it serves where there is no other.
         """
         kept: list[_Known] = []
-        data = 2  # value and slope of the point
+        data, most = 2, _VALUES if point.on_chords else self.memory  # 2: value and slope of the point
         for known in reversed(self.history):
             data += 1 if known.slope is None else 2
             passed = _owners(known.state) != _owners(point.state) and not point.on_chords
-            if data > self.memory or (kept and passed):
+            if data > most or (kept and passed):
                 break
             if known.state.load_parameter < point.t:
                 kept.append(known)
@@ -191,7 +191,8 @@ def _through(model: Model, history: list[_Known], t: float) -> State:
         touch and _touch(pair, touch, *placed[pair.slots])
         for pair, touch in zip(model.pairs, last.touches, strict=True)
     )
-    return owned(model, replace(last, load_parameter=t, q=q, touches=touches, profile=profile))
+    with np.errstate(all="ignore"):  # a far prediction may be anywhere
+        return owned(model, replace(last, load_parameter=t, q=q, touches=touches, profile=profile))
 
 
 def _touch(pair: PairModel, last: Touch, *own: float) -> Touch:

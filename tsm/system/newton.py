@@ -31,6 +31,8 @@ _NEAR = 1.0
 """Residual below which the number of Gauss nodes may be raised."""
 _CARRIED = 16 * float(np.finfo(float).eps)
 """Round-off of the forces that beams carry. It exceeds the tolerance in slender ones that are taut."""
+_FALLS = 0.1
+"""A residual below this part of the last one is not round-off yet."""
 _PAST = 0.05
 """Part of an element's length by which a contact may lie past a node to which the iteration sent it back and forth: the tangents of two
 elements differ there, and between them neither has an equilibrium within its ends."""
@@ -59,8 +61,8 @@ class Newton:
 
     The norm is the largest scaled entry of the residual: forces over ``EI/L^2``, moments over ``EI/L``,
     positions over L/1000. L is the longest beam, so that no scale can vanish. An iteration has converged if
-    its norm is below `tolerance`. It has also converged if the last two norms are below the round-off of the
-    residual, ``4 eps (EA L/l0 + EI/l0^2)`` in closed form, ``4 eps`` of the node positions where they are
+    its norm is below `tolerance`. It has also converged if the norm falls no more and the last two are below the
+    round-off of the residual, ``4 eps (EA L/l0 + EI/l0^2)`` in closed form, ``4 eps`` of the node positions where they are
     equations, ``4 eps k_c L`` for a contact of stiffness k_c, or the round-off of the forces that the beams carry.
     """
 
@@ -202,9 +204,10 @@ class Newton:
         return rods.refined(state, system.groups[rods.number], self.integration_tolerance)
 
     def converged(self, residuals: list[float], system: Linearisation) -> bool:
-        """Whether the last residual is small enough, or the last two are round-off."""
+        """Whether the last residual is small enough, or the last two are round-off and fall no more."""
         small, larger = residuals[-1] <= self.tolerance, max(residuals[-2:])
-        if small or len(residuals) == 1 or larger > max(self.noise, _CRITICAL):
+        falls = residuals[-1] < _FALLS * larger
+        if small or len(residuals) == 1 or falls or larger > max(self.noise, _CRITICAL):
             return small
         carried = max(float(np.abs(forces.ends[[0, 1, 3, 4]]).max()) for forces in system.groups)
         return larger <= max(self.noise, max(system.noise, _CARRIED * carried) / self.model.least_force)

@@ -1,7 +1,7 @@
 """What is read from the answers to a problem, and what no answer has as a number: limits, orders."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import partial
 from itertools import product
 from typing import Any
@@ -13,6 +13,7 @@ from comparisons.answer import Array, Response
 from comparisons.answer.axis import STATIONS, axes_at_stations
 from comparisons.answer.errors import difference
 from comparisons.answer.table import table
+from comparisons.frozen import Frozen
 from comparisons.models import ROD, SOLID, solve
 from comparisons.models.model import Options
 from comparisons.models.solid import to_solid
@@ -32,8 +33,7 @@ class StoppedError(RuntimeError):
     """A solution that stopped before it had an answer: its status and sentence."""
 
 
-@dataclass(frozen=True)
-class Answers:
+class Answers(Frozen):
     """A model at a problem, and the lines that it adds to the picture."""
 
     problem: Problem

@@ -1,7 +1,6 @@
 """The manual: judgements on the answers, a picture for each problem, and what is found as a page, Markdown, numbers and JUnit checks."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 from itertools import chain
 from math import inf, nan
@@ -12,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from comparisons import models as registry
+from comparisons.frozen import Frozen
 from comparisons.models.shared import kept
 from comparisons.output import Report, Row, markdown
 from comparisons.report import palette
@@ -45,8 +45,7 @@ STYLES: dict[str, dict[str, Any]] = {
 """Styles of the lines that no model computed."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Judgement:
+class Judgement(Frozen):
     """The answer of a model to a problem: its findings, one for each quantity."""
 
     problem: Problem
@@ -84,7 +83,7 @@ class Judgement:
 
 def judged(problem: Problem) -> list[Judgement]:
     """Return the judgements on all models of a problem; a measure without a value for every quantity is a `ValueError`."""
-    return [_judged(Answers(problem, trial)) for trial in problem.trials]
+    return [_judged(Answers(problem=problem, trial=trial)) for trial in problem.trials]
 
 
 def _judged(answers: Answers) -> Judgement:

@@ -2,13 +2,13 @@
 
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import Any
 
 from comparisons.answer import Response
+from comparisons.frozen import Frozen
 from comparisons.models import find
 from comparisons.output import Row
 from comparisons.report import palette
@@ -23,8 +23,7 @@ Numbers = Mapping[str, Any]
 """What bounds and sentences of ``claims.toml`` name, much of it by formulation, division or event."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Study:
+class Study(Frozen):
     """What is found for a figure: its scenes, rows and numbers, pictures, and moving shapes for the page.
 
     `tables` and `pictures` go by the names of their files; a picture draws to the paths that it is given.

@@ -2,13 +2,14 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from comparisons.frozen import Frozen
 from comparisons.output import Report, Row, markdown
 from comparisons.report.brief import Brief
 from comparisons.report.pages import Section, picture, table
@@ -45,8 +46,7 @@ Bounds = Mapping[str, tuple[float, float]]
 """The least and the greatest value of expressions; of a list, of all its values."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Claim:
+class Claim(Frozen):
     """One claim, however often the paper makes it: every place in [P] where it stands, with what is said there.
 
     It holds within the bounds `holds` together, or in each of the `readings` of what the paper does not say; in size within `in_size`, too.

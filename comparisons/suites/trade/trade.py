@@ -1,13 +1,14 @@
 """The trade-off of a scene: cost and errors of every setting, the cheapest ones, fronts and orders."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import nan
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from comparisons.frozen import Frozen
 from comparisons.models import MODELS, SOLID, TSM
 from comparisons.scene import Scene
 from comparisons.suite import Row
@@ -86,8 +87,7 @@ ABOVE = 3.0
 """Least error in a fit, over the uncertainty of the reference."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Trade:
+class Trade(Frozen):
     """The sweep: rows with errors against the reference, and against the limit of their model if known."""
 
     scene: Scene
