@@ -6,7 +6,7 @@ import pytest
 import tsm
 from comparisons.exact import rod_under_pin
 from tests.oracles.shooting import RIGID
-from tests.tsm.structures import KS, KS_PATH, cantilever, steps
+from tests.tsm.structures import KS, KS_PATH, cantilever, raised, steps
 
 PAIR = "p0->b"
 STIFF = tsm.Section(EA=1e12, GA=1e12, EI=1.0)
@@ -77,6 +77,17 @@ def test_work_is_stored_or_dissipated(name):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("EA", [1e9, 1e10])
+def test_a_stick_that_ends_within_round_off_of_its_force_is_a_slip(EA):
+    """Lifted square to its axis a rod slips when ``EA t^2`` is ``mu t``, at a force that is round-off in a slender one."""
+    section = tsm.Section(EA=EA, GA=EA / 3, EI=1.0)
+    result = solved(rubbed(0.6, *raised(0.5, 0.02), section=section), 2)
+    assert result.status is tsm.Status.COMPLETED
+    assert [kind for kind, _ in turns(result)] == [SLIP]
+    # that of a rod whose stretch is a thousand times as large; it moves the force by less
+    assert result.contacts[PAIR].force[-1] == pytest.approx(0.554506, abs=1e-6)
+
+
 def test_arc_length_control_follows_a_slip_and_ends_where_it_sticks():
     traced = tsm.trace(rubbed(0.3), arc_length=0.02, steps=400, throw=False)
     assert traced.status is tsm.Status.CONTACT_CHANGED

@@ -28,8 +28,9 @@ from tsm.system.system import Drive
 
 _LOCATED = 1e-13
 """Tolerance of the search: width of the bracket of the critical load parameter, and the singular value over that at the ends of the step."""
-_BESIDE = 1e-7
-"""Singular value, over the largest entry of the tangent, of a point that stands for a bifurcation where no nearer one is found."""
+_BESIDE = 1e-6
+"""Singular value, over that at the ends of the step, of a point that stands for a bifurcation where no nearer one is found. An imperfect
+bifurcation has no such point: its path turns off before."""
 _LEAST = 1e-9
 """Singular value of the equations of rigid motions, in coordinates over the structure's size, that counts as zero."""
 _SHIFT = 1e-6
@@ -85,14 +86,15 @@ def locate_bifurcation(
         return size if point.index == before.index else -size, point
 
     ends = (before.t, nearest[1]), (after.t, evaluate(after)[0])
-    apart, small = _LOCATED * max(1.0, after.t), _LOCATED * max(abs(g) for _, g in ends)
+    apart, largest = _LOCATED * max(1.0, after.t), max(abs(g) for _, g in ends)
+    small = _LOCATED * largest
     if nearest[1] <= small:
         return nearest[0]
     try:
         root = find_root(lambda t: evaluate(solve(t).sharpened()), *ends, small=small, apart=apart)
     except RefusedError:
         # beside a singular tangent, the residual that Newton's method leaves is a large motion along the mode
-        root = nearest[0] if nearest[1] <= _BESIDE else None
+        root = nearest[0] if nearest[1] <= _BESIDE * largest else None
     if root is None:
         raise RefusedError
     return root

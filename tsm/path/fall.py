@@ -18,8 +18,8 @@ from tsm.elements.properties import Array
 from tsm.model.model import Model
 from tsm.model.state import State
 from tsm.path.critical import mode_shape
-from tsm.path.friction import grips
-from tsm.path.margins import Margin, least_push
+from tsm.path.friction import grips, least_push
+from tsm.path.margins import Margin
 from tsm.path.step import Step
 from tsm.statement.status import Status, StopError
 from tsm.system.equilibrium import Equilibrium
@@ -86,7 +86,7 @@ class Fall:
                 raise StopError(Status.FALLING)
             state, energy = point.state, self.newton.potential(point.state)
             closed = (k for k, touch in enumerate(state.touches) if touch is not None)
-            pushes = ((normal_force(point, k) / least_push(self.newton, k), k) for k in closed)
+            pushes = ((normal_force(point, k) / least_push(point, k), k) for k in closed)
             least, k = min(pushes, default=(0.0, -1))
             if least >= -1.0:
                 return point, began - energy

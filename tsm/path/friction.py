@@ -13,7 +13,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import islice, product
 
-from tsm.contact.events import traction
+import numpy as np
+
+from tsm.contact.events import ROUND_OFF, traction
+from tsm.model import scales
 from tsm.model.model import Model
 from tsm.model.state import UNDECIDED, Grip, State, Traction, touch_of
 from tsm.statement.status import Status, StopError
@@ -21,11 +24,11 @@ from tsm.system.equilibrium import Equilibrium, Rates
 from tsm.system.system import Drive
 
 _EDGE = 1e-9
-"""Distance of a force from the edge of the cone, over ``EI/L^2``, that counts as zero."""
+"""Distance of a force from the edge of the cone, over ``EI/L^2``, that counts as zero, unless round-off is more."""
 _NOISE = 1e-13
 """Rate of a force, over the largest EA, that is round-off: that of a contact which turns a beam without bending it."""
 _STILL = 1e-9
-"""Slip rate, in longest beams per whole load, that counts as zero."""
+"""Slip rate, in longest beams per whole load, that counts as zero, unless no other state is admissible."""
 _FLAT = 1e-6
 """Rate at which a force leaves its cone, in ``EI/L^2`` per whole load, that counts as zero. Where a slip ends, the
 force moves along the cone. A slip at the rate `_STILL` moves the force of a stick by up to EA times this
@@ -44,6 +47,25 @@ def cone(point: Equilibrium, k: int) -> float:
 
 def _inside(model: Model, k: int, here: Traction) -> float:
     return model.pairs[k].pair.friction * here.normal - abs(here.tangential)
+
+
+def least_push(point: Equilibrium, k: int) -> float:
+    """Force of closed pair k that is round-off: of the touched beam, which may be far softer than others, unless a beam's end touches it."""
+    newton, model, pair = point.newton, point.model, point.model.pairs[k]
+    beam, section = pair.target.beam, pair.target.beam.section
+    own = max(ROUND_OFF, newton.tolerance) * section.EI / beam.length**2
+    # that of positions is a stretch of the beam
+    places = max(beam.elements, float(np.abs(model.coordinates).max()) / beam.length)
+    noise = scales.ROUND_OFF * section.EA * places
+    return float(max(own, noise if pair.node < 0 else newton.noise * model.least_force))
+
+
+def leaves_cone(point: Equilibrium, k: int, drive: Drive) -> bool:
+    """Whether the force of closed pair k, which sticks on the edge of its cone but for round-off, leaves it by its rate."""
+    by = point.rates(drive)
+    return by is not None and not _lasts(
+        point, by, k, grips(point.state)[k], traction(point, k), _flat(point.model)[1]
+    )
 
 
 def slip_rate(point: Equilibrium, rates: Rates, k: int) -> float:
@@ -66,28 +88,31 @@ def regripped(point: Equilibrium, drive: Drive, last: State) -> Equilibrium:
     here = {k: traction(point, k) for k in now}
     # a contact that has just closed has a force of round-off, which may be considerable near a support
     here |= {k: here[k]._replace(tangential=0.0, normal=0.0) for k, grip in now.items() if grip == UNDECIDED}
-    # the round-off of a slip rate is a force in a stiff beam, so more is allowed where a slip ends, and where nothing
-    # else is admissible
-    flat, more = _FLAT * model.force_scale, _STILL * _stiffest(model)
+    flat = _flat(model)
     ended = {k for k, grip in grips(last).items() if grip.slip and k in now and not now[k].slip}
-    choices = (_choices(model, k, grip, here[k]) for k, grip in now.items())
+    choices = (_choices(point, k, grip, here[k]) for k, grip in now.items())
     every = [dict(zip(now, chosen, strict=True)) for chosen in islice(product(*choices), _MOST)]
-    for least in (flat, flat + more):
-        leaving = {k: flat + more if k in ended else least for k in here}
+    for least, still in zip(flat, (_STILL * model.length, 0.0), strict=True):
+        leaving = {k: flat[1] if k in ended else least for k in here}
         for chosen in every:
-            going = _going_on(point, chosen, drive, here, leaving)
+            going = _going_on(point, chosen, drive, here, leaving, still)
             if going is None:
                 continue
-            if any(_going_on(point, other, drive, here, leaving) for other in _reversed(model, chosen, here)):
+            if any(
+                _going_on(point, other, drive, here, leaving, still)
+                for other in _reversed(point, chosen, here)
+            ):
                 raise StopError(Status.TWO_SLIPS)
             return going
     raise StopError(Status.JAMMED)
 
 
 def turned(point: Equilibrium, k: int) -> Grip:
-    """State of pair k that sticks where it slipped, or slips the way of its force where it stuck."""
+    """State of pair k that sticks where it slipped, or slips the way of its force where it stuck, which round-off does not have."""
     here = traction(point, k)
-    return Grip(0, here.place) if grips(point.state)[k].slip else Grip(here.way, None)
+    if grips(point.state)[k].slip:
+        return Grip(0, here.place)
+    return UNDECIDED if _idle(point, k, here) else Grip(here.way, None)
 
 
 def grips(state: State) -> Grips:
@@ -109,47 +134,70 @@ def _stiffest(model: Model) -> float:
     return max(beam.section.EA for beam in model.structure.beams)
 
 
-def _idle(model: Model, here: Traction) -> bool:
-    return math.hypot(here.tangential, here.normal) <= _EDGE * model.force_scale
+def _flat(model: Model) -> tuple[float, float]:
+    """Rates at which a force may leave its cone. More is allowed where a slip ends, and where nothing else is admissible.
+
+    The round-off of a slip rate is a force in a stiff beam.
+    """
+    flat = _FLAT * model.force_scale
+    return flat, flat + _STILL * _stiffest(model)
 
 
-def _choices(model: Model, k: int, grip: Grip, here: Traction) -> list[Grip]:
+def _edge(point: Equilibrium, k: int) -> float:
+    return max(_EDGE * point.model.force_scale, least_push(point, k))
+
+
+def _idle(point: Equilibrium, k: int, here: Traction) -> bool:
+    return math.hypot(here.tangential, here.normal) <= _edge(point, k)
+
+
+def _choices(point: Equilibrium, k: int, grip: Grip, here: Traction) -> list[Grip]:
     """States in which a contact may go on, the likely one first. A contact without force that opens is undecided up to there."""
     stick = grip if grip.held is not None else Grip(0, here.place)
-    if _idle(model, here):
+    if _idle(point, k, here):
         return [stick, Grip(1, None), Grip(-1, None), UNDECIDED]
-    if _inside(model, k, here) > _EDGE * model.force_scale:
+    if _inside(point.model, k, here) > _edge(point, k):
         return [stick]
     slip = Grip(here.way, None)
     return [slip, stick] if grip.slip else [stick, slip]
 
 
-def _reversed(model: Model, chosen: Grips, here: dict[int, Traction]) -> Iterator[Grips]:
+def _reversed(point: Equilibrium, chosen: Grips, here: dict[int, Traction]) -> Iterator[Grips]:
     """The same states with the slip of one contact without force reversed."""
     for k, grip in chosen.items():
-        if grip.slip and _idle(model, here[k]):
+        if grip.slip and _idle(point, k, here[k]):
             yield {**chosen, k: Grip(-grip.slip, None)}
 
 
 def _going_on(
-    point: Equilibrium, chosen: Grips, drive: Drive, here: dict[int, Traction], leaving: dict[int, float]
+    point: Equilibrium,
+    chosen: Grips,
+    drive: Drive,
+    here: dict[int, Traction],
+    leaving: dict[int, float],
+    still: float,
 ) -> Equilibrium | None:
-    """Equilibrium with contacts in the chosen states, if they can go on; forces may leave their cones at the rates `leaving`."""
+    """Equilibrium with contacts in the chosen states, if they can go on.
+
+    Forces may leave their cones at the rates `leaving`, and contacts slip faster than `still`.
+    """
     state = with_grips(point.state, chosen)
     going = point if state.touches == point.state.touches else point.with_state(state)
     by = going.rates(drive)
-    lasting = by and all(_lasts(going, by, k, grip, here[k], leaving[k]) for k, grip in chosen.items())
+    lasting = by and all(_lasts(going, by, k, grip, here[k], leaving[k], still) for k, grip in chosen.items())
     return going if lasting else None
 
 
-def _lasts(point: Equilibrium, by: Rates, k: int, grip: Grip, here: Traction, leaving: float) -> bool:
+def _lasts(
+    point: Equilibrium, by: Rates, k: int, grip: Grip, here: Traction, leaving: float, still: float = 0.0
+) -> bool:
     """Whether a contact can go on in its state."""
-    model, idle = point.model, _idle(point.model, here)
+    model, idle = point.model, _idle(point, k, here)
     if idle and not _grows(model, k, here, by, grip):
         return False
     if grip.slip:
-        return grip.slip * slip_rate(point, by, k) > _STILL * model.length
-    if idle or cone(point, k) > _EDGE * model.force_scale:
+        return grip.slip * slip_rate(point, by, k) > still
+    if idle or cone(point, k) > _edge(point, k):
         return True
     return here.way * _row_rate(point, by, k, here.way) <= leaving
 

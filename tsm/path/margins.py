@@ -20,12 +20,10 @@ from tsm.contact.ends import clearance
 from tsm.contact.events import ROUND_OFF, EventKind, normal_force, over
 from tsm.contact.root import find_root
 from tsm.elements.properties import Array
-from tsm.model import scales
 from tsm.model.state import UNDECIDED, Grip, State, touch_of
-from tsm.path.friction import cone, slip_rate, turned, with_grips
+from tsm.path.friction import cone, least_push, leaves_cone, slip_rate, turned, with_grips
 from tsm.statement.status import RefusedError, Status, StopError
 from tsm.system.equilibrium import Equilibrium
-from tsm.system.newton import Newton
 from tsm.system.system import Drive
 
 _GRIPS = frozenset({EventKind.SLIP, EventKind.STICK})
@@ -84,7 +82,7 @@ def _inside(point: Equilibrium, k: int, _drive: Drive) -> float:
 
 
 def _push(point: Equilibrium, k: int, _drive: Drive) -> float:
-    return normal_force(point, k) * ROUND_OFF / least_push(point.newton, k)
+    return normal_force(point, k) * ROUND_OFF / least_push(point, k)
 
 
 def _slip_rate(point: Equilibrium, k: int, drive: Drive) -> float:
@@ -143,7 +141,7 @@ WATCHES = (
     Watch(
         EventKind.SLIP,
         lambda point, k: _grip(point, k).held is not None,
-        lambda point, k, _: cone(point, k) / point.model.force_scale,
+        lambda point, k, _: cone(point, k) / max(point.model.force_scale, least_push(point, k) / ROUND_OFF),
         _turn,
     ),
     Watch(EventKind.LINE_CONTACT, lambda point, k: _closed(point, k) and _thick(point, k), _roundness, _end),
@@ -159,15 +157,6 @@ def margins(point: Equilibrium, drive: Drive) -> list[Margin]:
         awaited = ((watch, k) for k in numbers for watch in WATCHES if watch.awaited(point, k))
         point.margins[drive] = [Margin(watch.kind, k, watch.margin(point, k, drive)) for watch, k in awaited]
     return point.margins[drive]
-
-
-def least_push(newton: Newton, k: int) -> float:
-    """Tensile contact force that is round-off: of the touched beam, which may be far softer than others, unless a beam's end touches it."""
-    pair = newton.model.pairs[k]
-    beam, section = pair.target.beam, pair.target.beam.section
-    own = max(ROUND_OFF, newton.tolerance) * section.EI / beam.length**2
-    noise = scales.ROUND_OFF * section.EA * beam.elements
-    return max(own, noise if pair.node < 0 else newton.noise * newton.model.least_force)
 
 
 class Search(NamedTuple):
@@ -206,6 +195,9 @@ class Search(NamedTuple):
         before = self.margins[n]
         if before.value <= ROUND_OFF:
             if before.kind in _GRIPS:
+                ahead = self.last.newton.assembler.drive(self.last.t, self.goal)
+                if before.kind is EventKind.SLIP and leaves_cone(self.last, before.pair, ahead):
+                    return self.last
                 raise RefusedError(Status.JAMMED)
             ahead = self._ahead()
             if ahead and ahead[n].value > ROUND_OFF:
