@@ -153,8 +153,7 @@ def test_the_bending_that_theory_allows_for_has_no_units():
 
 
 def test_every_place_is_there_once():
-    """A pin an ulp beside a node is not on it; lengths of elements differ by the ratio; the quick cells are a part; but for the softest
-    penalties no answer may be off by much."""
+    """A pin an ulp beside a node is not on it; lengths of elements differ by the ratio; two soft penalties alone allow much."""
     few, cells = matrix(quick=True), matrix()
     places = {(cell.axis, cell.row, cell.column) for cell in cells}
     assert len(places) == len(cells) > len(few) / 0.6
