@@ -1,4 +1,4 @@
-"""Comparisons that leave something out, stop, or find models on different branches; `show/pages` has a whole one."""
+"""Comparisons that leave something out, stop, or find models on different branches; `report/pages` has a whole one."""
 
 import json
 from dataclasses import replace
