@@ -122,10 +122,10 @@ def _speed(pair: int, direction: int, last: Accepted, at: Accepted) -> float:
 
 
 def clearance(state: State) -> tuple[float, int]:
-    """Least clearance ``1 - R kappa`` of a closed contact with a round pin, positive before they touch along a line, and its index."""
+    """Least clearance ``1 - R kappa`` of a closed contact, positive before it touches a round pin along a line, and its index."""
     found = [
         (1.0 - touch.pair.radius * touch.pair.contact.sign * touch.at.bend / touch.at.stretch**2, number)
         for number, touch in enumerate(state.touches)
-        if touch.closed and touch.pair.radius > 0
+        if touch.closed
     ]
     return min(found, default=(np.inf, -1))

@@ -19,14 +19,6 @@ KS = built_in_scenes()["ks-cantilever"].replace("load_parameters = 50", "load_pa
 BIN = Path(sys.executable).parent
 
 
-@pytest.fixture
-def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A scene of four load parameters, alone in the current folder."""
-    monkeypatch.chdir(tmp_path)
-    Path("my.toml").write_text(KS)
-    return tmp_path
-
-
 def run(line: str) -> int:
     return crossval(*line.split())
 
@@ -44,7 +36,8 @@ def test_the_table_of_commands_is_whole_and_its_old_names_are_gone():
         assert {*re.findall(r"crossval ([a-z]+)", line)} <= commands.keys()
 
 
-def test_solve_to_an_accuracy(scene, capsys, monkeypatch):
+def test_solve_to_an_accuracy(in_folder, capsys, monkeypatch):
+    Path("my.toml").write_text(KS)
     monkeypatch.setenv("COLUMNS", "150")
     assert run("solve my.toml --accuracy 1e-3") == 0
     out, err = capsys.readouterr()

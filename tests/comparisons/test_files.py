@@ -99,8 +99,7 @@ INTO_A_FOLDER = {
 
 
 @pytest.fixture
-def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    monkeypatch.chdir(tmp_path)
+def scene(in_folder: Path) -> str:
     text = to_toml(replace(load_scene("tip-load"), load_parameters=2))
     Path("s.toml").write_text(text)
     return text

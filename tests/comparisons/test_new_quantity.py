@@ -27,8 +27,7 @@ ROW = Quantity(
 
 
 @pytest.fixture
-def scene(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def scene(in_folder, monkeypatch):
     monkeypatch.setitem(QUANTITIES, "rise", ROW)
     monkeypatch.setattr(compare, "RUNS", (compare.MIXED, compare.ROD))
     Path("short.toml").write_text(to_toml(replace(load_scene("ks-cantilever"), load_parameters=2)))

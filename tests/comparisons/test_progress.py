@@ -1,4 +1,4 @@
-"""What a person sees while a scene is solved, and what a shell completes."""
+"""What a person sees while a scene is solved."""
 
 import io
 import re

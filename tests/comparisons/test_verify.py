@@ -1,4 +1,4 @@
-"""The contract of checks: each refuses an answer that is spoiled for it; and what is right or wrong as a whole."""
+"""Spoiled answers: each fault is seen by its quantity, and refused by its check; and what is right or wrong as a whole."""
 
 import re
 from collections.abc import Callable
@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from comparisons.answer import Response
+from comparisons.answer.errors import errors
+from comparisons.answer.quantities import KEPT
 from comparisons.models import solve
 from comparisons.models.model import Options
 from comparisons.models.verify import CHECK_FAILED, CHECKS, verified
@@ -45,12 +47,12 @@ def opened(response: Response) -> Response:
     return contact(response, arc_position=arc, force=force)
 
 
-KEPT = replace(SCENE, contacts=(replace(SCENE.contacts[0], keep=True),))
+PERSISTENT = replace(SCENE, contacts=(replace(SCENE.contacts[0], keep=True),))
 OVER = replace(SCENE, pins=(PinSpec(name="pin", path=((1.0, -0.2), (1.005, -0.005)), radius=0.02),))
 BREAKS: dict[str, tuple[Change, str, Scene]] = {
     "load parameters": (lambda r: replace(r, load_parameter=r.load_parameter[:3]), "3 of 5 load parameters reached", SCENE),
     "finite numbers": (lambda r: replace(r, tips={BEAM: at(r.tips[BEAM], 2, np.inf)}), "tip of .* is not finite", SCENE),
-    "contacts that persist": (opened, "must persist and is open at load parameter 0.6", KEPT),
+    "contacts that persist": (opened, "must persist and is open at load parameter 0.6", PERSISTENT),
     "clear ends": (without_force, "pin overlaps the end of beam cantilever at load parameter 1", OVER),
     "sides of beams": (without_force, "open and its node goes through the beam up to load parameter 0.2", SCENE),
     "balance": (lambda r: support(r, force=-r.supports[CLAMP].force), "support moments do not balance", SCENE),
@@ -137,3 +139,51 @@ def test_two_pins_balance_by_the_vectors_of_their_forces():
         for vector in (history.vector * (1 + 1e-4), None):
             forged = replace(response, contacts={**response.contacts, pair: replace(history, vector=vector)})
             assert "support reactions" in verified(forged, scene).message
+
+
+def shifted(good: Response, way: np.ndarray) -> Response:
+    def line(beam: str, k: int) -> tuple[np.ndarray, np.ndarray]:
+        arc, place = good.axis_line(beam, k)
+        return arc, place + way
+
+    return replace(good, axis_line=line)
+
+
+def changed(good: Response, name: str) -> tuple[Response, float]:
+    """A response with a fault that one quantity sees, and its error on a beam twice as long."""
+    own, held, way = good.contacts[PAIR], good.supports[CLAMP].moment, np.array([0.03, 0.04])
+    return {
+        "force": (contact(good, force=own.force + 0.01 * own.force.max()), 0.01),
+        "arc": (contact(good, arc_position=own.arc_position - 0.03), 0.015),
+        "moment": (support(good, moment=held + 0.01 * np.abs(held).max()), 0.01),
+        "friction": (
+            replace(good, material_force={BEAM: good.material_force[BEAM] + 0.02 * own.force}),
+            0.02,
+        ),
+        "tip": (replace(good, tips={BEAM: good.tips[BEAM] + way}), 0.025),
+        "shape": (shifted(good, way), 0.025),
+    }[name]
+
+
+LONG = replace(SCENE, beams=(replace(SCENE.beams[0], end=(2.0, 0.0)),))
+
+
+@pytest.mark.parametrize("name", ["force", "arc", "moment", "friction", "tip", "shape"])
+def test_every_quantity_sees_its_own_fault(name, good):
+    """Relative to the largest of the reference, or to the length; the stress, which rods have not, has the solid's own tests."""
+    response, error = changed(good, name)
+    found = errors(response, good, LONG)
+    assert found["path"].keys() == set(KEPT)
+    seen = {"shape", "shape_mean"} if name == "shape" else {name}
+    for quantity, value in found["path"].items():
+        assert value == pytest.approx(error if quantity in seen else 0.0, abs=1e-9), quantity
+    assert found["end"][name] == pytest.approx(error)
+
+
+def test_errors_of_a_stopped_run_are_unknown_and_of_a_contact_lost_alone_infinite(good):
+    stopped = replace(good, load_parameter=good.load_parameter[:2])
+    assert np.isnan(errors(stopped, good, SCENE)["path"]["force"])
+    lost = replace(contact(good, arc_position=np.full(5, np.nan)), material_force={})
+    for own, true in ((lost, good), (good, lost)):
+        found = errors(own, true, SCENE)["path"]
+        assert found["arc"] == found["friction"] == np.inf

@@ -56,7 +56,6 @@ class Row:
     ended: str
     response: Response | None = field(default=None, repr=False)
     certificate: str = ""
-    off: float = math.nan
     certified: bool = False
     lost: bool = False
     """Whether the referee finds no equilibrium at all near the answer."""
@@ -149,7 +148,7 @@ def run(scene: Scene, model: str, *, every: bool = True) -> Row:
     sound = found.certified or found.reason.startswith("nothing to judge") or steep
     line = found.line() if near or not sound else f"FAR: off by {off:.2g}, allowed {ALLOWED[model]:g}"
     lost = any(item.verdict is Verdict.NOT_AN_EQUILIBRIUM and item.exact is None for item in found.judged)
-    return replace(row, certificate=line, off=off, certified=sound and near, lost=lost)
+    return replace(row, certificate=line, certified=sound and near, lost=lost)
 
 
 def _off(scene: Scene, item: Judgement) -> float:

@@ -26,15 +26,14 @@ from tests.oracles.newton import advanced
 class Coupled(NamedTuple):
     """States of the coupled stage at `s` depths of the pin, nan at depths outside of it, and where it begins and ends.
 
-    Forces of the pin on the first rod and of its tip on the second (s, 2), arc positions of both contacts, moments of both clamps (s, 2),
-    positive from x towards y, and the place of the first rod's tip (s, 2).
+    Forces of the pin on the first rod and of its tip on the second (s, 2), arc positions of both contacts, and the place of the first
+    rod's tip (s, 2).
     """
 
     pin_force: Array
     tip_force: Array
     pin_arc: Array
     tip_arc: Array
-    clamp_moments: Array
     tip: Array
     touch_depth: float
     end_depth: float
@@ -97,7 +96,7 @@ class Pair:
 
         end = float(brentq(lambda depth: at(depth)[3] - 1.0, path[-2][0], path[-1][0] - 1e-9, xtol=1e-14))
         rows = [at(float(d)) if touch <= d < end else np.full(8, np.nan) for d in np.asarray(depths)]
-        moment, nx, ny, s, other, Tx, Ty, S = np.array(rows).reshape(-1, 8).T
+        _, nx, ny, s, other, Tx, Ty, S = np.array(rows).reshape(-1, 8).T
         under = integrate(Section(0 * S, self.spacing + 0 * S, 0 * S, other), (Tx, Ty), S, self.flexibility)
         tip_force = self.EI * np.stack([Tx, Ty], axis=1)
         return Coupled(
@@ -105,7 +104,6 @@ class Pair:
             tip_force=tip_force,
             pin_arc=s,
             tip_arc=S,
-            clamp_moments=-self.EI * np.stack([moment, other], axis=1),
             tip=np.stack([under.x, under.y], axis=1),
             touch_depth=touch,
             end_depth=end,

@@ -12,7 +12,6 @@ SECTION = tsm.Section(EA=100.0, GA=40.0, EI=1.0)
 KS = tsm.Section.rectangle(width=0.02, height=0.02, youngs_modulus=2.1e4, shear_modulus=2.1e4 / 2.6)
 """Section of the cantilever of Konyukhov and Schweizerhof."""
 KS_PATH = ((1.0, 0.0), (0.0, 2 / np.pi))
-STIFF = tsm.Section(EA=1e10, GA=1e10, EI=1.0)
 CLAMP = tsm.Support(beam="b", end="start")
 
 

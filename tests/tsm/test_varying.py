@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from scipy.special import jn_zeros, jv
 
 import tsm
-from tests.tsm.structures import CLAMP, beam, cantilever, raised
+from tests.tsm.structures import CLAMP, beam, cantilever, hook, raised
 
 
 @pytest.mark.parametrize(("element", "elements", "apart"), [("exact", 1, 1e-6), ("mixed", 8, 1e-4)])
@@ -25,6 +25,14 @@ def test_heavy_column_gains_a_negative_eigenvalue_at_every_critical_weight(eleme
             load = tsm.LineLoad(beam="b", force=((0.0, -9 / 4 * zero**2 * factor),))
             column = tsm.Structure(beams=(rod,), supports=(CLAMP,), line_loads=(load,))
             assert tsm.solve(column, [1.0], tsm.Settings(branch="primary")).index.tolist() == [expected]
+
+
+@pytest.mark.parametrize(("part", "end"), [(0.5, (-0.2, 0.8)), (0.97, (-0.2, 0.5))])
+def test_a_pin_that_is_led_behind_the_clamp_meets_a_limit_point(part, end):
+    """The index changes where the path turns back, and not before, which would be a bifurcation."""
+    pin = tsm.Pin(name="p", path=(hook().beams[0].point(part), end))
+    structure = hook(pins=(pin,), contacts=(tsm.ContactPair(node="p", beam="b"),))
+    assert tsm.solve(structure, [1.0], throw=False).status is tsm.Status.LIMIT_POINT
 
 
 def test_what_a_snap_releases_counts_the_work_of_loads_along_a_beam():

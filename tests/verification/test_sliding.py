@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 
 import tsm
-from comparisons.answer.errors import errors
 from comparisons.exact import rod_under_pin
 from comparisons.models import solve
-from comparisons.models.model import Options
 from comparisons.models.tsm import to_structure
 from comparisons.scene import load_scene
 from tests.oracles.coupled import pair_of
@@ -64,23 +62,6 @@ def places(elements, length, extra=()):
 def mixed(path, *, section="4.1", elements=18, element="mixed"):
     stiffness, length = SECTIONS[section]
     return cantilever(tuple(path), section=stiffness, length=length, elements=elements, element=element)
-
-
-MESHES = {5: 2.6e-4, 10: 1.8e-5, 20: 1.2e-6, 40: 7e-8, 200: 3e-9}
-
-
-@pytest.mark.slow_at("200")
-@pytest.mark.parametrize("elements", MESHES)
-def test_mixed_on_ks(elements, stated):
-    """Within these bounds, without a floor and of the fourth order, in every quantity."""
-    scene = load_scene("ks-cantilever")
-    response = solve(scene, "tsm", Options(elements=elements))
-    off = errors(response, solve(scene, "rod"), scene)["path"]
-    assert response.cutbacks == 0
-    assert max(off[quantity] for quantity in ("force", "arc", "moment", "tip")) <= MESHES[elements]
-    stated(f"ks.mixed-{elements}", off["force"])
-    if elements == 10:
-        stated("ks.shape-10", off["shape"])
 
 
 @pytest.mark.parametrize("x", PINS)

@@ -19,7 +19,7 @@ Draw = Callable[[Scene], Any]
 
 
 @pytest.fixture
-def drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Draw:
+def drawn(in_folder: Path, monkeypatch: pytest.MonkeyPatch) -> Draw:
     """Draw a scene by the command and return its figure."""
     kept, save = [], Figure.savefig
 
@@ -28,7 +28,6 @@ def drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Draw:
         save(fig, *more, **options)
 
     monkeypatch.setattr(Figure, "savefig", keep)
-    monkeypatch.chdir(tmp_path)
 
     def draw(scene: Scene) -> Any:
         Path("s.toml").write_text(to_toml(scene))

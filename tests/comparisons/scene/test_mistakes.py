@@ -14,7 +14,6 @@ from comparisons.scene.words import CONVERTED, ELSEWHERE, NOT_MODELLED, OTHER_NA
 from docs.extensions.messages import SCENES, Message, messages
 from tests.comparisons.scene.test_special_keys import KEYS
 
-Output = pytest.CaptureFixture[str]
 TWELVE = Path(__file__).with_name("twelve.toml").read_text(encoding="utf-8")
 
 

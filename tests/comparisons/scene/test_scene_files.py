@@ -1,4 +1,4 @@
-"""Scene files before anything is solved: ``crossval new``, ``check``, ``schema``, and files that cannot be read."""
+"""Scene files before anything is solved: ``crossval new``, ``check``, ``scenes --schema``, and files that cannot be read."""
 
 import json
 import os

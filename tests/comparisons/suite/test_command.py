@@ -13,6 +13,7 @@ from time import sleep
 import pytest
 
 from comparisons.cli import main
+from tests.comparisons.processes import COMMAND
 from tests.comparisons.suite.conftest import (
     CASES,
     TINY,
@@ -121,8 +122,8 @@ def test_a_folder_that_is_only_read(capsys):
 
 def test_a_program_from_standard_input_is_refused_by_one_line(tmp_path):
     """Processes by spawn load the file of the main program, and there is none."""
-    code = f"import sys; from comparisons.cli import main; sys.exit(main(['run', {str(TINY)!r}, '--out', {str(tmp_path)!r}, '--quiet']))"
-    found = subprocess.run([sys.executable, "-"], input=code, capture_output=True, text=True, check=False)
+    command = [sys.executable, "-", "run", TINY, "--out", tmp_path, "--quiet"]
+    found = subprocess.run(command, input=COMMAND, capture_output=True, text=True, check=False)
     assert found.returncode == 2
     (line,) = found.stderr.splitlines()
     assert line.startswith("crossval: workers: cannot load <stdin>: ")

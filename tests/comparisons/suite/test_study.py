@@ -10,7 +10,6 @@ from docs.extensions.messages import SCENES
 from tests.comparisons.suite.conftest import MANY, crossval, rows
 
 HEAD = '[study]\nname = "mine"\nscene = "ks-cantilever"\nrepeats = 1\n'
-RUN = '[[run]]\nmodel = "tsm"\n'
 
 
 def test_cases_are_all_combinations_in_the_order_of_the_file(many):

@@ -1,4 +1,4 @@
-"""Comparisons that leave something out, stop, or find models on different branches; `show/pages` has a whole one."""
+"""Comparisons that leave something out, stop, or find models on different branches; `report/pages` has a whole one."""
 
 import json
 from dataclasses import replace
@@ -20,9 +20,8 @@ KS = load_scene("ks-cantilever")
 
 
 @pytest.fixture
-def short(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def short(in_folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A scene file that a comparison of beams and rods alone is quick for."""
-    monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(compared, "RUNS", (compared.MIXED, compared.ROD))
     path = Path("short.toml")
     path.write_text(to_toml(replace(KS, load_parameters=2)))

@@ -9,13 +9,15 @@ import pytest
 
 import fem_reference
 from comparisons.cli import main
-from comparisons.models.outside.adapters.calculix import parse, pressed, run, tip_load
+from comparisons.models.outside.adapters.calculix import parse, pressed, run, states, tip_load
+from comparisons.models.outside.adapters.exchange import Histories, StoppedError
 from comparisons.models.outside.child import ProgramError
 from comparisons.models.solid import to_solid
 from comparisons.scene import load_scene
 
 # the study whose numbers the pages state, and the input file and the output of CalculiX, which is not everywhere
 from comparisons.suites.solid_accuracy import contact_forces, peers
+from tests.comparisons.models.outside.test_adapters import TIP, given
 
 needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed")
 PROBLEM = to_solid(load_scene("ks-face"))
@@ -64,6 +66,19 @@ def test_what_is_printed_is_read_and_what_is_cut_off_is_not():
         ("displacements", "TIP"): [[[0.1, -2e-101, 0.0]]],
         ("forces", "CLAMP"): [[[-1.0, 2.0, 0.0]]],
     }
+
+
+def test_the_adapter_states_the_strip_of_the_solid(tmp_path, monkeypatch):
+    """What CalculiX reads before its first step: nodes, bricks, material and clamp."""
+    fake(tmp_path, monkeypatch, f"cp job.inp {tmp_path}/deck")
+    scene, decks = given(TIP) | {"load_parameters": [1.0]}, []
+    strip = replace(to_solid(TIP).strips[0], mesh=(scene["beams"][0]["elements"], 2))
+    for asked in (lambda: tip_load(strip, FORCE), lambda: next(states(scene, Histories(scene)))):
+        with pytest.raises((ProgramError, StoppedError)):
+            asked()
+        decks.append((tmp_path / "deck").read_text().partition("*STEP")[0])
+    assert "*ELASTIC" in decks[0]
+    assert decks[0] == decks[1]
 
 
 @needs_ccx

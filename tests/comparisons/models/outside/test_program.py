@@ -21,6 +21,7 @@ from comparisons.models.outside.child import ProgramStatus
 from comparisons.scene import load_scene
 from comparisons.suite import Case, Row, measure
 from tests.comparisons.models.outside.conftest import KS, PAIR
+from tests.comparisons.processes import COMMAND, begun
 
 EARLY = """
 for item in (contact, support):
@@ -139,20 +140,19 @@ def test_elements_are_an_option_where_the_file_has_them(program, tmp_path):
     assert list(find(program()).resolutions(quick=False)) == [Options()]
 
 
-def test_solve_and_gate_have_it(program, tmp_path, capsys, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_solve_and_gate_have_it(program, in_folder, capsys):
     program()
     bounds = ["--max-error", "force=1e-9"]
     assert main(["solve", "ks.toml", "--model", "liar.toml", "--out", "a.json", "--out", "vtk"]) == 0
     assert main(["compare", "ks.toml", "--model", "liar.toml", *bounds]) == 0
     assert main(["compare", "ks.toml", "--elements", "20", "--against", "liar.toml", *bounds]) == 1
     assert "tsm mixed 20 against liar" in capsys.readouterr().out
-    data = json.loads((tmp_path / "a.json").read_text())
+    data = json.loads(Path("a.json").read_text())
     assert (data["model"], data["status"], data["reported_success"]) == ("liar", "COMPLETED", True)
-    assert (tmp_path / "vtk" / "liar-0005.vtm").is_file()
+    assert Path("vtk/liar-0005.vtm").is_file()
     program("support['moment'] = [2 * m for m in support['moment']]")
     assert main(["solve", "ks.toml", "--model", "liar.toml", "--out", "a.json"]) == 3
-    data = json.loads((tmp_path / "a.json").read_text())
+    data = json.loads(Path("a.json").read_text())
     assert (data["status"], data["reported_success"]) == ("NOT_AN_EQUILIBRIUM", True)
     assert main(["certify", "a.json", "--scene", "ks.toml"]) == 1
 
@@ -203,9 +203,7 @@ def test_a_program_leaves_no_process(more, status, count, program, tmp_path):
 
 def test_a_command_that_is_ended_ends_the_program(program, tmp_path):
     file = program("Path('pid').write_text(str(os.getpid())); time.sleep(600)")
-    code = "import sys; from comparisons.cli import main; sys.exit(main(sys.argv[1:]))"
-    command = [sys.executable, "-c", code, "solve", str(tmp_path / "ks.toml"), "--model", file]
-    with subprocess.Popen(command, stderr=subprocess.PIPE) as child:
+    with begun(COMMAND, "solve", tmp_path / "ks.toml", "--model", file) as child:
         pid = tmp_path / "pid"
         while not (pid.exists() and pid.read_text()):
             assert child.poll() is None

@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -16,6 +17,7 @@ from comparisons.suites.manual import judged, problems, read_problem
 # not public: measures that no model has
 from comparisons.suites.manual.measures import MEASURES, StoppedError
 from tests.comparisons.report.pages.markup import check_alone
+from tests.laws.transform import Change
 
 PROBLEMS = {path.stem: path for path in problems()}
 FAST = (
@@ -149,6 +151,12 @@ def test_a_scene_that_is_moved_is_the_scene():
         assert found == pytest.approx(place(given), abs=1e-15)
         assert (other.beams != scene.beams) == (name != "mirror")
         assert [one.side for one in other.contacts] == ["right" if name == "objectivity" else "left"]
+
+
+def test_a_greatest_load_is_read_without_units():
+    problem, change = read_problem(PROBLEMS["force-limit"]), Change(length=7.0, force=0.3)
+    trials = tuple(replace(one, scene=change.scene(one.scene)) for one in problem.trials)
+    assert all(item.passed for item in judged(replace(problem, trials=trials)))
 
 
 def test_a_new_problem_is_one_file():

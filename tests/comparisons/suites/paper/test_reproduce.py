@@ -1,4 +1,4 @@
-"""`crossval reproduce`: files, numbers, verdicts. A figure with coarse settings, and all of them."""
+"""`crossval run paper`: files, numbers, verdicts. A figure with coarse settings, and all of them."""
 
 import csv
 import json
