@@ -27,14 +27,10 @@ _WEIGHTS = np.tile(_OWN / 2.0, 20) / 20
 class Action(NamedTuple):
     """A force on the structure, and the way of its point."""
 
-    force: Array
-    """Force (s, 2)."""
-    place: Array
-    """Places (s + 1, 2) of the point, rest first."""
-    couple: Array | float = 0.0
-    """Free moment (s,)."""
-    angle: Array | None = None
-    """Rotation (s + 1,) of the point where the scene prescribes it."""
+    force: Array  #: Force (s, 2).
+    place: Array  #: Places (s + 1, 2) of the point, rest first.
+    couple: Array | float = 0.0  #: Free moment (s,).
+    angle: Array | None = None  #: Rotation (s + 1,) of the point where the scene prescribes it.
 
     def moment(self, origin: Array) -> Array:
         """Return the moment (s,) about a point, with the free one."""

@@ -21,27 +21,13 @@ class Verdict(Enum):
 
 
 class Judgement(Frozen):
-    """The verdict on an answer at one load parameter.
+    """The verdict on an answer at one load parameter."""
 
-    Attributes
-    ----------
-    load_parameter : float
-        Load parameter of the answer.
-    verdict : Verdict
-        The verdict.
-    reason : str
-        Reason of the verdict in one line.
-    distance : Distance or None
-        Differences from the exact equilibrium; None without one.
-    exact : Equilibrium or None
-        The exact equilibrium.
-    """
-
-    load_parameter: float
-    verdict: Verdict
-    reason: str
-    distance: Distance | None = None
-    exact: Equilibrium | None = field(default=None, repr=False)
+    load_parameter: float  #: Load parameter of the answer.
+    verdict: Verdict  #: The verdict.
+    reason: str  #: Reason of the verdict in one line.
+    distance: Distance | None = None  #: Differences from the exact equilibrium; None without one.
+    exact: Equilibrium | None = field(default=None, repr=False)  #: The exact equilibrium.
 
     @property
     def index(self) -> int:
@@ -55,30 +41,14 @@ class Judgement(Frozen):
 
 
 class Certificate(Frozen):
-    """The verdict on an answer along its path.
+    """The verdict on an answer along its path."""
 
-    Attributes
-    ----------
-    verdict : Verdict
-        The most serious verdict.
-    reason : str
-        Reason of the verdict in one line.
-    allowance : float
-        Largest difference allowed.
-    judged : tuple of Judgement
-        The judged load parameters, in order.
-    path : tuple of str
-        Violations between the load parameters, one sentence each.
-    seconds : float
-        Wall time [s].
-    """
-
-    verdict: Verdict
-    reason: str
-    allowance: float
-    judged: tuple[Judgement, ...]
-    path: tuple[str, ...]
-    seconds: float
+    verdict: Verdict  #: The most serious verdict.
+    reason: str  #: Reason of the verdict in one line.
+    allowance: float  #: Largest difference allowed.
+    judged: tuple[Judgement, ...]  #: The judged load parameters, in order.
+    path: tuple[str, ...]  #: Violations between the load parameters, one sentence each.
+    seconds: float  #: Wall time [s].
 
     @property
     def certified(self) -> bool:

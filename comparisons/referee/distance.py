@@ -48,27 +48,21 @@ _SHARPEST = 1.4
 class Distance(Value):
     """Largest differences between an answer and the exact equilibrium.
 
-    Attributes
-    ----------
-    sizes : dict of float
-        By name, infinite for missing or unknown items, zero where there is nothing to compare:
-        `force` of a contact as a vector, over the largest contact force;
-        `arc_position`, `tip`, the distance of a beam's free or less restrained end, `shape`, that of an axis, and `gap`, over the beam's length;
-        `reaction`, of the force or moment of a support or spring, over the largest force or moment of supports, contacts and loads;
-        `sections`, of a section force N, V or M, over the same;
-        `displacement`, the largest distance of a tip or an axis over the largest exact displacement;
-        `place`, the violation of the constraints by the answer itself: distance of its axis from the touching points of the contacts and
-        from the prescribed positions of the supports, over the beam's length, less the error of the chords between the points of the axis;
-        `constraint`, the largest of these over the largest exact displacement.
-    where : dict of str
-        The pair, supported end or beam that has the largest difference, by the same names; none where there is nothing to compare.
-    scales : (float, float, float)
-        Largest force, moment and displacement of the exact equilibrium.
+    The `sizes` are infinite for missing or unknown items, zero where there is nothing to compare:
+    `force` of a contact as a vector, over the largest contact force;
+    `arc_position`, `tip`, the distance of a beam's free or less restrained end, `shape`, that of an axis, and `gap`, over the beam's length;
+    `reaction`, of the force or moment of a support or spring, over the largest force or moment of supports, contacts and loads;
+    `sections`, of a section force N, V or M, over the same;
+    `displacement`, the largest distance of a tip or an axis over the largest exact displacement;
+    `place`, the violation of the constraints by the answer itself: distance of its axis from the touching points of the contacts and
+    from the prescribed positions of the supports, over the beam's length, less the error of the chords between the points of the axis;
+    `constraint`, the largest of these over the largest exact displacement.
     """
 
-    sizes: Mapping[str, float]
+    sizes: Mapping[str, float]  #: By name.
+    #: The pair, supported end or beam with the largest difference by name; none where there is nothing to compare.
     where: Mapping[str, str] = field(repr=False)
-    scales: Scales
+    scales: Scales  #: Those of the exact equilibrium.
 
     @property
     def largest(self) -> tuple[str, float]:

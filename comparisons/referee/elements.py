@@ -63,20 +63,15 @@ def up_to(xi: Array) -> Array:
 class Mesh(NamedTuple):
     """Elements of all parts, in order."""
 
-    grids: list[Array]
-    """Their ends as fractions of every part, from 0 to 1."""
+    grids: list[Array]  #: Their ends as fractions of every part, from 0 to 1.
     part: Ints
     start: Array
-    share: Array
-    """Start and length (e,) as fractions of the part."""
-    local: Ints
-    """Numbers (e, 6) of `theta_a, theta_b, c_x, c_y, s_a, s_b`."""
-    unknowns: int
-    """Number of unknowns including the vertices inside the parts, without the bubbles."""
-    points: Array
-    """Gauss points (e, g) as fractions of the part."""
+    share: Array  #: Start and length (e,) as fractions of the part.
+    local: Ints  #: Numbers (e, 6) of `theta_a, theta_b, c_x, c_y, s_a, s_b`.
+    unknowns: int  #: Number of unknowns including the vertices inside the parts, without the bubbles.
+    points: Array  #: Gauss points (e, g) as fractions of the part.
+    #: From the unknowns of an element to theta, theta_xi, c_x, c_y, half and s at its points, (e, g, 6, p + 5).
     to: Array
-    """From the unknowns of an element to theta, theta_xi, c_x, c_y, half and s at its points, (e, g, 6, p + 5)."""
 
 
 def mesh_of(layout: Layout, grids: list[Array]) -> Mesh:

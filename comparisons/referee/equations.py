@@ -30,15 +30,13 @@ class System(NamedTuple):
 
     gradient: Array
     hessian: Array
-    held: Array
-    """Gradient by the prescribed quantities: the forces and moments that hold them."""
+    held: Array  #: Gradient by the prescribed quantities: the forces and moments that hold them.
     shift: Array
+    #: If the other unknowns of an element change by x, its bubbles change by ``-(shift + lever x)``.
     lever: Array
-    """If the other unknowns of an element change by x, its bubbles change by ``-(shift + lever x)``."""
-    blocks: Array
-    """Hessians of the bubbles."""
+    blocks: Array  #: Hessians of the bubbles.
+    #: Moments (e, 2) at the elements' ends from the gradient, since a derivative of the rotation would lose digits.
     ends: Array
-    """Moments (e, 2) at the elements' ends from the gradient, since a derivative of the rotation would lose digits."""
     energy: float
 
 

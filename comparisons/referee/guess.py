@@ -25,29 +25,16 @@ SHORTEST = 1e-9
 
 
 class AnswerState(Frozen):
-    """An answer at one load parameter, in the scene's units.
+    """An answer at one load parameter, in the scene's units."""
 
-    Attributes
-    ----------
-    load_parameter : float
-        Load parameter of the answer.
-    arcs : dict of float
-        Arc position of every closed pair, by the pair's name.
-    forces : dict of sequence of float
-        Contact force of every pair that has one, on its beam.
-    axes : dict of (ndarray, ndarray)
-        Arc lengths (m,) and deformed positions (m, 2) of every beam's axis.
-    reactions : dict of sequence of float
-        Force and moment of every support, by the supported end.
-    grips : dict of Grip
-        How friction holds the closed pairs; pairs without a grip have no friction.
-    """
-
-    load_parameter: float
-    axes: dict[str, tuple[Array, Array]]
-    arcs: dict[str, float] = field(default_factory=dict)
+    load_parameter: float  #: Load parameter of the answer.
+    axes: dict[str, tuple[Array, Array]]  #: Arc lengths (m,) and deformed positions (m, 2) of every axis.
+    arcs: dict[str, float] = field(default_factory=dict)  #: Arc positions of the closed pairs.
+    #: Contact forces of the pairs that have one, on their beams.
     forces: Mapping[str, Sequence[float] | Array] = field(default_factory=dict)
+    #: Force and moment of every support, by the supported end.
     reactions: Mapping[str, Sequence[float] | Array] = field(default_factory=dict)
+    #: How friction holds the closed pairs; pairs without a grip have no friction.
     grips: dict[str, Grip] = field(default_factory=dict)
 
 

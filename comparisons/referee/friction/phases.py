@@ -28,10 +28,9 @@ class Phase(Frozen):
     spec: ContactSpec
     low: float = 0.0
     high: float = 0.0
-    event: ContactEvent | None = None
-    """The answer's event at which it begins."""
+    event: ContactEvent | None = None  #: The answer's event at which it begins.
+    #: Sign of the slip rate, 0 in stick, `UNKNOWN` for a slip between two load parameters; `OPEN` for an open contact.
     slip: int
-    """Sign of the slip rate, 0 in stick, `UNKNOWN` for a slip between two load parameters; `OPEN` for an open contact."""
     before: "Phase | None"
 
     @property
