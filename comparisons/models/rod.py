@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import takewhile
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -59,7 +60,7 @@ class Rod(Model):
 
 
 class Elastica(Model):
-    """The elastica, which neither stretches nor shears, under one pin on its axis, in closed form."""
+    """The elastica, which neither stretches nor shears, under one pin on its axis."""
 
     name = "elastica"
     label = "elastica"
@@ -78,12 +79,12 @@ class Elastica(Model):
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:  # noqa: ARG002 - the elastica has no options
         """Return the response to `scene`, not yet checked."""
-        from comparisons.exact import elastica_under_pin
+        from comparisons.exact import rod_under_pin
         from comparisons.models.cantilever import local_response
 
         local = _on_axis(scene)
-        sizes = kept(local.beam, "EI length")
-        return local_response(local, elastica_under_pin(local.path, **sizes), unknowns=1)
+        path = rod_under_pin(local.path, EA=inf, GA=inf, **kept(local.beam, "EI length"))
+        return local_response(local, path, unknowns=4)
 
     def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:  # noqa: ARG002 - as above
         """Return the errors from missing stretch and shear."""
