@@ -7,13 +7,13 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from comparisons.answer import (
     Array,
     ContactEvent,
     ContactHistory,
     FrictionHistory,
+    Ints,
     Response,
     SupportHistory,
 )
@@ -45,7 +45,7 @@ class RodScene(Value):
     contact: ContactSpec
     offset: float
     path: Array  #: Places (p, 2) of the pin: at the start, at the load parameters and at the corners of its path.
-    hits: NDArray[np.int64]  #: Indices (s,) of the load parameters among them.
+    hits: Ints  #: Indices (s,) of the load parameters among them.
     origin: Array  #: Place (2,) of the clamp.
     axes: Array  #: The local x and y axes (2, 2) as columns.
 

@@ -4,9 +4,8 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from comparisons.answer import Array, Response
+from comparisons.answer import Array, Ints, Response
 from comparisons.answer.round_off import force_round_off, least_force, residual_force
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import BeamSpec, Scene
@@ -37,7 +36,7 @@ class Action(NamedTuple):
         x, y = (self.place[1:] - origin).T
         return np.asarray(self.couple + x * self.force[:, 1] - y * self.force[:, 0])
 
-    def work(self, chosen: NDArray[np.int64]) -> Array:
+    def work(self, chosen: Ints) -> Array:
         """Return the work between the chosen states, 0 the one at rest, where forces change linearly with the place."""
         force = np.vstack([np.zeros(2), self.force])[chosen]
         work = ((force[1:] + force[:-1]) / 2.0 * np.diff(self.place[chosen], axis=0)).sum(axis=1)
@@ -193,7 +192,7 @@ def _inside(response: Response, beam: BeamSpec, parts: Array, weights: Array, ac
     return Action(acting[:, :2] * weights.sum(), np.vstack([rest, centre]), acting[:, 2] * weights.sum())
 
 
-def _pins(response: Response, scene: Scene, outer: Array) -> tuple[NDArray[np.int64], Array, list[Action]]:
+def _pins(response: Response, scene: Scene, outer: Array) -> tuple[Ints, Array, list[Action]]:
     """Return the number of pins that push, the sum of their magnitudes, and their actions; a single pin balances the forces `outer`."""
     touching = [(spec, response.contacts[spec.pair]) for spec in scene.contacts if "." not in spec.node]
     forces = np.array([np.zeros(len(response.load_parameter)), *(item.force for _, item in touching)])

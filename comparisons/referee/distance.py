@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.answer import Response
+from comparisons.answer import Array, Response
 from comparisons.answer.round_off import (
     LAST_PLACES,
     LEAST,
@@ -23,7 +23,6 @@ from comparisons.referee.rod import angle, axis_at_rest, cross, face_of
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 
-Array = NDArray[np.float64]
 Scales = tuple[float, float, float]
 """Largest force, moment and displacement."""
 

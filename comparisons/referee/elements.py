@@ -18,13 +18,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legint, legvander
 from numpy.polynomial.polynomial import polyder, polyval
-from numpy.typing import NDArray
 
+from comparisons.answer import Array, Ints
 from comparisons.referee.layout import Layout
 from comparisons.referee.rod import Piece
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 DEGREE = 16
 """Degree p of the rotation on an element."""

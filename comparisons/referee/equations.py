@@ -15,14 +15,11 @@ this one: see `comparisons.referee.touching`.
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from comparisons.answer import Array
 from comparisons.referee.elements import OUTER, STEP, Mesh, elements
 from comparisons.referee.layout import NONE, Layout, Touch
 from comparisons.referee.touching import rows
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class System(NamedTuple):

@@ -6,15 +6,13 @@ from dataclasses import field
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
-from numpy.typing import NDArray
 
-from comparisons.answer import ContactHistory, Response
+from comparisons.answer import Array, ContactHistory, Response
 from comparisons.frozen import Frozen
 from comparisons.referee.grip import Grip
 from comparisons.referee.layout import NONE, Layout, Part
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 
-Array = NDArray[np.float64]
 Rotations = tuple[Array, Array]
 """Arc positions from one end of a beam to the other, and rotations of its sections there, linear in between; in units of `Layout`."""
 

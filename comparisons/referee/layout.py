@@ -15,15 +15,12 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from comparisons.answer import Array, Ints
 from comparisons.frozen import Frozen, Value
 from comparisons.referee.grip import Grip
 from comparisons.referee.rod import Face, Piece, Rod, face_of, rod_of, trimmed, units_of
 from comparisons.scene import ContactSpec, Scene
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 NONE = -1
 """Number of a quantity that is zero."""

@@ -8,9 +8,8 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from comparisons.answer import ContactEvent, Response
+from comparisons.answer import Array, ContactEvent, Response
 from comparisons.referee.distance import gap_off, largest_force
 from comparisons.referee.grip import UnknownFrictionError
 from comparisons.referee.guess import answer_state, end_of
@@ -23,7 +22,6 @@ from comparisons.scene import ContactSpec, Scene
 if TYPE_CHECKING:
     from comparisons.referee.friction import History
 
-Array = NDArray[np.float64]
 
 OPENS, CLOSES = ("release", "slip-off"), ("touch",)
 KINDS = (*OPENS, *CLOSES, "slip", "stick", PASSES)

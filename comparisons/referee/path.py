@@ -6,9 +6,8 @@ from functools import lru_cache
 from operator import itemgetter
 
 import numpy as np
-from numpy.typing import NDArray
 
-from comparisons.answer import ContactEvent, Response
+from comparisons.answer import Array, ContactEvent, Response
 from comparisons.referee.elements import mesh_of
 from comparisons.referee.equations import orientation_of
 from comparisons.referee.grip import LOOSE, Grip
@@ -18,7 +17,6 @@ from comparisons.referee.rod import largest
 from comparisons.referee.state import Change, Equilibrium, located
 from comparisons.scene import Scene
 
-Array = NDArray[np.float64]
 Held = Callable[[float], Mapping[str, Grip]]
 """How friction holds the contacts at a load parameter."""
 

@@ -16,12 +16,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial.polynomial import polyint, polymul, polyval
-from numpy.typing import NDArray
 
+from comparisons.answer import Array
 from comparisons.frozen import Frozen
 from comparisons.scene import BeamSpec, ContactSpec, Scene
-
-Array = NDArray[np.float64]
 
 Units = tuple[float, float]
 """Units of length and force."""

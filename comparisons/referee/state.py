@@ -5,8 +5,8 @@ from enum import Enum
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from comparisons.answer import Array, Ints
 from comparisons.frozen import Frozen
 from comparisons.referee.elements import AMPLITUDE, VALUES, WEIGHTS, Mesh, rotations, shapes, up_to
 from comparisons.referee.equations import System, assemble, index_of
@@ -14,8 +14,6 @@ from comparisons.referee.layout import NONE, Layout, Touch
 from comparisons.referee.rod import cross
 from comparisons.scene import Scene
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Change = tuple[Array, Array]
 """Changes of the unknowns and of the bubbles."""
 _INSIDE = 1.0 - 1e-9

@@ -3,14 +3,11 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from comparisons.answer import ContactEvent, ContactHistory, Response
+from comparisons.answer import Array, ContactEvent, ContactHistory, Ints, Response
 from comparisons.frozen import Frozen
 from comparisons.referee.path import changes_of
 from comparisons.scene import ContactSpec, Scene
-
-Ints = NDArray[np.int64]
 
 OPEN, UNKNOWN = 9, 8
 """Numbers of an open contact and of a slip whose sign an answer does not state, next to the signs -1, 0 and 1 of the slip rate."""
@@ -80,7 +77,7 @@ def _from_arcs(contact: ContactHistory, length: float) -> Ints:
     ).astype(np.int64)
 
 
-def _leaning(response: Response, spec: ContactSpec, force: NDArray[np.float64], k: int) -> float:
+def _leaning(response: Response, spec: ContactSpec, force: Array, k: int) -> float:
     """Tangential over normal force of a contact, over the coefficient of friction, by the direction of the answer's axis."""
     arc, line = response.axis_line(spec.beam, k)
     x, y = (
