@@ -25,6 +25,16 @@ class SampledAxes(Frozen):
         return self.arc_length[beam], self.position[beam][k]
 
 
+def place_of(response: Response, scene: Scene, node: str, k: int) -> Array:
+    """Return the position (2,) of a pin, or of a beam's end such as ``upper.end``, at load parameter number k; at rest for k = -1."""
+    beam, dot, end = node.partition(".")
+    if not dot:
+        return np.array(scene.pin(node).position(float(response.load_parameter[k]) if k >= 0 else 0.0))
+    return (
+        response.axis_line(beam, k)[1][0 if end == "start" else -1] if k >= 0 else np.array(scene.place(node))
+    )
+
+
 def axes_at_stations(response: Response, beam: str, steps: Iterable[int]) -> Array:
     """Return the deformed axes of a beam at n load parameters, shape (n, 101, 2), by cubic splines through the model's points."""
     from scipy.interpolate import CubicSpline

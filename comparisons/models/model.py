@@ -54,9 +54,6 @@ def unwatched(*_: object) -> None:
     """Ignore the progress."""
 
 
-uncounted = unwatched
-
-
 def bar(part: float) -> str:
     """Return a progress bar that is filled to `part`.
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from comparisons.answer import Array, Ints, Response
+from comparisons.answer.axis import place_of
 from comparisons.answer.round_off import force_round_off, least_force, residual_force
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import BeamSpec, Scene
@@ -138,8 +139,8 @@ def _places(response: Response, scene: Scene, node: str) -> Array:
             return rest + np.array([(0.0, 0.0), *moved], dtype=np.float64)
     if end == scene.tip(beam):
         return np.vstack([rest, response.tips[beam]])
-    lines = [response.axis_line(beam, k)[1] for k in range(len(response.load_parameter))]
-    return np.vstack([rest, *(line[0 if end == "start" else -1] for line in lines)])
+    steps = range(-1, len(response.load_parameter))
+    return np.array([place_of(response, scene, node, k) for k in steps])
 
 
 def _supports(response: Response, scene: Scene) -> list[Action]:
@@ -198,7 +199,7 @@ def _pins(response: Response, scene: Scene, outer: Array) -> tuple[Ints, Array, 
     forces = np.array([np.zeros(len(response.load_parameter)), *(item.force for _, item in touching)])
     pushing, actions = np.sum(forces > 0.0, axis=0), []
     for spec, history in touching:
-        places = [scene.pin(spec.node).position(t) for t in (0.0, *response.load_parameter.tolist())]
+        places = [place_of(response, scene, spec.node, k) for k in range(-1, len(outer))]
         vector = np.full_like(outer, np.nan) if history.vector is None else history.vector
         force = np.where((pushing <= 1)[:, None], -outer, vector)
         force = np.where((history.force > 0.0)[:, None], force, 0.0)

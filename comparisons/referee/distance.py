@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.answer import Array, Response
+from comparisons.answer.axis import place_of
 from comparisons.answer.round_off import (
     LAST_PLACES,
     LEAST,
@@ -18,7 +19,7 @@ from comparisons.answer.round_off import (
     least_force,
 )
 from comparisons.frozen import Value
-from comparisons.referee.guess import SHORTEST, end_of
+from comparisons.referee.guess import SHORTEST
 from comparisons.referee.rod import angle, axis_at_rest, cross, face_of
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import BeamSpec, ContactSpec, Scene
@@ -265,19 +266,17 @@ def _loads(scene: Scene, t: float) -> Iterator[tuple[float, float, float]]:
 def _misplaced(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple[str, float, float]]:
     """Yield pairs and supported ends, how far the answer's axes violate their constraints, and the lengths of the beams."""
     scene = exact.scene
-
-    def end(node: str) -> Array:
-        return end_of(node, lambda beam: response.axis_line(beam, k))
-
     for spec in scene.contacts:
         if spec.pair in exact.contacts:
             arc = float(response.contacts[spec.pair].arc_position[k])
             place, cut = _on_axis(*response.axis_line(spec.beam, k), arc)
-            node = end(spec.node) if "." in spec.node else exact.place(spec.node)
-            apart = abs(math.hypot(*(place - node)) - face_of(scene, spec).reach(arc))
+            apart = abs(
+                math.hypot(*(place - place_of(response, scene, spec.node, k)))
+                - face_of(scene, spec).reach(arc)
+            )
             yield spec.pair, max(0.0, apart - cut), scene.beam(spec.beam).length
     for support in scene.all_supports:
-        way = (end(support.node) - scene.place(support.node)).tolist()
+        way = (place_of(response, scene, support.node, k) - scene.place(support.node)).tolist()
         motion = scene.prescribed_motions[support.node].at(exact.load_parameter)
         off = [_size(abs(x - to)) for x, to in zip(way, motion, strict=False) if to is not None]
         if off:

@@ -55,12 +55,6 @@ def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
     )
 
 
-def end_of(node: str, axis_line: Callable[[str], tuple[Array, Array]]) -> Array:
-    """Return the position of a beam's end such as ``upper.end`` on the beams' axes."""
-    beam, _, end = node.partition(".")
-    return np.asarray(axis_line(beam)[1][0 if end == "start" else -1])
-
-
 def pull_allowed(beam: BeamSpec) -> float:
     """Largest tensile contact force on a beam that is round-off."""
     return PULL * beam.EI / beam.length**2

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from comparisons.answer import Array, ContactEvent, Response
+from comparisons.answer.axis import place_of
 from comparisons.referee.distance import gap_off, largest_force
 from comparisons.referee.grip import UnknownFrictionError
-from comparisons.referee.guess import answer_state, end_of
+from comparisons.referee.guess import answer_state
 from comparisons.referee.newton import equilibrium
 from comparisons.referee.path import PASSES, at_rest, changes_of, reach, same, way_to
 from comparisons.referee.rod import axis_at_rest, cross, face_of
@@ -181,14 +182,11 @@ class _Pair:
 
     def moment(self, k: int) -> _Moment:
         """The beam and the node at load parameter k; undeformed for k = -1."""
-
-        def axis(beam: str) -> tuple[Array, Array]:
-            arc, line = self.response.axis_line(beam, max(k, 0))
-            return arc, line if k >= 0 else axis_at_rest(self.scene.beam(beam), arc)
-
-        t, node = float(self.response.load_parameter[k]) if k >= 0 else 0.0, self.spec.node
-        place = end_of(node, axis) if "." in node else np.array(self.scene.pin(node).position(t))
-        return _Moment(t, axis(self.spec.beam)[1], place)
+        arc, line = self.response.axis_line(self.spec.beam, max(k, 0))
+        node = place_of(self.response, self.scene, self.spec.node, k)
+        if k < 0:
+            return _Moment(0.0, axis_at_rest(self.scene.beam(self.spec.beam), arc), node)
+        return _Moment(float(self.response.load_parameter[k]), line, node)
 
     def place(self, now: _Moment) -> tuple[float, float]:
         """Gap of the node from the curve of touching nodes, which goes on straight beyond the ends, and distance inside the nearer end."""
