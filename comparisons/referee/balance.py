@@ -144,21 +144,21 @@ def _places(response: Response, scene: Scene, node: str) -> Array:
 
 
 def _supports(response: Response, scene: Scene) -> list[Action]:
-    times, actions = (0.0, *response.load_parameter.tolist()), []
-    for node, history in response.supports.items():
-        motion = scene.prescribed_motions.get(node)
-        angle = None if motion is None else np.array([motion.at(t)[2] or 0.0 for t in times])
-        actions.append(Action(history.force, _places(response, scene, node), history.moment, angle))
-    return actions
+    times, motions = (0.0, *response.load_parameter.tolist()), scene.prescribed_motions
+    turns = {node: np.array([motion.at(t)[2] or 0.0 for t in times]) for node, motion in motions.items()}
+    return [
+        Action(history.force, _places(response, scene, node), history.moment, turns.get(node))
+        for node, history in response.supports.items()
+    ]
 
 
 def _springs(response: Response, scene: Scene) -> list[Action]:
-    actions = []
-    for spring in scene.springs:
-        places, own = _places(response, scene, spring.node), response.springs.get(spring.node)
-        force = -np.array(spring.stiffness) * (places[1:] - places[0])
-        actions.append(Action(force, places, 0.0 if own is None else own.moment))
-    return actions
+    return [
+        Action(-np.array(spring.stiffness) * (places[1:] - places[0]), places, own.moment if own else 0.0)
+        for spring in scene.springs
+        for places in [_places(response, scene, spring.node)]
+        for own in [response.springs.get(spring.node)]
+    ]
 
 
 def _loads(response: Response, scene: Scene) -> list[Action]:

@@ -103,18 +103,11 @@ def rotations(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> Array:
 
 def elements(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> tuple[Array, Array, Array]:
     """Gradient (e, p + 5) and Hessian of the energy in `theta_a, theta_b, c_x, c_y, s_a, s_b` and the bubbles; strain energy (e,)."""
-    ends, x, to, coefficients = (
-        layout.extents(z)[mesh.part],
-        mesh.points,
-        mesh.to,
-        rotations(layout, mesh, z, bubbles),
-    )
+    ends, x, to = layout.extents(z)[mesh.part], mesh.points, mesh.to
+    coefficients = rotations(layout, mesh, z, bubbles)
     extent, given = np.diff(ends), np.empty((6, *x.shape))
-    given[0], given[1], given[2:4] = (
-        coefficients @ VALUES.T,
-        coefficients @ SLOPES.T,
-        z[mesh.local[:, 2:4]].T[..., None],
-    )
+    given[0], given[1] = coefficients @ VALUES.T, coefficients @ SLOPES.T
+    given[2:4] = z[mesh.local[:, 2:4]].T[..., None]
     given[4], given[5] = mesh.share[:, None] * extent / 2.0, ends[:, :1] + extent * x
     steps = given[..., None] + 1j * STEP * np.eye(6)[:, None, None]
     found = _at_points(layout.pieces(mesh.part), steps.reshape(6, len(x), -1)).reshape(7, *steps.shape[1:])

@@ -310,21 +310,14 @@ def _joints(
         turns = bool(own or springs[2] or any(hinged.get(end) for end in ends))
         loads = _total(item.at(t) for item in scene.load_histories if item.load.node in ends)
         along = _total(resultants[end] for end in own if end in resultants)
-        stations.append(
-            Station(
-                reference=_place(scene, point, length),
-                numbers=np.array(
-                    [
-                        numbers.free(1)[0] if way is None and free else numbers.fixed((way or 0.0) / size)
-                        for way, size, free in zip(motion, (length, length, 1.0), (1, 1, turns), strict=True)
-                    ]
-                ),
-                load=loads / unit + along,
-                springs=springs * (length, length, 1.0) / unit,
-                ends=own,
-                joint=tuple(ends),
-            )
-        )
+        given = [
+            numbers.free(1)[0] if way is None and free else numbers.fixed((way or 0.0) / size)
+            for way, size, free in zip(motion, (length, length, 1.0), (1, 1, turns), strict=True)
+        ]
+        stations.append(Station(
+            reference=_place(scene, point, length), numbers=np.array(given), load=loads / unit + along,
+            springs=springs * (length, length, 1.0) / unit, ends=own, joint=tuple(ends),
+        ))  # fmt: skip
     hinges: list[Hinge] = []
     for node, stiffness in hinged.items():
         joint = next(k for k, item in enumerate(stations) if node in item.joint)

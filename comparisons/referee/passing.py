@@ -15,7 +15,7 @@ from comparisons.referee.distance import gap_off, largest_force
 from comparisons.referee.grip import UnknownFrictionError
 from comparisons.referee.guess import answer_state
 from comparisons.referee.newton import equilibrium
-from comparisons.referee.path import PASSES, at_rest, changes_of, reach, same, way_to
+from comparisons.referee.path import CLOSES, OPENS, PASSES, STAYS, at_rest, changes_of, reach, same, way_to
 from comparisons.referee.rod import axis_at_rest, cross, face_of
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import ContactSpec, Scene
@@ -23,9 +23,7 @@ from comparisons.scene import ContactSpec, Scene
 if TYPE_CHECKING:
     from comparisons.referee.friction import History
 
-
-OPENS, CLOSES = ("release", "slip-off"), ("touch",)
-KINDS = (*OPENS, *CLOSES, "slip", "stick", PASSES)
+KINDS = (*CLOSES, *OPENS, *STAYS, PASSES)
 """Kinds of contact events."""
 CRITICAL = ("limit-point", "bifurcation")
 """Kinds of events without a contact."""
@@ -33,8 +31,6 @@ ENDING = ("line-contact", "end-contact")
 """Kinds of events at which a contact ends the solution."""
 SAMPLES = 101
 """Positions of a node between two load parameters at which its side of the beam is determined."""
-_CLOSED = ("pass-through", "slip", "stick")
-"""Kinds of events at which a contact stays closed."""
 _STEPS = 32
 """Steps in which a path is followed where a node gets behind a beam."""
 _UNSURE, _NEARLY = 0.5, 0.1
@@ -92,7 +88,11 @@ def changes(response: Response, scene: Scene) -> Iterator[str]:
     times = np.concatenate([[0.0], response.load_parameter])
     for spec in scene.contacts:
         contact = response.contacts[spec.pair]
-        own = [event for event in response.events if event.pair == spec.pair and event.kind not in _CLOSED]
+        own = [
+            event
+            for event in response.events
+            if event.pair == spec.pair and event.kind not in (*STAYS, PASSES)
+        ]
         if np.isfinite(contact.slip_off) and not any(event.kind == "slip-off" for event in own):
             yield f"{spec.pair} slips off at load parameter {contact.slip_off:.6g} without an event"
         closed = contact.force != 0.0

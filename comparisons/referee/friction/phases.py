@@ -37,11 +37,6 @@ class Phase(Frozen):
         return self.event.load_parameter if self.event else rest
 
     @property
-    def stated_arc(self) -> float:
-        """Arc position there; nan without an event."""
-        return self.event.arc_position if self.event else math.nan
-
-    @property
     def does(self) -> str:
         """What the contact does in it."""
         return {0: "sticks", OPEN: "opens"}.get(self.slip, "slips")

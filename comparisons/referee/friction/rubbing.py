@@ -106,8 +106,9 @@ def _crept(history: History, k: int, touch: Touch, hold: Hold, exact: Equilibriu
 def _moved(history: History, spec: ContactSpec, k: int) -> float:
     """Change of the stated arc position since the event at which a stick began, or since the start; nan without an event."""
     phase = history.phase(spec.pair, k)
-    unit = units_of(history.scene)[0]
-    began = unit * at_rest(history.scene, spec).arc_position if phase.before is None else phase.stated_arc
+    began = phase.event.arc_position if phase.event else math.nan
+    if phase.before is None:
+        began = units_of(history.scene)[0] * at_rest(history.scene, spec).arc_position
     return float(history.response.contacts[spec.pair].arc_position[k]) - began
 
 
