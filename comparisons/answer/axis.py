@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -88,13 +89,6 @@ def storable(response: Response, *, axes: bool = True) -> Response:
     Meshes, section forces, the deformation of elements, the certificate and the scene are not kept.
     """
     kept = sampled_axes(response) if axes else SampledAxes(arc_length={}, position={})
-    return replace(
-        response,
-        material_force=dict(response.material_force),
-        axis_line=kept,
-        grid=not_kept,
-        sections=None,
-        deformation=None,
-        certificate=None,
-        definition=None,
-    )
+    dropped: dict[str, Any] = dict.fromkeys(("sections", "deformation", "certificate", "definition"))
+    forces = dict(response.material_force)
+    return replace(response, material_force=forces, axis_line=kept, grid=not_kept, **dropped)

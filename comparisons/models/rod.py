@@ -147,7 +147,7 @@ def solve_rods(scene: Scene, watch: Watch) -> Response:
             node: SupportHistory(force=table[:, :2], moment=table[:, 2]) for node, table in held.items()
         },
         springs={
-            node: SupportHistory(force=one.force[reached], moment=one.moment[reached])
+            node: replace(one, force=one.force[reached], moment=one.moment[reached])
             for node, one in followed.springs.items()
         },
         tips={

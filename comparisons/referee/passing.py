@@ -135,15 +135,9 @@ class _Pair:
 
     def passes(self, way: list[Equilibrium], before: bool) -> bool:
         """Whether the node, first at the pair's side or closed, passes through the beam on a way, and does not return."""
-        arcs, through = self.response.axis_line(self.spec.beam, 0)[0], False
-        steps = [
-            _Moment(
-                exact.load_parameter,
-                exact.shape(self.spec.beam, arcs).position,
-                np.asarray(exact.place(self.spec.node)),
-            )
-            for exact in way
-        ]
+        beam, node, through = self.spec.beam, self.spec.node, False
+        arcs = self.response.axis_line(beam, 0)[0]
+        steps = [_Moment(one.load_parameter, one.shape(beam, arcs).position, one.place(node)) for one in way]
         for begin, end in pairwise(steps):
             gap, inside = self.place(end)
             through = through or self.depth(begin, end, before) >= (_NEARLY if inside < 0.0 else 0.0)

@@ -98,14 +98,10 @@ class Equilibrium(Frozen):
         for touch in layout.touches:
             before, behind = layout.beside(touch)
             force = layout.force * (before.constant(self.z) - behind.constant(self.z))[:, 0]
-            mean = np.sum(self.tangents(touch), axis=0)
+            mean, pair = np.sum(self.tangents(touch), axis=0), touch.spec.pair
             size = np.hypot(*mean)
-            found[touch.spec.pair] = Contact(
-                force=force,
-                push=float(-touch.face.left * cross(mean, force) / size),
-                drag=float(mean @ force / size),
-                arc_position=self.closed[touch.spec.pair],
-            )
+            push, drag = float(-touch.face.left * cross(mean, force) / size), float(mean @ force / size)
+            found[pair] = Contact(force=force, push=push, drag=drag, arc_position=self.closed[pair])
         return found
 
     @cached_property
