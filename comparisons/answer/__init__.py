@@ -11,6 +11,7 @@ from comparisons.answer.record import (
     Deformation,
     FrictionHistory,
     Grid,
+    Ints,
     Sections,
     SupportHistory,
 )
@@ -27,6 +28,7 @@ __all__ = [
     "Deformation",
     "FrictionHistory",
     "Grid",
+    "Ints",
     "Response",
     "Sections",
     "SupportHistory",

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -23,6 +24,16 @@ class SampledAxes(Frozen):
     def __call__(self, beam: str, k: int) -> tuple[Array, Array]:
         """Return arc length (m,) and deformed positions (m, 2) of a beam's axis at load parameter k."""
         return self.arc_length[beam], self.position[beam][k]
+
+
+def place_of(response: Response, scene: Scene, node: str, k: int) -> Array:
+    """Return the position (2,) of a pin, or of a beam's end such as ``upper.end``, at load parameter number k; at rest for k = -1."""
+    beam, dot, end = node.partition(".")
+    if not dot:
+        return np.array(scene.pin(node).position(float(response.load_parameter[k]) if k >= 0 else 0.0))
+    return (
+        response.axis_line(beam, k)[1][0 if end == "start" else -1] if k >= 0 else np.array(scene.place(node))
+    )
 
 
 def axes_at_stations(response: Response, beam: str, steps: Iterable[int]) -> Array:
@@ -78,13 +89,6 @@ def storable(response: Response, *, axes: bool = True) -> Response:
     Meshes, section forces, the deformation of elements, the certificate and the scene are not kept.
     """
     kept = sampled_axes(response) if axes else SampledAxes(arc_length={}, position={})
-    return replace(
-        response,
-        material_force=dict(response.material_force),
-        axis_line=kept,
-        grid=not_kept,
-        sections=None,
-        deformation=None,
-        certificate=None,
-        definition=None,
-    )
+    dropped: dict[str, Any] = dict.fromkeys(("sections", "deformation", "certificate", "definition"))
+    forces = dict(response.material_force)
+    return replace(response, material_force=forces, axis_line=kept, grid=not_kept, **dropped)

@@ -63,15 +63,8 @@ def _blocks(
     yield Block(response.scene, (), [*_head(response, rule), *more])
     if len(response.load_parameter):
         page = _Page(response, k)
-        found = (
-            page.reactions(),
-            page.contacts(),
-            page.friction(),
-            page.tips(),
-            page.extremes(),
-            page.events(),
-        )
-        yield from (block for block in found if block.rows)
+        made = (page.reactions, page.contacts, page.friction, page.tips, page.extremes, page.events)
+        yield from (block for block in (make() for make in made) if block.rows)
 
 
 def _head(response: Answer, rule: str) -> Iterator[tuple[str, str]]:
@@ -152,12 +145,8 @@ class _Page:
         return self.block(f"Reactions on the beams {self.now}", columns, rows)
 
     def contacts(self) -> Block:
-        columns = {
-            "contact": "",
-            "state": "",
-            **dict.fromkeys(("force", "x", "y"), "force"),
-            "arc position": "length",
-        }
+        forces = dict.fromkeys(("force", "x", "y"), "force")
+        columns = {"contact": "", "state": "", **forces, "arc position": "length"}
         rows: list[Row] = []
         for pair, contact in self.response.contacts.items():
             vector = (np.nan, np.nan) if contact.vector is None else contact.vector[self.k]

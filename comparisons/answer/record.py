@@ -11,6 +11,7 @@ from comparisons.frozen import Frozen, Value
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 OPEN = "open"
 SLIPS = {0: "sticks", 1: "slips to the end", -1: "slips to the start"}
@@ -35,7 +36,7 @@ class FrictionHistory(Frozen):
 
     tangential: Array  #: Force on the beam along its tangent, positive from start to end, shape (s,).
     normal: Array  #: Force on the beam across its tangent, away from the node (s,).
-    slip: NDArray[np.int64]  #: Sign of the slip rate (s,): +1 towards the end, -1 to the start, 0 in stick.
+    slip: Ints  #: Sign of the slip rate (s,): +1 towards the end, -1 to the start, 0 in stick.
     dissipated: Array  #: Energy dissipated since the start (s,); nan where the model does not state it.
 
     def states(self, force: Array) -> list[str]:
@@ -89,7 +90,7 @@ class Grid(Frozen):
     """A mesh in its undeformed state with fields at its points."""
 
     points: Array  #: Undeformed positions, shape (n, 2).
-    cells: dict[str, NDArray[np.int64]]  #: Points of the cells (e, k) by VTK type in its order, as ``quad9``.
+    cells: dict[str, Ints]  #: Points of the cells (e, k) by VTK type in its order, as ``quad9``.
     #: Fields (n,) or (n, c); always ``displacement``, ``deformed`` (n, 2), ``beam`` (n,), the number of the beam in the scene.
     point_data: dict[str, Array]
 
@@ -122,7 +123,7 @@ class Answer(Frozen):
     #: Position of the tip of each beam (s, 2), the end with fewer held components; at equality the beam's ``end``.
     tips: dict[str, Array] = field(default_factory=dict)
     #: Newton iterations since the previous load parameter (s,), rejected steps included.
-    newton_iterations: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+    newton_iterations: Ints = field(default_factory=lambda: np.empty(0, dtype=np.int64))
     cutbacks: int = 0  #: Rejected steps.
     unknowns: int = 0  #: Size of the system of equations.
     wall_seconds: float = np.nan  #: Time of the solution alone [s].
@@ -143,7 +144,7 @@ class Answer(Frozen):
     deformation: Deformation | None = None  #: Deformation of the most deformed element.
     #: Negative eigenvalues of the second variation of the energy under the supports and closed contacts (s,): 0 where the
     #: equilibrium is stable, -1 where it is not defined.
-    index: NDArray[np.int64] | None = None
+    index: Ints | None = None
     critical: tuple[CriticalPoint, ...] = ()  #: Critical points that the model met.
     certificate: Any = None  #: The `comparisons.referee.Certificate` of the answer, None if it is not judged.
     #: Sum of the tangential contact forces on a beam (s,), positive away from its clamp, by beam: see `comparisons.answer.material`.
@@ -168,7 +169,7 @@ class Answer(Frozen):
         return self.reported_success and not self.completed
 
     @property
-    def stage(self) -> NDArray[np.int64]:
+    def stage(self) -> Ints:
         """Number of the stage, from 1, at every load parameter (s,); at a boundary, the stage that ends there."""
         return np.maximum(np.ceil(self.load_parameter), 1.0).astype(np.int64)
 

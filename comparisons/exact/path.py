@@ -9,10 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from comparisons.exact.contact import Cantilever
+from comparisons.exact.contact import Cantilever, Real
 from comparisons.frozen import Value
 
-Array = NDArray[np.float64]
 _RULES: dict[str, Callable[[float], bool]] = {
     "positive": lambda x: x > 0.0,
     "positive and finite": lambda x: 0.0 < x < inf,
@@ -73,25 +72,25 @@ class RodPath(Value):
     arrays are nan.
     """
 
-    load_parameter: Array  #: Fraction of the length of the pin's path (s,).
+    load_parameter: Real  #: Fraction of the length of the pin's path (s,).
     outcome: tuple[Outcome, ...]  #: State of contact at every position; at an event, the state after it.
-    force: Array  #: Force of the pin on the rod (s, 2).
-    tangential: Array  #: Component of the force along the mean tangent towards the tip (s,).
-    normal: Array  #: Component of the force away from the pin (s,).
-    arc_position: Array  #: Distance of the contact from the clamp along the undeformed axis (s,).
+    force: Real  #: Force of the pin on the rod (s, 2).
+    tangential: Real  #: Component of the force along the mean tangent towards the tip (s,).
+    normal: Real  #: Component of the force away from the pin (s,).
+    arc_position: Real  #: Distance of the contact from the clamp along the undeformed axis (s,).
     #: Moment of the clamp on the rod, anticlockwise positive (s,); the force of the clamp is that of the pin, reversed.
-    clamp_moment: Array
-    tip: Array  #: Position of the free tip (s, 2).
-    work: Array  #: Work of the pin since the start (s,).
-    dissipated: Array  #: Energy lost in slip, the integral of `mu F_n |v|` (s,); zero without friction.
+    clamp_moment: Real
+    tip: Real  #: Position of the free tip (s, 2).
+    work: Real  #: Work of the pin since the start (s,).
+    dissipated: Real  #: Energy lost in slip, the integral of `mu F_n |v|` (s,); zero without friction.
     iterations: NDArray[np.int64]  #: Newton iterations since the previous position, with rejected steps (s,).
     events: tuple[Event, ...]  #: Changes of state in the order of the load parameter.
-    unknowns: Array  #: Unknowns of `rod` (s, 4).
+    unknowns: Real  #: Unknowns of `rod` (s, 4).
     rod: Cantilever  #: `comparisons.exact.contact.Cantilever`.
     length: float  #: Undeformed length.
 
     @property
-    def magnitude(self) -> Array:
+    def magnitude(self) -> Real:
         """Contact force, shape (s,)."""
         return np.asarray(np.hypot(*self.force.T))
 
@@ -100,7 +99,7 @@ class RodPath(Value):
         """Fraction of the path's length at which the pin first leaves the rod over its tip; nan without slip-off."""
         return next((item.load_parameter for item in self.events if item.after is Outcome.SLIPPED), np.nan)
 
-    def shape(self, k: int, n: int) -> Array:
+    def shape(self, k: int, n: int) -> Real:
         """Position and rotation `x, y, theta` (n, 3) at `n` equal distances along the undeformed axis from the clamp to the tip."""
         axis = _axis(self.rod, self.outcome[k], self.unknowns[k], np.linspace(0.0, 1.0, n))
         return axis * [self.length, self.length, 1.0]
@@ -111,15 +110,9 @@ class Row(NamedTuple):
 
     t: float
     state: Outcome
-    z: Array
-    energies: Array | tuple[float, float] = (0.0, 0.0)
+    z: Real
+    energies: Real | tuple[float, float] = (0.0, 0.0)
     iterations: int = 0
-
-
-def changed(t: float, before: Outcome, after: Outcome, z: Array) -> Event:
-    """Return a change of state at unknowns (4,)."""
-    arc, force = float(z[3]), float(np.hypot(*z[:2]))
-    return Event(load_parameter=float(t), before=before, after=after, arc_position=arc, magnitude=force)
 
 
 def collected(rod: Cantilever, rows: list[Row], events: Sequence[Event], EI: float, length: float) -> RodPath:
@@ -152,7 +145,7 @@ def collected(rod: Cantilever, rows: list[Row], events: Sequence[Event], EI: flo
     )
 
 
-def _axis(rod: Cantilever, outcome: Outcome, z: Array, arcs: Array) -> Array:
+def _axis(rod: Cantilever, outcome: Outcome, z: Real, arcs: Real) -> Real:
     """Position and rotation (n, 3) at arc positions (n,) of a rod of length 1; behind the contact it is straight."""
     if not outcome.touches:
         return np.outer(np.full(len(arcs), np.nan) if outcome.ends else arcs, [1.0, 0.0, 0.0])
@@ -168,7 +161,7 @@ def require(rule: str, **values: float) -> None:
             raise ValueError(f"{name} = {value}: must be {rule}")
 
 
-def vertices(points: ArrayLike) -> tuple[Array, Array]:
+def vertices(points: ArrayLike) -> tuple[Real, Real]:
     """Return the vertices (s, 2) of a path, and the fractions of its length there."""
     pins = np.asarray(points, dtype=np.float64)
     if pins.ndim != 2 or pins.shape[1] != 2 or not len(pins) or not np.all(np.isfinite(pins)):

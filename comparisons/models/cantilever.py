@@ -7,17 +7,17 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from comparisons.answer import (
     Array,
     ContactEvent,
     ContactHistory,
     FrictionHistory,
+    Ints,
     Response,
     SupportHistory,
 )
-from comparisons.exact import Outcome, RodPath
+from comparisons.exact import Outcome, RodPath, rod_under_pin
 from comparisons.frozen import Value
 from comparisons.models.model import ModelError
 from comparisons.models.shared import POINTS
@@ -45,7 +45,7 @@ class RodScene(Value):
     contact: ContactSpec
     offset: float
     path: Array  #: Places (p, 2) of the pin: at the start, at the load parameters and at the corners of its path.
-    hits: NDArray[np.int64]  #: Indices (s,) of the load parameters among them.
+    hits: Ints  #: Indices (s,) of the load parameters among them.
     origin: Array  #: Place (2,) of the clamp.
     axes: Array  #: The local x and y axes (2, 2) as columns.
 
@@ -123,9 +123,14 @@ def _events(path: RodPath, local: RodScene) -> Iterator[ContactEvent]:
         )
 
 
-def local_response(local: RodScene, path: RodPath, *, unknowns: int) -> Response:
+def local_response(local: RodScene, EA: float, GA: float) -> Response:
     """Return the response in the scene's frame, up to the last load parameter at which an equilibrium was found."""
     scene, name, sense = local.scene, local.beam.name, local.sense
+    radius = scene.radius(local.contact)
+    path = rod_under_pin(
+        local.path, EA=EA, GA=GA, EI=local.beam.EI, length=local.beam.length,
+        friction=local.contact.friction, offset=local.offset - radius, radius=radius,
+    )  # fmt: skip
     times = np.array(scene.times)
     stop, reached = _end(path, local, times)
     met = _end_contact(local, path)
@@ -173,7 +178,7 @@ def local_response(local: RodScene, path: RodPath, *, unknowns: int) -> Response
         supports={f"{name}.{local.clamp}": SupportHistory(force=-force, moment=moment)},
         tips={name: local.position(path.tip[at])},
         newton_iterations=np.diff(np.cumsum(path.iterations)[at], prepend=0),
-        unknowns=unknowns,
+        unknowns=path.unknowns.shape[1],
         axis_line=axis_line,
         **more,
     )

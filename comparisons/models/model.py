@@ -22,16 +22,14 @@ class ModelError(ValueError):
 class Options(Value):
     """Options of one run. None keeps the value of the scene, or the default of the model."""
 
-    elements: int | None = None
-    """TSM elements of every beam."""
+    elements: int | None = None  #: TSM elements of every beam.
+    #: Type of the TSM elements; without one, `mixed` where the options or the scene give a number of elements, else `exact`.
     element: str | None = None
-    """Type of the TSM elements; without one, `mixed` where the options or the scene give a number of elements, else `exact`."""
+    #: Bound on the error of the integration inside exact TSM elements.
     integration_tolerance: float | None = None
-    """Bound on the error of the integration inside exact TSM elements."""
-    mesh: tuple[int, int] | None = None
-    """Elements of the solid along and across."""
+    mesh: tuple[int, int] | None = None  #: Elements of the solid along and across.
+    #: At a critical point the path ends by name, turns to the stable branch of least energy, or goes on unstable.
     branch: Branch | None = None
-    """At a critical point the path ends by name, turns to the stable branch of least energy, or goes on unstable."""
 
 
 WIDTH = 30
@@ -54,9 +52,6 @@ Count = Callable[[int, int], None]
 
 def unwatched(*_: object) -> None:
     """Ignore the progress."""
-
-
-uncounted = unwatched
 
 
 def bar(part: float) -> str:

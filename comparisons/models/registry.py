@@ -59,21 +59,16 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
     try:
         began = perf_counter()
         found = chosen.solve(scene, given, watch)
-        taken = perf_counter() - began
-        more: dict[str, Any] = {"wall_seconds": taken} if isnan(found.wall_seconds) else {}
+        more: dict[str, Any] = {"model": chosen.name, "scene": scene.name, "definition": scene}
+        if isnan(found.wall_seconds):
+            more["wall_seconds"] = perf_counter() - began
         if found.grid is not_kept:
             more["grid"] = partial(axis_grid, scene, found.axis_line)
         if not chosen.continuum:
             more["material_force"] = material_forces(found, scene, strains=chosen.rod)
-        named = {"model": chosen.name, "scene": scene.name, "setting": chosen.setting(scene, given)}
+        more |= {"setting": chosen.setting(scene, given), **_kind(found, chosen.name, chosen)}
         success = found.completed or found.reported_success
-        more |= {
-            **named,
-            **_kind(found, chosen.name, chosen),
-            "definition": scene,
-            "reported_success": success,
-        }
-        return verified(replace(found, **more), scene)
+        return verified(replace(found, **more, reported_success=success), scene)
     except ValueError as error:
         raise ModelError(f"{chosen.name}: {error}") from error
 

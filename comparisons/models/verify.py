@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.answer import Array, ContactHistory, Deformation, Response
+from comparisons.answer.axis import place_of
 from comparisons.referee.balance import balance_failures
 from comparisons.referee.passing import passages
+from comparisons.referee.rod import cross, face_of
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 from comparisons.scene.ends import BeamEnd, free_ends
 
@@ -154,15 +156,8 @@ def _depth(response: Response, scene: Scene, spec: ContactSpec, end: BeamEnd, k:
     if abs(response.contacts[spec.pair].arc_position[k] - arc[at]) < end.half + end.radius:
         return -math.inf
     inward = (1 + 2 * at) * np.gradient(place, arc, axis=0, edge_order=2)[at]
-    x, y = _node(response, scene, spec, k).tolist()
+    x, y = place_of(response, scene, spec.node, k).tolist()
     return -end._replace(place=tuple(place[at].tolist()), inward=tuple(inward.tolist())).room((x, y))
-
-
-def _node(response: Response, scene: Scene, spec: ContactSpec, k: int) -> Array:
-    """Position of the contact's node at load parameter k."""
-    owner, dot, _ = spec.node.partition(".")
-    t = float(response.load_parameter[k])
-    return response.tips[owner][k] if dot else np.array(scene.pin(owner).position(t))
 
 
 def penetration(response: Response, scene: Scene, spec: ContactSpec, kink: float = math.inf) -> Array:
@@ -173,24 +168,18 @@ def penetration(response: Response, scene: Scene, spec: ContactSpec, kink: float
     contact. This depth is allowed, for kinks up to `kink`.
     """
     beam, contact = scene.beam(spec.beam), response.contacts[spec.pair]
-    depth, side = np.zeros(len(response.load_parameter)), 1.0 if spec.side == "left" else -1.0
-    if scene.offset(spec) == 0.0:
-        return depth
-    radius, first = scene.radius(spec), scene.offset(spec, 0.0)
-    steep = (scene.offset(spec, 1.0) - first) / beam.length
-    for k in range(len(depth)):
+    depth, face = np.zeros(len(response.load_parameter)), face_of(scene, spec)
+    for k in range(len(depth) if face.start else 0):
         arc, place = response.axis_line(spec.beam, k)
-        # a tapered face is the envelope of circles about the points of the axis
-        offset = radius + (first - radius + steep * arc) / math.hypot(1.0, steep)
-        away, along = _node(response, scene, spec, k) - place, np.gradient(place, arc, axis=0)
+        away, along = place_of(response, scene, spec.node, k) - place, np.gradient(place, arc, axis=0)
         distance = np.hypot(*away.T)
         if contact.force[k] > 0.0:
             half_kink = 0.5 * min(contact.force[k] / beam.GA, kink)
             distance += half_kink * np.abs(arc - contact.arc_position[k])
-        ahead, slack = np.einsum("mi,mi->m", along, away), distance - offset
+        ahead, slack = np.einsum("mi,mi->m", along, away), distance - face.reach(arc)
         inner = (slack[1:-1] <= slack[:-2]) & (slack[1:-1] <= slack[2:])
         least = np.r_[ahead[0] > 0.0, inner, ahead[-1] < 0.0]
-        facing = side * (along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0]) > 0.0
+        facing = face.left * cross(along, away) > 0.0
         depth[k] = np.max(-slack[least & facing], initial=0.0)
     return depth
 

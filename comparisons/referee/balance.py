@@ -4,9 +4,9 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from comparisons.answer import Array, Response
+from comparisons.answer import Array, Ints, Response
+from comparisons.answer.axis import place_of
 from comparisons.answer.round_off import force_round_off, least_force, residual_force
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import BeamSpec, Scene
@@ -27,21 +27,17 @@ _WEIGHTS = np.tile(_OWN / 2.0, 20) / 20
 class Action(NamedTuple):
     """A force on the structure, and the way of its point."""
 
-    force: Array
-    """Force (s, 2)."""
-    place: Array
-    """Places (s + 1, 2) of the point, rest first."""
-    couple: Array | float = 0.0
-    """Free moment (s,)."""
-    angle: Array | None = None
-    """Rotation (s + 1,) of the point where the scene prescribes it."""
+    force: Array  #: Force (s, 2).
+    place: Array  #: Places (s + 1, 2) of the point, rest first.
+    couple: Array | float = 0.0  #: Free moment (s,).
+    angle: Array | None = None  #: Rotation (s + 1,) of the point where the scene prescribes it.
 
     def moment(self, origin: Array) -> Array:
         """Return the moment (s,) about a point, with the free one."""
         x, y = (self.place[1:] - origin).T
         return np.asarray(self.couple + x * self.force[:, 1] - y * self.force[:, 0])
 
-    def work(self, chosen: NDArray[np.int64]) -> Array:
+    def work(self, chosen: Ints) -> Array:
         """Return the work between the chosen states, 0 the one at rest, where forces change linearly with the place."""
         force = np.vstack([np.zeros(2), self.force])[chosen]
         work = ((force[1:] + force[:-1]) / 2.0 * np.diff(self.place[chosen], axis=0)).sum(axis=1)
@@ -143,26 +139,26 @@ def _places(response: Response, scene: Scene, node: str) -> Array:
             return rest + np.array([(0.0, 0.0), *moved], dtype=np.float64)
     if end == scene.tip(beam):
         return np.vstack([rest, response.tips[beam]])
-    lines = [response.axis_line(beam, k)[1] for k in range(len(response.load_parameter))]
-    return np.vstack([rest, *(line[0 if end == "start" else -1] for line in lines)])
+    steps = range(-1, len(response.load_parameter))
+    return np.array([place_of(response, scene, node, k) for k in steps])
 
 
 def _supports(response: Response, scene: Scene) -> list[Action]:
-    times, actions = (0.0, *response.load_parameter.tolist()), []
-    for node, history in response.supports.items():
-        motion = scene.prescribed_motions.get(node)
-        angle = None if motion is None else np.array([motion.at(t)[2] or 0.0 for t in times])
-        actions.append(Action(history.force, _places(response, scene, node), history.moment, angle))
-    return actions
+    times, motions = (0.0, *response.load_parameter.tolist()), scene.prescribed_motions
+    turns = {node: np.array([motion.at(t)[2] or 0.0 for t in times]) for node, motion in motions.items()}
+    return [
+        Action(history.force, _places(response, scene, node), history.moment, turns.get(node))
+        for node, history in response.supports.items()
+    ]
 
 
 def _springs(response: Response, scene: Scene) -> list[Action]:
-    actions = []
-    for spring in scene.springs:
-        places, own = _places(response, scene, spring.node), response.springs.get(spring.node)
-        force = -np.array(spring.stiffness) * (places[1:] - places[0])
-        actions.append(Action(force, places, 0.0 if own is None else own.moment))
-    return actions
+    return [
+        Action(-np.array(spring.stiffness) * (places[1:] - places[0]), places, own.moment if own else 0.0)
+        for spring in scene.springs
+        for places in [_places(response, scene, spring.node)]
+        for own in [response.springs.get(spring.node)]
+    ]
 
 
 def _loads(response: Response, scene: Scene) -> list[Action]:
@@ -197,13 +193,13 @@ def _inside(response: Response, beam: BeamSpec, parts: Array, weights: Array, ac
     return Action(acting[:, :2] * weights.sum(), np.vstack([rest, centre]), acting[:, 2] * weights.sum())
 
 
-def _pins(response: Response, scene: Scene, outer: Array) -> tuple[NDArray[np.int64], Array, list[Action]]:
+def _pins(response: Response, scene: Scene, outer: Array) -> tuple[Ints, Array, list[Action]]:
     """Return the number of pins that push, the sum of their magnitudes, and their actions; a single pin balances the forces `outer`."""
     touching = [(spec, response.contacts[spec.pair]) for spec in scene.contacts if "." not in spec.node]
     forces = np.array([np.zeros(len(response.load_parameter)), *(item.force for _, item in touching)])
     pushing, actions = np.sum(forces > 0.0, axis=0), []
     for spec, history in touching:
-        places = [scene.pin(spec.node).position(t) for t in (0.0, *response.load_parameter.tolist())]
+        places = [place_of(response, scene, spec.node, k) for k in range(-1, len(outer))]
         vector = np.full_like(outer, np.nan) if history.vector is None else history.vector
         force = np.where((pushing <= 1)[:, None], -outer, vector)
         force = np.where((history.force > 0.0)[:, None], force, 0.0)

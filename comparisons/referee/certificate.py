@@ -21,27 +21,13 @@ class Verdict(Enum):
 
 
 class Judgement(Frozen):
-    """The verdict on an answer at one load parameter.
+    """The verdict on an answer at one load parameter."""
 
-    Attributes
-    ----------
-    load_parameter : float
-        Load parameter of the answer.
-    verdict : Verdict
-        The verdict.
-    reason : str
-        Reason of the verdict in one line.
-    distance : Distance or None
-        Differences from the exact equilibrium; None without one.
-    exact : Equilibrium or None
-        The exact equilibrium.
-    """
-
-    load_parameter: float
-    verdict: Verdict
-    reason: str
-    distance: Distance | None = None
-    exact: Equilibrium | None = field(default=None, repr=False)
+    load_parameter: float  #: Load parameter of the answer.
+    verdict: Verdict  #: The verdict.
+    reason: str  #: Reason of the verdict in one line.
+    distance: Distance | None = None  #: Differences from the exact equilibrium; None without one.
+    exact: Equilibrium | None = field(default=None, repr=False)  #: The exact equilibrium.
 
     @property
     def index(self) -> int:
@@ -55,30 +41,14 @@ class Judgement(Frozen):
 
 
 class Certificate(Frozen):
-    """The verdict on an answer along its path.
+    """The verdict on an answer along its path."""
 
-    Attributes
-    ----------
-    verdict : Verdict
-        The most serious verdict.
-    reason : str
-        Reason of the verdict in one line.
-    allowance : float
-        Largest difference allowed.
-    judged : tuple of Judgement
-        The judged load parameters, in order.
-    path : tuple of str
-        Violations between the load parameters, one sentence each.
-    seconds : float
-        Wall time [s].
-    """
-
-    verdict: Verdict
-    reason: str
-    allowance: float
-    judged: tuple[Judgement, ...]
-    path: tuple[str, ...]
-    seconds: float
+    verdict: Verdict  #: The most serious verdict.
+    reason: str  #: Reason of the verdict in one line.
+    allowance: float  #: Largest difference allowed.
+    judged: tuple[Judgement, ...]  #: The judged load parameters, in order.
+    path: tuple[str, ...]  #: Violations between the load parameters, one sentence each.
+    seconds: float  #: Wall time [s].
 
     @property
     def certified(self) -> bool:
@@ -92,35 +62,27 @@ class Certificate(Frozen):
 
     def as_dict(self) -> dict[str, Any]:
         """Return the certificate by the names of the JSON file."""
-        return {
-            "verdict": self.verdict.name,
-            "reason": self.reason,
-            "allowance": self.allowance,
-            "judged": [_as_dict(item) for item in self.judged],
-            "path": list(self.path),
-            "seconds": self.seconds,
-        }
+        judged = [_as_dict(item) for item in self.judged]
+        return {**vars(self), "verdict": self.verdict.name, "judged": judged, "path": list(self.path)}
 
 
 def _as_dict(item: Judgement) -> dict[str, Any]:
     """Return a judgement by the names of the JSON file."""
-    exact = item.exact
-    values: dict[str, Any] = {
-        "load_parameter": item.load_parameter,
+    values = {
+        **vars(item),
         "verdict": item.verdict.name,
-        "reason": item.reason,
-        "distance": None if item.distance is None else dict(item.distance.sizes),
-        "index": item.index,
-        "residual": item.residual,
+        "distance": item.distance and {**item.distance.sizes},
     }
+    exact: Equilibrium | None = values.pop("exact")
+    values |= {"index": item.index, "residual": item.residual}
     if exact is not None:
         values["exact"] = {
             "contacts": {
-                pair: {"force": list(map(float, here.force)), "arc_position": here.arc_position}
+                pair: {"force": here.force.tolist(), "arc_position": here.arc_position}
                 for pair, here in exact.contacts.items()
             },
-            "reactions": {end: list(map(float, held)) for end, held in exact.reactions.items()},
-            "ends": {end: list(map(float, place)) for end, place in exact.ends.items()},
+            "reactions": {end: held.tolist() for end, held in exact.reactions.items()},
+            "ends": {end: place.tolist() for end, place in exact.ends.items()},
             "strain_energy": exact.strain_energy,
         }
     return values

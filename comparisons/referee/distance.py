@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.answer import Response
+from comparisons.answer import Array, Response
+from comparisons.answer.axis import place_of
 from comparisons.answer.round_off import (
     LAST_PLACES,
     LEAST,
@@ -18,12 +19,11 @@ from comparisons.answer.round_off import (
     least_force,
 )
 from comparisons.frozen import Value
-from comparisons.referee.guess import SHORTEST, end_of
+from comparisons.referee.guess import SHORTEST
 from comparisons.referee.rod import angle, axis_at_rest, cross, face_of
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 
-Array = NDArray[np.float64]
 Scales = tuple[float, float, float]
 """Largest force, moment and displacement."""
 
@@ -48,27 +48,21 @@ _SHARPEST = 1.4
 class Distance(Value):
     """Largest differences between an answer and the exact equilibrium.
 
-    Attributes
-    ----------
-    sizes : dict of float
-        By name, infinite for missing or unknown items, zero where there is nothing to compare:
-        `force` of a contact as a vector, over the largest contact force;
-        `arc_position`, `tip`, the distance of a beam's free or less restrained end, `shape`, that of an axis, and `gap`, over the beam's length;
-        `reaction`, of the force or moment of a support or spring, over the largest force or moment of supports, contacts and loads;
-        `sections`, of a section force N, V or M, over the same;
-        `displacement`, the largest distance of a tip or an axis over the largest exact displacement;
-        `place`, the violation of the constraints by the answer itself: distance of its axis from the touching points of the contacts and
-        from the prescribed positions of the supports, over the beam's length, less the error of the chords between the points of the axis;
-        `constraint`, the largest of these over the largest exact displacement.
-    where : dict of str
-        The pair, supported end or beam that has the largest difference, by the same names; none where there is nothing to compare.
-    scales : (float, float, float)
-        Largest force, moment and displacement of the exact equilibrium.
+    The `sizes` are infinite for missing or unknown items, zero where there is nothing to compare:
+    `force` of a contact as a vector, over the largest contact force;
+    `arc_position`, `tip`, the distance of a beam's free or less restrained end, `shape`, that of an axis, and `gap`, over the beam's length;
+    `reaction`, of the force or moment of a support or spring, over the largest force or moment of supports, contacts and loads;
+    `sections`, of a section force N, V or M, over the same;
+    `displacement`, the largest distance of a tip or an axis over the largest exact displacement;
+    `place`, the violation of the constraints by the answer itself: distance of its axis from the touching points of the contacts and
+    from the prescribed positions of the supports, over the beam's length, less the error of the chords between the points of the axis;
+    `constraint`, the largest of these over the largest exact displacement.
     """
 
-    sizes: Mapping[str, float]
+    sizes: Mapping[str, float]  #: By name.
+    #: The pair, supported end or beam with the largest difference by name; none where there is nothing to compare.
     where: Mapping[str, str] = field(repr=False)
-    scales: Scales
+    scales: Scales  #: Those of the exact equilibrium.
 
     @property
     def largest(self) -> tuple[str, float]:
@@ -272,19 +266,17 @@ def _loads(scene: Scene, t: float) -> Iterator[tuple[float, float, float]]:
 def _misplaced(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple[str, float, float]]:
     """Yield pairs and supported ends, how far the answer's axes violate their constraints, and the lengths of the beams."""
     scene = exact.scene
-
-    def end(node: str) -> Array:
-        return end_of(node, lambda beam: response.axis_line(beam, k))
-
     for spec in scene.contacts:
         if spec.pair in exact.contacts:
             arc = float(response.contacts[spec.pair].arc_position[k])
             place, cut = _on_axis(*response.axis_line(spec.beam, k), arc)
-            node = end(spec.node) if "." in spec.node else exact.place(spec.node)
-            apart = abs(math.hypot(*(place - node)) - face_of(scene, spec).reach(arc))
+            apart = abs(
+                math.hypot(*(place - place_of(response, scene, spec.node, k)))
+                - face_of(scene, spec).reach(arc)
+            )
             yield spec.pair, max(0.0, apart - cut), scene.beam(spec.beam).length
     for support in scene.all_supports:
-        way = (end(support.node) - scene.place(support.node)).tolist()
+        way = (place_of(response, scene, support.node, k) - scene.place(support.node)).tolist()
         motion = scene.prescribed_motions[support.node].at(exact.load_parameter)
         off = [_size(abs(x - to)) for x, to in zip(way, motion, strict=False) if to is not None]
         if off:

@@ -18,13 +18,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legint, legvander
 from numpy.polynomial.polynomial import polyder, polyval
-from numpy.typing import NDArray
 
+from comparisons.answer import Array, Ints
 from comparisons.referee.layout import Layout
 from comparisons.referee.rod import Piece
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 DEGREE = 16
 """Degree p of the rotation on an element."""
@@ -63,20 +60,15 @@ def up_to(xi: Array) -> Array:
 class Mesh(NamedTuple):
     """Elements of all parts, in order."""
 
-    grids: list[Array]
-    """Their ends as fractions of every part, from 0 to 1."""
+    grids: list[Array]  #: Their ends as fractions of every part, from 0 to 1.
     part: Ints
     start: Array
-    share: Array
-    """Start and length (e,) as fractions of the part."""
-    local: Ints
-    """Numbers (e, 6) of `theta_a, theta_b, c_x, c_y, s_a, s_b`."""
-    unknowns: int
-    """Number of unknowns including the vertices inside the parts, without the bubbles."""
-    points: Array
-    """Gauss points (e, g) as fractions of the part."""
+    share: Array  #: Start and length (e,) as fractions of the part.
+    local: Ints  #: Numbers (e, 6) of `theta_a, theta_b, c_x, c_y, s_a, s_b`.
+    unknowns: int  #: Number of unknowns including the vertices inside the parts, without the bubbles.
+    points: Array  #: Gauss points (e, g) as fractions of the part.
+    #: From the unknowns of an element to theta, theta_xi, c_x, c_y, half and s at its points, (e, g, 6, p + 5).
     to: Array
-    """From the unknowns of an element to theta, theta_xi, c_x, c_y, half and s at its points, (e, g, 6, p + 5)."""
 
 
 def mesh_of(layout: Layout, grids: list[Array]) -> Mesh:
@@ -111,18 +103,11 @@ def rotations(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> Array:
 
 def elements(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> tuple[Array, Array, Array]:
     """Gradient (e, p + 5) and Hessian of the energy in `theta_a, theta_b, c_x, c_y, s_a, s_b` and the bubbles; strain energy (e,)."""
-    ends, x, to, coefficients = (
-        layout.extents(z)[mesh.part],
-        mesh.points,
-        mesh.to,
-        rotations(layout, mesh, z, bubbles),
-    )
+    ends, x, to = layout.extents(z)[mesh.part], mesh.points, mesh.to
+    coefficients = rotations(layout, mesh, z, bubbles)
     extent, given = np.diff(ends), np.empty((6, *x.shape))
-    given[0], given[1], given[2:4] = (
-        coefficients @ VALUES.T,
-        coefficients @ SLOPES.T,
-        z[mesh.local[:, 2:4]].T[..., None],
-    )
+    given[0], given[1] = coefficients @ VALUES.T, coefficients @ SLOPES.T
+    given[2:4] = z[mesh.local[:, 2:4]].T[..., None]
     given[4], given[5] = mesh.share[:, None] * extent / 2.0, ends[:, :1] + extent * x
     steps = given[..., None] + 1j * STEP * np.eye(6)[:, None, None]
     found = _at_points(layout.pieces(mesh.part), steps.reshape(6, len(x), -1)).reshape(7, *steps.shape[1:])

@@ -15,14 +15,11 @@ this one: see `comparisons.referee.touching`.
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from comparisons.answer import Array
 from comparisons.referee.elements import OUTER, STEP, Mesh, elements
 from comparisons.referee.layout import NONE, Layout, Touch
 from comparisons.referee.touching import rows
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class System(NamedTuple):
@@ -30,15 +27,13 @@ class System(NamedTuple):
 
     gradient: Array
     hessian: Array
-    held: Array
-    """Gradient by the prescribed quantities: the forces and moments that hold them."""
+    held: Array  #: Gradient by the prescribed quantities: the forces and moments that hold them.
     shift: Array
+    #: If the other unknowns of an element change by x, its bubbles change by ``-(shift + lever x)``.
     lever: Array
-    """If the other unknowns of an element change by x, its bubbles change by ``-(shift + lever x)``."""
-    blocks: Array
-    """Hessians of the bubbles."""
+    blocks: Array  #: Hessians of the bubbles.
+    #: Moments (e, 2) at the elements' ends from the gradient, since a derivative of the rotation would lose digits.
     ends: Array
-    """Moments (e, 2) at the elements' ends from the gradient, since a derivative of the rotation would lose digits."""
     energy: float
 
 

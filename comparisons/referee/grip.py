@@ -17,16 +17,12 @@ class Hold(Value):
     """The place at which a contact began to stick, with lengths in units of the layout."""
 
     load_parameter: float
-    arc_position: float
-    """s*."""
-    stretch: float
-    """A*."""
-    shear: float
-    """psi*."""
-    direction: float
-    """phi*."""
+    arc_position: float  #: s*.
+    stretch: float  #: A*.
+    shear: float  #: psi*.
+    direction: float  #: phi*.
+    #: c as functions of the load parameter, each from a load parameter on.
     areas: tuple[tuple[float, Polynomial], ...] = ()
-    """c as functions of the load parameter, each from a load parameter on."""
 
     def area(self, t: float) -> float:
         """Return c at a load parameter."""
@@ -36,12 +32,9 @@ class Hold(Value):
 class Grip(Value):
     """How a contact with friction is held."""
 
-    friction: float
-    """Coefficient of friction."""
-    slip: int
-    """The sign sigma of the slip rate; 0 in stick."""
-    hold: Hold | None = None
-    """Where the stick began; None in slip."""
+    friction: float  #: Coefficient of friction.
+    slip: int  #: The sign sigma of the slip rate; 0 in stick.
+    hold: Hold | None = None  #: Where the stick began; None in slip.
 
 
 LOOSE = Grip(friction=0.0, slip=1)

@@ -6,15 +6,13 @@ from dataclasses import field
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
-from numpy.typing import NDArray
 
-from comparisons.answer import ContactHistory, Response
+from comparisons.answer import Array, ContactHistory, Response
 from comparisons.frozen import Frozen
 from comparisons.referee.grip import Grip
 from comparisons.referee.layout import NONE, Layout, Part
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 
-Array = NDArray[np.float64]
 Rotations = tuple[Array, Array]
 """Arc positions from one end of a beam to the other, and rotations of its sections there, linear in between; in units of `Layout`."""
 
@@ -25,29 +23,16 @@ SHORTEST = 1e-9
 
 
 class AnswerState(Frozen):
-    """An answer at one load parameter, in the scene's units.
+    """An answer at one load parameter, in the scene's units."""
 
-    Attributes
-    ----------
-    load_parameter : float
-        Load parameter of the answer.
-    arcs : dict of float
-        Arc position of every closed pair, by the pair's name.
-    forces : dict of sequence of float
-        Contact force of every pair that has one, on its beam.
-    axes : dict of (ndarray, ndarray)
-        Arc lengths (m,) and deformed positions (m, 2) of every beam's axis.
-    reactions : dict of sequence of float
-        Force and moment of every support, by the supported end.
-    grips : dict of Grip
-        How friction holds the closed pairs; pairs without a grip have no friction.
-    """
-
-    load_parameter: float
-    axes: dict[str, tuple[Array, Array]]
-    arcs: dict[str, float] = field(default_factory=dict)
+    load_parameter: float  #: Load parameter of the answer.
+    axes: dict[str, tuple[Array, Array]]  #: Arc lengths (m,) and deformed positions (m, 2) of every axis.
+    arcs: dict[str, float] = field(default_factory=dict)  #: Arc positions of the closed pairs.
+    #: Contact forces of the pairs that have one, on their beams.
     forces: Mapping[str, Sequence[float] | Array] = field(default_factory=dict)
+    #: Force and moment of every support, by the supported end.
     reactions: Mapping[str, Sequence[float] | Array] = field(default_factory=dict)
+    #: How friction holds the closed pairs; pairs without a grip have no friction.
     grips: dict[str, Grip] = field(default_factory=dict)
 
 
@@ -68,12 +53,6 @@ def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
             node: (*item.force[k].tolist(), float(item.moment[k])) for node, item in response.supports.items()
         },
     )
-
-
-def end_of(node: str, axis_line: Callable[[str], tuple[Array, Array]]) -> Array:
-    """Return the position of a beam's end such as ``upper.end`` on the beams' axes."""
-    beam, _, end = node.partition(".")
-    return np.asarray(axis_line(beam)[1][0 if end == "start" else -1])
 
 
 def pull_allowed(beam: BeamSpec) -> float:

@@ -14,9 +14,10 @@ from comparisons.referee.grip import UnknownFrictionError
 from comparisons.referee.guess import answer_state, idle_at_an_end, pull_allowed
 from comparisons.referee.newton import equilibrium
 from comparisons.referee.path import at_rest, reach, way_to
-from comparisons.referee.rod import angle, cross, face_of
+from comparisons.referee.rod import angle, face_of
 from comparisons.referee.state import Equilibrium, SearchStatus
 from comparisons.scene import ContactSpec, Scene
+from comparisons.scene.ends import free_ends
 
 if TYPE_CHECKING:
     from comparisons.referee.friction import History
@@ -179,17 +180,12 @@ def inadmissible(exact: Equilibrium) -> Iterator[str]:
 
 def _rooms(exact: Equilibrium, spec: ContactSpec) -> Iterator[tuple[str, float]]:
     """Distance of a round pin beyond an end from the segment across that end, for the ends that no other beam shares."""
-    scene, node = exact.scene, exact.place(spec.node)
-    beam, radius = scene.beam(spec.beam), scene.radius(spec)
-    for end, arc, out in (("start", 0.0, -1.0), ("end", beam.length, 1.0)):
-        half = beam.height_at(arc / beam.length) / 2.0 if spec.surface == "face" else 0.0
-        if any(f"{spec.beam}.{end}" in item.joint and len(item.joint) > 1 for item in exact.layout.stations):
-            continue
-        there = exact.shape(spec.beam, np.array([arc]))
-        away, tangent = node - there.position[0], out * there.tangent[0] / np.hypot(*there.tangent[0])
-        along, across = float(tangent @ away), abs(float(cross(tangent, away)))
-        if along > 0.0:
-            yield end, math.hypot(along, max(across - half, 0.0)) - radius
+    x, y = exact.place(spec.node).tolist()
+    for end in free_ends(exact.scene, spec):
+        at, way = (0.0, 1.0) if end.name == "start" else (exact.scene.beam(spec.beam).length, -1.0)
+        there = exact.shape(spec.beam, np.array([at]))
+        place, inward = there.position[0].tolist(), (way * there.tangent[0]).tolist()
+        yield end.name, end._replace(place=tuple(place), inward=tuple(inward)).room((x, y))
 
 
 def _least_gap(exact: Equilibrium, spec: ContactSpec) -> tuple[float, float]:

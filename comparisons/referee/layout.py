@@ -15,15 +15,12 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from comparisons.answer import Array, Ints
 from comparisons.frozen import Frozen, Value
 from comparisons.referee.grip import Grip
 from comparisons.referee.rod import Face, Piece, Rod, face_of, rod_of, trimmed, units_of
 from comparisons.scene import ContactSpec, Scene
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 NONE = -1
 """Number of a quantity that is zero."""
@@ -42,31 +39,25 @@ class Touch(Value):
     """
 
     spec: ContactSpec
-    arc: int
-    """Number of the arc position."""
-    angle: int
-    """Number of phi; `NONE` without offset."""
+    arc: int  #: Number of the arc position.
+    angle: int  #: Number of phi; `NONE` without offset.
     face: Face
-    grip: Grip | None
-    """How friction holds the contact; None without friction."""
+    grip: Grip | None  #: How friction holds the contact; None without friction.
 
 
 class Station(Frozen):
     """An end of a beam, a joint, a contact, or a place inside a beam; of a contact, the position is that of the touching point."""
 
-    reference: Array
-    """Undeformed position (2,), which may be far larger than the displacement."""
-    numbers: Ints
-    """Numbers (3,) of the displacement and the rotation."""
+    reference: Array  #: Undeformed position (2,), which may be far larger than the displacement.
+    numbers: Ints  #: Numbers (3,) of the displacement and the rotation.
+    #: Dead force and moment (3,); at the end of a beam with the resultant of the load along it, since the part has c = n + W there.
     load: Array = field(default_factory=lambda: np.zeros(3))
-    """Dead force and moment (3,); at the end of a beam with the resultant of the load along it, since the part has c = n + W there."""
+    #: Stiffnesses (3,) against displacement and rotation.
     springs: Array = field(default_factory=lambda: np.zeros(3))
-    """Stiffnesses (3,) against displacement and rotation."""
     touch: Touch | None = None
-    ends: tuple[str, ...] = ()
-    """Ends of beams that are rigidly attached."""
+    ends: tuple[str, ...] = ()  #: Ends of beams that are rigidly attached.
+    #: Ends of all beams at a joint, with those behind a hinge; empty for other stations.
     joint: tuple[str, ...] = ()
-    """Ends of all beams at a joint, with those behind a hinge; empty for other stations."""
 
     def turning(self, rotation: int, **more: Any) -> "Station":
         """Return a station at the same place with a rotation of its own."""
@@ -87,10 +78,8 @@ class Part(Frozen):
     beam: int
     first: int
     last: int
-    arcs: tuple[int, int]
-    """Numbers of the arc positions of both stations."""
-    force: int
-    """Number of the first of the two components of c."""
+    arcs: tuple[int, int]  #: Numbers of the arc positions of both stations.
+    force: int  #: Number of the first of the two components of c.
     rod: Rod
     piece: Piece
 
@@ -109,10 +98,8 @@ class Layout(Frozen):
     stations: tuple[Station, ...]
     parts: tuple[Part, ...]
     hinges: tuple[Hinge, ...]
-    given: Array
-    """Prescribed quantities."""
-    unknowns: int
-    """Number of unknowns without the rotations inside the parts."""
+    given: Array  #: Prescribed quantities.
+    unknowns: int  #: Number of unknowns without the rotations inside the parts.
 
     @cached_property
     def touched(self) -> list[tuple[int, Touch]]:
@@ -323,21 +310,14 @@ def _joints(
         turns = bool(own or springs[2] or any(hinged.get(end) for end in ends))
         loads = _total(item.at(t) for item in scene.load_histories if item.load.node in ends)
         along = _total(resultants[end] for end in own if end in resultants)
-        stations.append(
-            Station(
-                reference=_place(scene, point, length),
-                numbers=np.array(
-                    [
-                        numbers.free(1)[0] if way is None and free else numbers.fixed((way or 0.0) / size)
-                        for way, size, free in zip(motion, (length, length, 1.0), (1, 1, turns), strict=True)
-                    ]
-                ),
-                load=loads / unit + along,
-                springs=springs * (length, length, 1.0) / unit,
-                ends=own,
-                joint=tuple(ends),
-            )
-        )
+        given = [
+            numbers.free(1)[0] if way is None and free else numbers.fixed((way or 0.0) / size)
+            for way, size, free in zip(motion, (length, length, 1.0), (1, 1, turns), strict=True)
+        ]
+        stations.append(Station(
+            reference=_place(scene, point, length), numbers=np.array(given), load=loads / unit + along,
+            springs=springs * (length, length, 1.0) / unit, ends=own, joint=tuple(ends),
+        ))  # fmt: skip
     hinges: list[Hinge] = []
     for node, stiffness in hinged.items():
         joint = next(k for k, item in enumerate(stations) if node in item.joint)

@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from comparisons.answer import Array, Ints
 from comparisons.referee.elements import AMPLITUDE, DEGREE, GAUSS, VALUES, Mesh, mesh_of
 from comparisons.referee.equations import scales
 from comparisons.referee.grip import Grip
@@ -14,9 +14,6 @@ from comparisons.referee.layout import Layout, lay_out
 from comparisons.referee.rod import largest
 from comparisons.referee.state import Change, Equilibrium, SearchStatus, Shape, located, tails
 from comparisons.scene import Scene
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _RESOLVED = 3e-14
 """Largest amplitude of the last two bubbles of a resolved element [rad]."""

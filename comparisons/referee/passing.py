@@ -8,14 +8,14 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from comparisons.answer import ContactEvent, Response
+from comparisons.answer import Array, ContactEvent, Response
+from comparisons.answer.axis import place_of
 from comparisons.referee.distance import gap_off, largest_force
 from comparisons.referee.grip import UnknownFrictionError
-from comparisons.referee.guess import answer_state, end_of
+from comparisons.referee.guess import answer_state
 from comparisons.referee.newton import equilibrium
-from comparisons.referee.path import PASSES, at_rest, changes_of, reach, same, way_to
+from comparisons.referee.path import CLOSES, OPENS, PASSES, STAYS, at_rest, changes_of, reach, same, way_to
 from comparisons.referee.rod import axis_at_rest, cross, face_of
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import ContactSpec, Scene
@@ -23,10 +23,7 @@ from comparisons.scene import ContactSpec, Scene
 if TYPE_CHECKING:
     from comparisons.referee.friction import History
 
-Array = NDArray[np.float64]
-
-OPENS, CLOSES = ("release", "slip-off"), ("touch",)
-KINDS = (*OPENS, *CLOSES, "slip", "stick", PASSES)
+KINDS = (*CLOSES, *OPENS, *STAYS, PASSES)
 """Kinds of contact events."""
 CRITICAL = ("limit-point", "bifurcation")
 """Kinds of events without a contact."""
@@ -34,8 +31,6 @@ ENDING = ("line-contact", "end-contact")
 """Kinds of events at which a contact ends the solution."""
 SAMPLES = 101
 """Positions of a node between two load parameters at which its side of the beam is determined."""
-_CLOSED = ("pass-through", "slip", "stick")
-"""Kinds of events at which a contact stays closed."""
 _STEPS = 32
 """Steps in which a path is followed where a node gets behind a beam."""
 _UNSURE, _NEARLY = 0.5, 0.1
@@ -93,7 +88,11 @@ def changes(response: Response, scene: Scene) -> Iterator[str]:
     times = np.concatenate([[0.0], response.load_parameter])
     for spec in scene.contacts:
         contact = response.contacts[spec.pair]
-        own = [event for event in response.events if event.pair == spec.pair and event.kind not in _CLOSED]
+        own = [
+            event
+            for event in response.events
+            if event.pair == spec.pair and event.kind not in (*STAYS, PASSES)
+        ]
         if np.isfinite(contact.slip_off) and not any(event.kind == "slip-off" for event in own):
             yield f"{spec.pair} slips off at load parameter {contact.slip_off:.6g} without an event"
         closed = contact.force != 0.0
@@ -136,15 +135,9 @@ class _Pair:
 
     def passes(self, way: list[Equilibrium], before: bool) -> bool:
         """Whether the node, first at the pair's side or closed, passes through the beam on a way, and does not return."""
-        arcs, through = self.response.axis_line(self.spec.beam, 0)[0], False
-        steps = [
-            _Moment(
-                exact.load_parameter,
-                exact.shape(self.spec.beam, arcs).position,
-                np.asarray(exact.place(self.spec.node)),
-            )
-            for exact in way
-        ]
+        beam, node, through = self.spec.beam, self.spec.node, False
+        arcs = self.response.axis_line(beam, 0)[0]
+        steps = [_Moment(one.load_parameter, one.shape(beam, arcs).position, one.place(node)) for one in way]
         for begin, end in pairwise(steps):
             gap, inside = self.place(end)
             through = through or self.depth(begin, end, before) >= (_NEARLY if inside < 0.0 else 0.0)
@@ -183,14 +176,11 @@ class _Pair:
 
     def moment(self, k: int) -> _Moment:
         """The beam and the node at load parameter k; undeformed for k = -1."""
-
-        def axis(beam: str) -> tuple[Array, Array]:
-            arc, line = self.response.axis_line(beam, max(k, 0))
-            return arc, line if k >= 0 else axis_at_rest(self.scene.beam(beam), arc)
-
-        t, node = float(self.response.load_parameter[k]) if k >= 0 else 0.0, self.spec.node
-        place = end_of(node, axis) if "." in node else np.array(self.scene.pin(node).position(t))
-        return _Moment(t, axis(self.spec.beam)[1], place)
+        arc, line = self.response.axis_line(self.spec.beam, max(k, 0))
+        node = place_of(self.response, self.scene, self.spec.node, k)
+        if k < 0:
+            return _Moment(0.0, axis_at_rest(self.scene.beam(self.spec.beam), arc), node)
+        return _Moment(float(self.response.load_parameter[k]), line, node)
 
     def place(self, now: _Moment) -> tuple[float, float]:
         """Gap of the node from the curve of touching nodes, which goes on straight beyond the ends, and distance inside the nearer end."""

@@ -6,9 +6,8 @@ from functools import lru_cache
 from operator import itemgetter
 
 import numpy as np
-from numpy.typing import NDArray
 
-from comparisons.answer import ContactEvent, Response
+from comparisons.answer import Array, ContactEvent, Response
 from comparisons.referee.elements import mesh_of
 from comparisons.referee.equations import orientation_of
 from comparisons.referee.grip import LOOSE, Grip
@@ -18,7 +17,6 @@ from comparisons.referee.rod import largest
 from comparisons.referee.state import Change, Equilibrium, located
 from comparisons.scene import Scene
 
-Array = NDArray[np.float64]
 Held = Callable[[float], Mapping[str, Grip]]
 """How friction holds the contacts at a load parameter."""
 
@@ -49,12 +47,10 @@ _MEET, _MEETING = 1e-4, 0.02
 before and behind the place where they pass each other."""
 _PLACES = np.linspace(0.0, 1.0, 33)
 """Fractions of a part at which rotations are compared."""
-_SWITCHED, _STAYS = ("touch", "release"), ("slip", "stick")
-"""Kinds of events without a jump at which a contact closes or opens, and at which it stays closed."""
 _LEAVING = 1e-3
 """Part of the way to the next change, behind which a contact that touches has a force, and two that pass each other are apart."""
-
-PASSES = "pass-through"
+CLOSES, OPENS, STAYS, PASSES = ("touch",), ("release", "slip-off"), ("slip", "stick"), "pass-through"
+"""Kinds of events at which a contact closes, opens, by a slip-off with a jump, stays closed, and at which nothing changes."""
 
 
 def changes_of(response: Response, pair: str = "") -> list[ContactEvent]:
@@ -130,7 +126,7 @@ def way_to(
         (t, None) for t in np.linspace(start, end, steps + 1)[1:].tolist()
     ]
     marks = sorted([*marks, *((event.load_parameter, event) for event in events)], key=itemgetter(0))
-    kinds = (*_SWITCHED, *_STAYS) if held else _SWITCHED
+    kinds = (*CLOSES, OPENS[0], *(STAYS if held else ()))
     rubs = bool(marks and now.layout.grips and not held)
     if rubs or not now.found or any(event.kind not in kinds for event in events):
         return []
@@ -172,7 +168,7 @@ def _from_the_start(response: Response) -> Iterator[ContactEvent]:
 
 def _changed(now: Equilibrium, event: ContactEvent, grips: Mapping[str, Grip], after: float) -> Equilibrium:
     """Return the equilibrium behind an event; behind a touch at the load parameter `after`."""
-    arcs = {pair: arc for pair, arc in now.closed.items() if pair != event.pair or event.kind in _STAYS}
+    arcs = {pair: arc for pair, arc in now.closed.items() if pair != event.pair or event.kind in STAYS}
     if event.kind != "touch":
         return switched(now, arcs, grips, now.load_parameter)
     # where there is no force yet, the direction of a face is not stationary at one place only

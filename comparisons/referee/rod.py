@@ -16,12 +16,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial.polynomial import polyint, polymul, polyval
-from numpy.typing import NDArray
 
+from comparisons.answer import Array
 from comparisons.frozen import Frozen
 from comparisons.scene import BeamSpec, ContactSpec, Scene
-
-Array = NDArray[np.float64]
 
 Units = tuple[float, float]
 """Units of length and force."""
@@ -53,11 +51,10 @@ class Piece(NamedTuple):
     Arc positions and rotations are arrays that broadcast against the pieces, and may be complex.
     """
 
+    #: Coefficients (5, 5, ...) of EI, EA, GA, W_x and W_y as polynomials in the arc position, ascending.
     coefficients: Array
-    """Coefficients (5, 5, ...) of EI, EA, GA, W_x and W_y as polynomials in the arc position, ascending."""
     curvature: Array
-    start_angle: Array
-    """Angle of the undeformed axis at the start of the rod."""
+    start_angle: Array  #: Angle of the undeformed axis at the start of the rod.
 
     def angle(self, s: Any) -> Any:
         """Angle beta of the undeformed axis."""
@@ -99,11 +96,10 @@ class Rod(Frozen):
     """A beam in the units of a layout."""
 
     length: float
-    softest: tuple[float, float, float]
-    """Smallest EI, largest 1/EA and largest 1/GA along the beam."""
+    softest: tuple[float, float, float]  #: Smallest EI, largest 1/EA and largest 1/GA along the beam.
     pieces: tuple[Piece, ...]
+    #: Arc positions of the ends of pieces: the beam's ends, ends of line loads, and point loads inside.
     breaks: list[float]
-    """Arc positions of the ends of pieces: the beam's ends, ends of line loads, and point loads inside."""
 
     @property
     def curvature(self) -> float:
@@ -167,14 +163,10 @@ def _linear(given: float | tuple[float, float] | None, extent: float) -> Array:
 class Face(NamedTuple):
     """Place of a node, or of a round pin's centre, that touches a beam: at the distance `reach` from the axis."""
 
-    left: float
-    """1 on the left of the beam, -1 on its right."""
-    start: float
-    """Distance at the start of the beam."""
-    slope: float
-    """Derivative of the distance by the arc position."""
-    radius: float
-    """Radius of the pin; 0 for a point."""
+    left: float  #: 1 on the left of the beam, -1 on its right.
+    start: float  #: Distance at the start of the beam.
+    slope: float  #: Derivative of the distance by the arc position.
+    radius: float  #: Radius of the pin; 0 for a point.
 
     def reach(self, arc: Any) -> Any:
         """Distance at arc positions."""

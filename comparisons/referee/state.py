@@ -5,8 +5,8 @@ from enum import Enum
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from comparisons.answer import Array, Ints
 from comparisons.frozen import Frozen
 from comparisons.referee.elements import AMPLITUDE, VALUES, WEIGHTS, Mesh, rotations, shapes, up_to
 from comparisons.referee.equations import System, assemble, index_of
@@ -14,8 +14,6 @@ from comparisons.referee.layout import NONE, Layout, Touch
 from comparisons.referee.rod import cross
 from comparisons.scene import Scene
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Change = tuple[Array, Array]
 """Changes of the unknowns and of the bubbles."""
 _INSIDE = 1.0 - 1e-9
@@ -23,43 +21,23 @@ _INSIDE = 1.0 - 1e-9
 
 
 class Contact(Frozen):
-    """A closed contact in exact equilibrium.
+    """A closed contact in exact equilibrium."""
 
-    Attributes
-    ----------
-    force : ndarray, shape (2,)
-        Contact force on the beam.
-    push : float
-        Component of the force along the normal to the mean of the two tangent directions; positive in compression.
-    drag : float
-        Component of the force along the mean of the two tangent directions; zero without friction.
-    arc_position : float
-        Distance along the undeformed axis from the beam's start.
-    """
-
-    force: Array
-    push: float
-    drag: float
-    arc_position: float
+    force: Array  #: Contact force on the beam, shape (2,).
+    push: float  #: Component along the normal to the mean of the two tangents; positive in compression.
+    drag: float  #: Component along the mean of the two tangents; zero without friction.
+    arc_position: float  #: Distance along the undeformed axis from the beam's start.
 
 
 class Shape(Frozen):
-    """Positions and section forces along a beam.
+    """Positions and section forces at m places along a beam."""
 
-    Attributes
-    ----------
-    position, tangent : ndarray, shape (m, 2)
-        Position and its derivative by arc length; at a contact the derivative behind it.
-    rotation, moment, N, Q : ndarray, shape (m,)
-        Rotation of the section, bending moment, normal and shear force.
-    """
-
-    position: Array
-    tangent: Array
-    rotation: Array
-    moment: Array
-    N: Array
-    Q: Array
+    position: Array  #: Positions (m, 2).
+    tangent: Array  #: Derivative of the position by arc length (m, 2); at a contact the one behind it.
+    rotation: Array  #: Rotation of the section (m,).
+    moment: Array  #: Bending moment (m,).
+    N: Array  #: Normal force (m,).
+    Q: Array  #: Shear force (m,).
 
 
 class SearchStatus(Enum):
@@ -72,28 +50,17 @@ class SearchStatus(Enum):
 
 
 class Equilibrium(Frozen):
-    """The exact equilibrium near an answer, or a guess of it, by the unknowns of a layout.
-
-    Attributes
-    ----------
-    status : SearchStatus
-        Outcome of the search; what follows from the unknowns is valid for `SearchStatus.FOUND` only.
-    message : str
-        The status as a sentence.
-    iterations : int
-        Number of Newton iterations.
-    """
+    """The exact equilibrium near an answer, or a guess of it, by the unknowns of a layout."""
 
     layout: Layout = field(repr=False)
     mesh: Mesh = field(repr=False)
     z: Array = field(repr=False)
-    bubbles: Array = field(repr=False)
-    """Coefficients (e, p - 1) of the bubbles."""
+    bubbles: Array = field(repr=False)  #: Coefficients (e, p - 1) of the bubbles.
+    #: Outcome of the search; what follows from the unknowns is valid for `SearchStatus.FOUND` only.
     status: SearchStatus = SearchStatus.NO_EQUILIBRIUM
-    message: str = ""
-    iterations: int = 0
-    correction: float = np.inf
-    """Last correction of the unknowns."""
+    message: str = ""  #: The status as a sentence.
+    iterations: int = 0  #: Number of Newton iterations.
+    correction: float = np.inf  #: Last correction of the unknowns.
 
     def plus(self, change: Change, part: float = 1.0) -> "Equilibrium":
         """Return the guess with a part of a change."""
@@ -131,14 +98,10 @@ class Equilibrium(Frozen):
         for touch in layout.touches:
             before, behind = layout.beside(touch)
             force = layout.force * (before.constant(self.z) - behind.constant(self.z))[:, 0]
-            mean = np.sum(self.tangents(touch), axis=0)
+            mean, pair = np.sum(self.tangents(touch), axis=0), touch.spec.pair
             size = np.hypot(*mean)
-            found[touch.spec.pair] = Contact(
-                force=force,
-                push=float(-touch.face.left * cross(mean, force) / size),
-                drag=float(mean @ force / size),
-                arc_position=self.closed[touch.spec.pair],
-            )
+            push, drag = float(-touch.face.left * cross(mean, force) / size), float(mean @ force / size)
+            found[pair] = Contact(force=force, push=push, drag=drag, arc_position=self.closed[pair])
         return found
 
     @cached_property

@@ -21,13 +21,11 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from comparisons.answer import Array
 from comparisons.referee.elements import STEP
 from comparisons.referee.grip import LOOSE
 from comparisons.referee.layout import Layout, Touch
-
-Array = NDArray[np.float64]
 
 
 def rows(layout: Layout, touch: Touch, z: Array, moment: float) -> tuple[list[int], Array, Array]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from comparisons.answer.table import unit_names
 from comparisons.files import OutputError, replacing
-from comparisons.models.model import Count, uncounted
+from comparisons.models.model import Count, unwatched
 from comparisons.report import palette
 from comparisons.report.export import Series
 from comparisons.report.panel import COLOURS, Panel, Scale, panel
@@ -67,7 +67,7 @@ def write_stress(panels: Sequence[Panel], wide: float, scene: Scene, t: float, p
     save(drawn.figure, path)
 
 
-def write_film(shown: Film, folder: Path, count: Count = uncounted) -> list[Path]:
+def write_film(shown: Film, folder: Path, count: Count = unwatched) -> list[Path]:
     """Write ``view.png``, the last state, and ``view.gif``; `count` receives the pictures that are drawn."""
     from PIL import Image
 

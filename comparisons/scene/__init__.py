@@ -8,7 +8,7 @@ from comparisons.scene.read import built_in_scenes, load_scene, read_scene, to_t
 from comparisons.scene.rules import FieldError
 from comparisons.scene.scene import Scene
 from comparisons.scene.stages import PinMove, StageSpec, SupportMove
-from comparisons.scene.tables import InputError, SceneError
+from comparisons.scene.tables import InputError
 
 __all__ = [
     "SPECIAL",
@@ -21,7 +21,6 @@ __all__ = [
     "PinMove",
     "PinSpec",
     "Scene",
-    "SceneError",
     "SpringSpec",
     "StageSpec",
     "SupportMove",

@@ -10,7 +10,7 @@ from comparisons.scene.record import Record, lists_of, rule_of
 from comparisons.scene.rules import MISSING, UNREADABLE, RecordError, Records, toml_value
 from comparisons.scene.scene import Scene
 from comparisons.scene.tables import (
-    SceneError,
+    InputError,
     check_keys,
     check_table,
     read_tables,
@@ -39,7 +39,7 @@ def load_scene(scene: str) -> Scene:
 
     Raises
     ------
-    SceneError
+    InputError
         All mistakes in the order of the file, each in one line: file, key, value and rule.
 
     Examples
@@ -48,7 +48,7 @@ def load_scene(scene: str) -> Scene:
     0.02
     """
     if not scene:
-        raise SceneError('""', "must name a scene")
+        raise InputError('""', "must name a scene")
     names = [path.stem for path in FOLDER.glob("*.toml")]
     if scene in names:
         return read_scene((FOLDER / f"{scene}.toml").read_text(encoding="utf-8"), scene)
@@ -65,7 +65,7 @@ def read_scene(text: str, source: str) -> Scene:
 
     Raises
     ------
-    SceneError
+    InputError
         All mistakes in the order of the text, each in one line: file, key, value and rule.
     """
     tables, known = read_tables(text, source), ("scene", *LISTS)

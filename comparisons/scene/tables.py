@@ -38,10 +38,6 @@ class InputError(ValueError):
         super().__init__("\n".join(" ".join(line.split()) for line in lines))
 
 
-SceneError = InputError
-"""Raised for a scene that cannot be read."""
-
-
 def read_text(path: str, absent: str = "no such file") -> str:
     """Return the text of the regular file `path`, of 16 MB at most; the error says `absent` where there is none."""
     try:

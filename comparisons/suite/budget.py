@@ -19,7 +19,7 @@ from comparisons.answer import Array
 from comparisons.answer.quantities import forces, moments, size
 from comparisons.frozen import Frozen
 from comparisons.models import ROD, SOLID, TSM, solve
-from comparisons.models.model import Count, ModelError, uncounted
+from comparisons.models.model import Count, ModelError, unwatched
 from comparisons.scene import Scene
 from comparisons.suite import Case, case
 from comparisons.suite.settings import Changes, changed
@@ -84,7 +84,7 @@ def budget_cases(scene: Scene) -> dict[str, Case]:
     }
 
 
-def error_budget(scene: Scene, count: Count = uncounted) -> Budget:
+def error_budget(scene: Scene, count: Count = unwatched) -> Budget:
     """Measure the budget of a scene that beams and solid state; `count` receives every solution.
 
     The quantities are the forces and arc positions of all contact pairs, or the forces of the supports in a scene without contact,

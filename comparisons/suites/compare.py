@@ -15,7 +15,7 @@ from comparisons.answer.quantities import event_differences, names
 from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.frozen import Frozen
 from comparisons.models import Model, certified, find, solve
-from comparisons.models.model import Count, ModelError, Options, Watch, uncounted, unwatched
+from comparisons.models.model import Count, ModelError, Options, Watch, unwatched
 from comparisons.models.theory import bending
 from comparisons.output import Report, json_text
 from comparisons.report.brief import Brief, at_largest
@@ -136,7 +136,7 @@ def compare(
     folder: Path,
     report: Report,
     watching: Watching = lambda _: nullcontext(unwatched),
-    staging: Staging = lambda _: nullcontext(uncounted),
+    staging: Staging = lambda _: nullcontext(unwatched),
     more: Sequence[Run] = (),
 ) -> Comparison:
     """Solve `scene` with every model that can state it, and with `more` runs, and write the results to `folder`.

@@ -20,7 +20,7 @@ from docs.extensions.messages import FILE, SCENES, messages
 
 SOURCES = [path.read_text(encoding="utf-8") for path in sorted(Path(reader.__file__).parent.glob("*.py"))]
 LISTED = messages()
-ERRORS = {"RuleError", "FieldError", "InputError", "SceneError"}
+ERRORS = {"RuleError", "FieldError", "InputError"}
 """Names by which the reader calls its errors."""
 HANDED = {"read_text", "refused"}
 """Functions that are given a sentence as their second argument."""

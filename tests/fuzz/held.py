@@ -7,7 +7,7 @@ by up to a third of the length; turned and moved aside, or neither, so that the 
 import math
 from random import Random
 
-from comparisons.scene import Scene, SceneError, read_scene
+from comparisons.scene import InputError, Scene, read_scene
 from tests.fuzz.world import Place, Tables, toml_text
 
 
@@ -17,7 +17,7 @@ def drawn_held(seed: int) -> Scene:
     while True:
         try:
             return read_scene(toml_text(_tables(random, f"held-{seed}")), f"seed {seed}")
-        except SceneError:
+        except InputError:
             continue
 
 

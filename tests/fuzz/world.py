@@ -12,7 +12,7 @@ from itertools import pairwise
 from random import Random
 from typing import Any, TypeVar
 
-from comparisons.scene import Scene, SceneError, read_scene
+from comparisons.scene import InputError, Scene, read_scene
 
 # how a scene file writes a value, however broken: no reader of TOML writes
 from comparisons.scene.rules import toml_value
@@ -74,7 +74,7 @@ def drawn(seed: int) -> Scene:
     while True:
         try:
             return read_scene(toml_text(_World(random).tables(f"drawn-{seed}")), f"seed {seed}")
-        except SceneError:
+        except InputError:
             continue
 
 

@@ -152,17 +152,14 @@ class History:
         raise UnknownFrictionError(f"{pair} slips between two load parameters, and its sign is not stated")
 
     def _found(self, phase: Phase) -> Equilibrium:
-        """Find the root of a phase's margin, in the state that the contact was in before."""
+        """Find the root of a phase's margin, in the state `own` that the contact was in before."""
         before = phase.before
         assert before is not None, "the first phase has no begin"
         if math.isnan(phase.stated) and before.slip == -phase.slip != 0:
             raise UnknownFrictionError(
                 f"the slip of {phase.spec.pair} turns between two load parameters, and a stick in between is not stated"
             )
-        return self._root(phase, LOOSE if before.slip == OPEN else self.grip(before, phase.begin))
-
-    def _root(self, phase: Phase, own: Grip) -> Equilibrium:
-        """Return the equilibrium at which the state `own` of a contact ends."""
+        own = LOOSE if before.slip == OPEN else self.grip(before, phase.begin)
         state = {**self.around(phase.begin, phase.spec), phase.spec.pair: own}
         now = self._start(phase, state)
 

@@ -3,14 +3,11 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from comparisons.answer import ContactEvent, ContactHistory, Response
+from comparisons.answer import Array, ContactEvent, ContactHistory, Ints, Response
 from comparisons.frozen import Frozen
 from comparisons.referee.path import changes_of
 from comparisons.scene import ContactSpec, Scene
-
-Ints = NDArray[np.int64]
 
 OPEN, UNKNOWN = 9, 8
 """Numbers of an open contact and of a slip whose sign an answer does not state, next to the signs -1, 0 and 1 of the slip rate."""
@@ -28,10 +25,9 @@ class Phase(Frozen):
     spec: ContactSpec
     low: float = 0.0
     high: float = 0.0
-    event: ContactEvent | None = None
-    """The answer's event at which it begins."""
+    event: ContactEvent | None = None  #: The answer's event at which it begins.
+    #: Sign of the slip rate, 0 in stick, `UNKNOWN` for a slip between two load parameters; `OPEN` for an open contact.
     slip: int
-    """Sign of the slip rate, 0 in stick, `UNKNOWN` for a slip between two load parameters; `OPEN` for an open contact."""
     before: "Phase | None"
 
     @property
@@ -39,11 +35,6 @@ class Phase(Frozen):
         """Where it begins by the answer's events; nan without an event."""
         rest = math.nan if self.before else 0.0
         return self.event.load_parameter if self.event else rest
-
-    @property
-    def stated_arc(self) -> float:
-        """Arc position there; nan without an event."""
-        return self.event.arc_position if self.event else math.nan
 
     @property
     def does(self) -> str:
@@ -74,14 +65,12 @@ def states(response: Response, scene: Scene, spec: ContactSpec) -> tuple[Ints, s
 
 def _from_arcs(contact: ContactHistory, length: float) -> Ints:
     """Signs of the changes of the arc position since the load parameter before; at the first, up to the next."""
-    change = np.diff(contact.arc_position)
+    change = np.nan_to_num(np.diff(contact.arc_position))
     change = np.concatenate([change[:1], change]) if len(change) else np.zeros(len(contact.force))
-    return np.where(
-        np.abs(np.nan_to_num(change)) > _MOVED * length, np.sign(np.nan_to_num(change)), 0.0
-    ).astype(np.int64)
+    return np.where(np.abs(change) > _MOVED * length, np.sign(change), 0.0).astype(np.int64)
 
 
-def _leaning(response: Response, spec: ContactSpec, force: NDArray[np.float64], k: int) -> float:
+def _leaning(response: Response, spec: ContactSpec, force: Array, k: int) -> float:
     """Tangential over normal force of a contact, over the coefficient of friction, by the direction of the answer's axis."""
     arc, line = response.axis_line(spec.beam, k)
     x, y = (

@@ -6,9 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
-from numpy.typing import NDArray
 
-from comparisons.answer import Response
+from comparisons.answer import Array, Response
 from comparisons.answer.round_off import LEAST, least_force
 from comparisons.referee.friction.history import History, at_rest
 from comparisons.referee.friction.phases import OPEN, UNKNOWN
@@ -19,8 +18,6 @@ from comparisons.referee.path import corners, reach
 from comparisons.referee.rod import largest, units_of
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import ContactSpec, Scene
-
-Array = NDArray[np.float64]
 
 LAW = 1e-6
 """Largest violation of Coulomb's law by the numbers of an answer, over the contact force; the models' tolerances are far smaller."""
@@ -109,8 +106,9 @@ def _crept(history: History, k: int, touch: Touch, hold: Hold, exact: Equilibriu
 def _moved(history: History, spec: ContactSpec, k: int) -> float:
     """Change of the stated arc position since the event at which a stick began, or since the start; nan without an event."""
     phase = history.phase(spec.pair, k)
-    unit = units_of(history.scene)[0]
-    began = unit * at_rest(history.scene, spec).arc_position if phase.before is None else phase.stated_arc
+    began = phase.event.arc_position if phase.event else math.nan
+    if phase.before is None:
+        began = units_of(history.scene)[0] * at_rest(history.scene, spec).arc_position
     return float(history.response.contacts[spec.pair].arc_position[k]) - began
 
 

@@ -14,8 +14,8 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from numpy.typing import NDArray
 
+from comparisons.answer import Array
 from comparisons.referee.equations import element_before
 from comparisons.referee.grip import Grip, Hold
 from comparisons.referee.layout import Touch
@@ -24,7 +24,6 @@ from comparisons.referee.rod import largest
 from comparisons.referee.state import Equilibrium
 from comparisons.referee.touching import rows, wrapped
 
-Array = NDArray[np.float64]
 Holds = dict[str, Hold]
 
 _AHEAD = 1e-4

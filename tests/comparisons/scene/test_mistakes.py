@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from comparisons.cli import main
-from comparisons.scene import BeamSpec, FieldError, SceneError, built_in_scenes, read_scene
+from comparisons.scene import BeamSpec, FieldError, InputError, built_in_scenes, read_scene
 
 # the registry of words that are no keys: that each leads to a key is the contract
 from comparisons.scene.words import CONVERTED, ELSEWHERE, NOT_MODELLED, OTHER_NAMES, hint
@@ -20,7 +20,7 @@ TWELVE = Path(__file__).with_name("twelve.toml").read_text(encoding="utf-8")
 def lines(text: str) -> list[str]:
     try:
         read_scene(text, "my.toml")
-    except SceneError as error:
+    except InputError as error:
         return [line.removeprefix("my.toml: ") for line in str(error).splitlines()]
     return []
 

@@ -14,7 +14,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from comparisons.cli import main
-from comparisons.scene import SceneError, built_in_scenes, load_scene, read_scene, to_toml
+from comparisons.scene import InputError, built_in_scenes, load_scene, read_scene, to_toml
 from tests.comparisons.scene.test_special_keys import KEYS as ALL
 from tests.comparisons.scene.test_special_keys import SCHEMA
 from tests.fuzz.world import toml_text
@@ -84,7 +84,7 @@ def edits() -> Iterator[dict[str, Any]]:
 def accepted(tables: dict[str, Any]) -> bool:
     try:
         read_scene(toml_text(tables), "edited")
-    except SceneError:
+    except InputError:
         return False
     return True
 

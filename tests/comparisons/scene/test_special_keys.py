@@ -16,8 +16,8 @@ from comparisons.scene import (
     SPECIAL,
     BeamSpec,
     ContactSpec,
+    InputError,
     Scene,
-    SceneError,
     built_in_scenes,
     read_scene,
     rules,
@@ -127,7 +127,7 @@ def test_a_new_key_is_one_declaration(monkeypatch):
         "wear = 2": "contact[0].wear = 2: must be a number between 0 and 1",
         "waer = 0.5": "contact[0].waer = 0.5: unknown key, did you mean wear?",
     }.items():
-        with pytest.raises(SceneError, match=f"^s: {re.escape(said)}$"):
+        with pytest.raises(InputError, match=f"^s: {re.escape(said)}$"):
             read_scene(f"{text}{line}\n", "s")
     schema = json_schema()["properties"]["contact"]["items"]["properties"]["wear"]
     assert (schema["exclusiveMaximum"], schema["default"]) == (1, 0.25)
@@ -152,5 +152,5 @@ def test_a_pin_inside_an_arc_is_on_the_wrong_side_by_its_distance(turn):
     beam = BeamSpec(**tomllib.loads(given)["beam"][0])
     (x, y), (tx, ty) = beam.place(0.3), beam.tangent(0.3)
     inside = f"start = [{x - 0.03 * ty!r}, {y + 0.03 * tx!r}]"
-    with pytest.raises(SceneError, match=r'must lie on the right of beam "a" \(axis\), gap -0\.03$'):
+    with pytest.raises(InputError, match=r'must lie on the right of beam "a" \(axis\), gap -0\.03$'):
         read_scene(given.replace("start = [0.7, -0.1]", inside), "s")
