@@ -1,6 +1,6 @@
 """Sections of a page about answers: shapes under a slider with histories, bands of stick and slip."""
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import field
 from itertools import groupby
 from typing import Any
@@ -181,18 +181,17 @@ def _lines(scene: Scene, response: Response, decimals: int) -> list[list[Array]]
     return [[thinned(*response.axis_line(beam.name, k)) for beam in scene.beams] for k in steps]
 
 
-def states_section(responses: Mapping[str, Response]) -> Section | None:
-    """Return a section with one band for each run and contact with friction; None without friction."""
+def states_section(responses: Mapping[str, Response]) -> Iterator[Section]:
+    """Yield a section with one band for each run and contact with friction; nothing without friction."""
     bands = {
         f"{label}, {pair}" if len(response.contacts) > 1 else label: band(response, pair)
         for label, response in responses.items()
         for pair, contact in response.contacts.items()
         if contact.friction is not None and len(response.load_parameter)
     }
-    if not bands:
-        return None
-    last = max(parts[-1][2] for parts in bands.values())
-    return Section("Stick and slip", piece("states", bands, STATES, last))
+    if bands:
+        last = max(parts[-1][2] for parts in bands.values())
+        yield Section("Stick and slip", piece("states", bands, STATES, last))
 
 
 def band(response: Response, pair: str) -> list[tuple[str, float, float]]:

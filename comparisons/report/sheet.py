@@ -38,7 +38,7 @@ def _brief(response: Response, scene: Scene) -> Brief:
         f"Stability: {stability(response)}.",
     ]
     if not len(response.load_parameter):
-        return Brief(f"{response.status}: {response.message}", points)
+        return Brief(response.ended, points)
     t = float(response.load_parameter[at_largest(response)])
     answer = in_units(scene, {response.named: response}, t)
     said: dict[str, str] = {}  # the first quantity of each unit that acts
@@ -50,7 +50,7 @@ def _brief(response: Response, scene: Scene) -> Brief:
     sentence = f"At load parameter {t:.4g}, where the force is largest: {', '.join(said.values())}."
     if not response.completed:
         points.insert(0, sentence)
-        sentence = f"{response.status}: {response.message}."
+        sentence = f"{response.ended}."
     return Brief(
         sentence,
         points,

@@ -1,12 +1,12 @@
 """The tables of a comparison: one row per run, and the error budget."""
 
-from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from comparisons.answer.quantities import SCOPES, names, table_columns
-from comparisons.output import NO_VALUE, csv_text, write_numbers
+from comparisons.answer.quantities import table_columns
+from comparisons.output import NO_VALUE
 from comparisons.report.pages import Section, picture, piece, table
 from comparisons.suite import Row
 from comparisons.suite.budget import PARTS, STEPS, Budget, budget_rows
@@ -38,23 +38,6 @@ def _error(value: float) -> str:
     return "-" if np.isnan(value) else NO_VALUE if np.isinf(value) else f"{value:.1e}"
 
 
-def table_csv(rows: Sequence[Row]) -> str:
-    """Return the table as CSV text: errors over all load parameters and at the last, empty for the reference."""
-    records = []
-    for row in rows:
-        response, errors = row.response, row.errors
-        found = {
-            f"error_{scope}_{name}": errors and errors[scope].get(name)
-            for scope in SCOPES
-            for name in names(mesh=False)
-        }
-        first = {"label": row.label, "model": response.model, "status": response.status}
-        spent = {"newton_iterations": response.iterations, "cutbacks": response.cutbacks}
-        last = {"stable": row.stable, **spent, "wall_seconds": response.wall_seconds}
-        records.append({**first, "unknowns": response.unknowns, **found, **last})
-    return csv_text(records)
-
-
 def budget_section(budget: Budget, drawn: Path) -> Section:
     """Return the figure `drawn`, the numbers, and what each part measures."""
     rows = [
@@ -67,15 +50,13 @@ def budget_section(budget: Budget, drawn: Path) -> Section:
     return Section("Error budget", f"{shown}\n{numbers}\n{piece('definitions', PARTS)}")
 
 
-def write_budget(budget: Budget, path: Path) -> None:
-    """Write the budget's numbers and what each part measures."""
-    rests = [float(np.nanmax(np.abs(budget.rest(quantity)))) for quantity in budget.total]
-    numbers = {
+def budget_numbers(budget: Budget) -> dict[str, Any]:
+    """Return the budget's numbers and what each part measures."""
+    return {
         "scene": budget.scene,
         "difference": "(q_TSM - q_solid) / q_rod",
         "load_parameters_of_the_runs": STEPS,
         "parts": PARTS,
         "rows": list(budget_rows(budget)),
-        "largest_rest_over_total": max(rests),
+        "largest_rest_over_total": max(np.nanmax(np.abs(budget.rest(quantity))) for quantity in budget.total),
     }
-    write_numbers(path, numbers)

@@ -224,7 +224,7 @@ def answers(words: str, given: Mapping[str, Any], report: Report) -> str:
             refused[scene.name] = str(error)
             continue
         columns = histories(scene, response) if len(response.load_parameter) else {}
-        why = "is not stated" if response.completed else f"{response.status}: {response.message}"
+        why = "is not stated" if response.completed else response.ended
         for query in (query for query in given["queries"] if query["scene"] == scene.name):
             value = told(query, response, columns)
             rows.append(query | ({"refused": why} if value is None else {"value": value}))

@@ -29,7 +29,7 @@ class Gate(Frozen):
     def stopped(self) -> str:
         """Which of the two solutions stopped, and why; empty if none did."""
         both = (self.response, self.reference)
-        return next((f"{one.model}: {one.status}: {one.message}" for one in both if not one.completed), "")
+        return next((f"{one.model}: {one.ended}" for one in both if not one.completed), "")
 
     @property
     def held(self) -> bool:

@@ -81,7 +81,7 @@ class Against(Value):
         if not rod and (allowed > LARGEST or not len(other.load_parameter)):
             return None
         if rod and len(own.load_parameter) > len(other.load_parameter):
-            why, error = f"it went on where the {self.name} stopped: {other.status}: {other.message}", np.inf
+            why, error = f"it went on where the {self.name} stopped: {other.ended}", np.inf
         else:
             answer = in_units_of(beam, case.scene.beams[0], own)
             found = [difference(answer, other, self.case.scene, quantity) for quantity in COMPARED]

@@ -64,7 +64,7 @@ def answered(scene: Scene, model: str, options: Options | None = None) -> Respon
     """Return the response of a model to a scene; one that is not complete and checked is a `StoppedError`."""
     response = solve(scene, model, options)
     if not response.completed:
-        raise StoppedError(f"{response.status}: {response.message}")
+        raise StoppedError(response.ended)
     return response
 
 

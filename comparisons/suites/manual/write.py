@@ -252,7 +252,6 @@ def manual(files: Sequence[Path], report: Report) -> Found:
             Section("Answers", table("Of every answer the quantity with the largest error", every)),
             *(_section(case, folder) for case in cases),
         ],
-        pictures={case[0].problem.name: partial(draw_case, case) for case in cases},
-        kinds=(".svg",),
+        pictures={f"{case[0].problem.name}.svg": partial(draw_case, case) for case in cases},
         wrong=wrong,
     )

@@ -45,7 +45,7 @@ def pictures(**drawn: Mapping[str, Iterable[Line]]) -> dict[str, Callable[..., N
 
 def stops(runs: Mapping[str, Response]) -> list[str]:
     """Return the runs that did not complete, and why."""
-    return [f"{name}: {one.status}: {one.message}" for name, one in runs.items() if not one.completed]
+    return [f"{name}: {one.ended}" for name, one in runs.items() if not one.completed]
 
 
 SIMPLE, CANTILEVER, TIMOSHENKO, MIXED = (

@@ -179,7 +179,7 @@ def _tables(trade: Trade) -> dict[str, list[tuple[str, list[Line]]]]:
 def _stopped(trade: Trade) -> dict[str, str]:
     """Return the settings without a completed and checked solution, and why."""
     ends = {f"{row.label} [{row.case.scene.load_parameters}]": row.response for row in trade.rows}
-    return {name: f"{one.status}: {one.message}" for name, one in ends.items() if not one.completed}
+    return {name: one.ended for name, one in ends.items() if not one.completed}
 
 
 def _brief(trade: Trade, sources: Mapping[str, str], stopped: int) -> Brief:
