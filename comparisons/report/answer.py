@@ -11,7 +11,7 @@ from comparisons.answer.round_off import round_off
 from comparisons.answer.table import unit_names
 from comparisons.report import palette
 from comparisons.report.brief import at_largest, spring_rate, travel
-from comparisons.report.plot import WIDTH, figure
+from comparisons.report.plot import WIDTH, figure, tag
 from comparisons.report.sketch import ARROW, Sketch
 from comparisons.report.symbols import LEFT, axis
 from comparisons.scene import Scene
@@ -85,12 +85,9 @@ def _shape(axes: Any, response: Response, scene: Scene, k: int) -> None:
     sketch.loads(loads, scene.gravity_at(t))
     sketch.symbols()
     entries = {words.partition(" of ")[0]: entry for words, entry in sketch.legend.items()}
-    place: dict[str, Any] = {
-        "loc": "upper center",
-        "bbox_to_anchor": (0.5, -0.17),
-        "ncols": 5 if len(entries) <= 5 else 4,
-    }
-    axes.legend(entries.values(), entries, fontsize="x-small", frameon=False, labelspacing=1.2, **place)
+    style: dict[str, Any] = {"fontsize": "x-small", "frameon": False, "labelspacing": 1.2}
+    place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.17), "ncols": 5 - (len(entries) > 5)}
+    axes.legend(entries.values(), entries, **place, **style)
     sketch.separate(1)
 
 
@@ -105,16 +102,9 @@ def _diagram(axes: Any, response: Response, scene: Scene, name: str, kind: str, 
         if values.any():
             value, place = peak(at.arc, values)
             axes.plot(place, value, ".", color=colour, markersize=5)
-            near = {"textcoords": "offset points", "ha": "right" if place > beam.length / 2 else "left"}
-            axes.annotate(
-                f"{value:.4g}",
-                (place, value),
-                (-4 if place > beam.length / 2 else 4, 0),
-                va="center",
-                fontsize="x-small",
-                bbox={"facecolor": "white", "alpha": 0.75, "linewidth": 0.0, "pad": 0.5},
-                **near,
-            )
+            way = -1 if place > beam.length / 2 else 1
+            side = {"ha": "left" if way > 0 else "right", "va": "center", "fontsize": "x-small"}
+            tag(axes, f"{value:.4g}", (place, value), (4 * way, 0), **side)
     axes.axhline(0.0, color="0.3", linewidth=0.6)
     axes.grid(visible=True, linewidth=0.3)
     axes.margins(x=0.01, y=0.15)
@@ -126,18 +116,13 @@ def _history(axes: Any, response: Response, scene: Scene) -> None:
     way, rate = travel(scene, t), spring_rate(response, scene)
     across, words = (t, "load parameter") if way is None else (way, f"travel of the pin [{units['length']}]")
     for number, (name, values) in enumerate(forces(response).items()):
-        colour, whole = COLOURS[number % len(COLOURS)], np.append(0.0, size(values))
-        axes.plot(
-            np.append(0.0, across), whole, label=name, color=colour, marker=".", markersize=3, linewidth=1.2
-        )
+        style = {"color": COLOURS[number % len(COLOURS)], "marker": ".", "markersize": 3, "linewidth": 1.2}
+        axes.plot(np.append(0.0, across), np.append(0.0, size(values)), label=name, **style)
     what = "contact force" if response.contacts else "reaction"
     axes.set_xlabel(words)
     axes.set_ylabel(f"{what}\n[{units['force']}]", fontsize="small")
     axes.grid(visible=True, linewidth=0.3)
     axes.set_xlim(left=0.0)
-    title = (
-        f"spring rate at first touch {rate:.4g} {units['force']}/{units['length']}"
-        if np.isfinite(rate)
-        else None
-    )
+    title = f"spring rate at first touch {rate:.4g} {units['force']}/{units['length']}"
+    title = title if np.isfinite(rate) else ""
     axes.legend(loc="best", fontsize="x-small", title=title, title_fontsize="x-small")

@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from shutil import get_terminal_size
-from textwrap import TextWrapper
-from typing import NamedTuple
+from textwrap import wrap
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,10 +25,8 @@ DIGITS, LEAST = 4, 1e-9
 
 def filled(words: str, first: str = "", rest: str = "") -> list[str]:
     """Return lines that fit the terminal, the first one and the others indented; no word is broken."""
-    style = TextWrapper(
-        get_terminal_size().columns, first, rest, break_long_words=False, break_on_hyphens=False
-    )
-    return style.wrap(words)
+    whole: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
+    return wrap(words, get_terminal_size().columns, initial_indent=first, subsequent_indent=rest, **whole)
 
 
 class Brief(NamedTuple):
@@ -66,11 +64,8 @@ def travel(scene: Scene, load_parameter: Array) -> Array | None:
 def spring_rate(response: Response, scene: Scene) -> float:
     """Return the rise of the force of the one moving pin over its travel as it begins to push; nan without one."""
     way = travel(scene, response.load_parameter)
-    pushing = [
-        one.force
-        for pair, one in response.contacts.items()
-        if pair.partition("->")[0] in {p.name for p in scene.pins if p.moving}
-    ]
+    moving = {pin.name for pin in scene.pins if pin.moving}
+    pushing = [one.force for pair, one in response.contacts.items() if pair.partition("->")[0] in moving]
     if way is None or len(pushing) != 1:
         return np.nan
     closed = np.flatnonzero(pushing[0] > 0.0)
@@ -123,10 +118,8 @@ def _values(scene: Scene, response: Response, t: float) -> dict[str, float]:
         sizes = [extremes[name].value[0] for extremes in along.values() if name in extremes]
         if sizes:
             kind, words = ALONG[name]
-            found[f"largest {words.removeprefix('nominal axial ').removesuffix(' of the axis')}"] = (
-                kind,
-                max(sizes, key=abs),
-            )
+            words = words.removeprefix("nominal axial ").removesuffix(" of the axis")
+            found[f"largest {words}"] = kind, max(sizes, key=abs)
     rate = spring_rate(response, scene)
     units["rate"] = f"{units['force']}/{units['length']}"
     if np.isfinite(rate):

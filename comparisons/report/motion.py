@@ -105,42 +105,39 @@ def motion_section(
     axes = {label: _lines(scene, response, decimals) for label, response in responses.items()}
     runs = [
         {
-            "label": label,
-            "shown": not first or label in first,
-            **_line_style(label, number),
-            "lines": axes.get(label, []),
+            "label": one,
+            "shown": not first or one in first,
+            **_line_style(one, number),
+            "lines": axes.get(one, []),
         }
-        for number, label in enumerate(ordered)
+        for number, one in enumerate(ordered)
     ]
     way, exact = travel(scene, times), responses[focus]
     start = at_largest(exact) if len(exact.load_parameter) else len(times) - 1
+    length = unit_names(scene.units)["length"]
     across = {"title": "load parameter", "values": times}
     if way is not None:
-        across = {"title": f"travel of the pin [{unit_names(scene.units)['length']}]", "values": way}
+        across = {"title": f"travel of the pin [{length}]", "values": way}
+    rest = (np.linspace(0.0, 1.0, ARC if beam.turn else 2) for beam in scene.beams)
     data = {
         "load_parameter": times,
         "across": across,
         "start": start,
-        "length": {"unit": unit_names(scene.units)["length"]},
-        "beams": [
-            [beam.place(part) for part in np.linspace(0.0, 1.0, ARC if beam.turn else 2)]
-            for beam in scene.beams
-        ],
+        "length": {"unit": length},
+        "beams": [list(map(beam.place, parts)) for beam, parts in zip(scene.beams, rest, strict=True)],
         "pins": [
             {
                 "name": pin.name,
                 "path": pin.points,
                 "radius": pin.radius or 0.0,
-                "at": [pin.position(float(t)) for t in times],
+                "at": list(map(pin.position, times.tolist())),
             }
             for pin in scene.pins
         ],
         "symbols": [
             {
                 "lines": np.round(SYMBOL * extent * one.segments, decimals),
-                "at": np.round(
-                    [one.at(_axis(scene, responses[focus], one.item.beam, k)) for k in steps], decimals
-                ),
+                "at": np.round([one.at(_axis(scene, exact, one.item.beam, k)) for k in steps], decimals),
             }
             for one in end_symbols(scene)
         ],

@@ -47,15 +47,9 @@ class Section(NamedTuple):
 def _templates() -> "Environment":
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    found = Environment(
-        loader=FileSystemLoader(FOLDER),
-        autoescape=True,
-        trim_blocks=True,
-        keep_trailing_newline=True,
-        undefined=StrictUndefined,
-    )
-    found.filters["cell"] = cell
-    found.filters["whole"] = whole
+    found = Environment(loader=FileSystemLoader(FOLDER), autoescape=True, undefined=StrictUndefined)
+    found.trim_blocks = found.keep_trailing_newline = True
+    found.filters |= {"cell": cell, "whole": whole}
     return found
 
 
@@ -86,9 +80,8 @@ def page(title: str, brief: Brief, sections: Sequence[Section]) -> str:
     data = {section.ident: plain(section.data) for section in sections if section.data is not None}
     text = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     style, script = ((FOLDER / name).read_text(encoding="utf-8") for name in ("style.css", "script.js"))
-    return rendered(
-        "page", title=title, brief=brief, style=style, script=script, data=text, sections=sections
-    )
+    parts = {"style": style, "script": script, "data": text}
+    return rendered("page", title=title, brief=brief, sections=sections, **parts)
 
 
 def write_page(
@@ -120,8 +113,7 @@ def picture(path: Path, caption: str) -> str:
     """Return an SVG or PNG file as an image: markup of two SVGs in one page would share names and styles. An SVG has a dark variant."""
     content = path.read_bytes()
     if path.suffix == ".svg":
-        content = content.replace(
-            b"<defs>", b"<style>%s</style><defs>" % (FOLDER / "picture.css").read_bytes(), 1
-        )
+        style = b"<style>%s</style><defs>" % (FOLDER / "picture.css").read_bytes()
+        content = content.replace(b"<defs>", style, 1)
     text = base64.b64encode(content).decode("ascii")
     return piece("picture", caption, f"data:{TYPES[path.suffix]};base64,{text}")

@@ -33,10 +33,8 @@ def write_sheet(path: Path, response: Response, scene: Scene) -> None:
 def _brief(response: Response, scene: Scene) -> Brief:
     """Return the largest values, and how far they can be trusted; why a solution stopped that did."""
     judged = response.certificate
-    points = [
-        "Not judged by the referee." if judged is None else judged.line(),
-        f"Stability: {stability(response)}.",
-    ]
+    certificate = "Not judged by the referee." if judged is None else judged.line()
+    points = [certificate, f"Stability: {stability(response)}."]
     if not len(response.load_parameter):
         return Brief(response.ended, points)
     t = float(response.load_parameter[at_largest(response)])
@@ -51,9 +49,5 @@ def _brief(response: Response, scene: Scene) -> Brief:
     if not response.completed:
         points.insert(0, sentence)
         sentence = f"{response.ended}."
-    return Brief(
-        sentence,
-        points,
-        answer,
-        "The answer there; moments of supports act on the beam, anticlockwise positive:",
-    )
+    about = "The answer there; moments of supports act on the beam, anticlockwise positive:"
+    return Brief(sentence, points, answer, about)

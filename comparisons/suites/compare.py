@@ -115,11 +115,10 @@ def compare(
             end = f"{one.wall_seconds:.2f} s" if one.completed else one.ended
             report(f"{head}: {end}")
         except ModelError as error:
-            left_out[find(run.model).family(scene, run.options)] = why = str(error).removeprefix(
-                f"{run.model}: "
-            )
+            why = str(error).removeprefix(f"{run.model}: ")
+            left_out[find(run.model).family(scene, run.options)] = why
             report(f"{head}: left out, {why}")
-    rows = [_row(scene, run, response, answers[ROD]) for run, response in answers.items()]
+    rows = [row_of(scene, run, response, answers[ROD]) for run, response in answers.items()]
     with staging("measuring the error budget") as count:
         budget, lack = None, "it takes the solid"
         if SOLID in answers and answers[SOLID].completed:
@@ -134,7 +133,7 @@ def compare(
     return _found(scene, rows, budget, left_out, report)
 
 
-def _row(scene: Scene, run: Run, response: Response, reference: Response) -> Row:
+def row_of(scene: Scene, run: Run, response: Response, reference: Response) -> Row:
     """Return the row of a run with its errors and their cause."""
     case = Case(scene=scene, model=run.model, options=run.options)
     judged, cause = verdict(response), _cause(case, reference)
@@ -175,7 +174,7 @@ def _found(
         pictures["budget.svg"] = partial(plot_budget, budget)
     files: dict[str, Any] = {
         "table.csv": [
-            {**row.columns(), "seconds": row.response.wall_seconds, "stable": row.stable} for row in rows
+            row.columns() | {"seconds": row.response.wall_seconds, "stable": row.stable} for row in rows
         ],
         **({} if budget is None else {"budget.json": budget_numbers(budget)}),
         **{f"{run.model}/{run.model}.pvd": (one, scene) for run, one in exported.items()},

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from comparisons.report import palette
-from comparisons.report.plot import WIDTH, figure, save
+from comparisons.report.plot import WIDTH, figure, legend_below, save
 from comparisons.suite.budget import TIMES, Budget
 
 COLOURS = (
@@ -53,8 +53,7 @@ def draw(
     if shared.get("sharex") and first.get_xscale() == "log":
         low, high = np.log10(first.get_xlim())  # whole decades have labels that do not overlap
         first.set_xlim(10.0 ** np.floor(low), 10.0 ** np.ceil(high))
-    place = {"loc": "outside lower center", "fontsize": "small", "frameon": False}
-    fig.legend(named.values(), named.keys(), ncols=1 if max(map(len, named)) > 50 else 2, **place)
+    legend_below(fig, named, 1 if max(map(len, named)) > 50 else 2)
     fig.suptitle(title, fontsize="medium")
     save(fig, *paths)
 
@@ -95,14 +94,12 @@ def _stack(axes: Any, *, budget: Budget, quantity: str) -> None:
         axes.bar(places, height, bottom=bottom, label=name, zorder=3, **style)
         above, below = above + np.maximum(height, 0.0), below + np.minimum(height, 0.0)
     total = 100.0 * budget.total[quantity]
-    axes.hlines(
-        total, places - 0.4, places + 0.4, colors="black", linewidth=1.8, label="difference", zorder=4
-    )
+    mark = {"colors": "black", "linewidth": 1.8, "zorder": 4}
+    axes.hlines(total, places - 0.4, places + 0.4, label="difference", **mark)
     axes.axhline(0.0, color="0.3", linewidth=0.6)
     axes.set_xticks(places, [f"{t:g}" for t in TIMES])
-    axes.use_sticky_edges = (
-        False  # the limits would lie on the edge of a thin part, and cut the parts beyond it
-    )
+    # the limits would lie on the edge of a thin part, and cut the parts beyond it
+    axes.use_sticky_edges = False
     axes.margins(y=0.08)
     kind, _, column = quantity.partition(" ")
     axes.set(title=f"{kind.replace('_', ' ')}\n{column}".strip(), xlabel="load parameter")

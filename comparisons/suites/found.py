@@ -46,9 +46,8 @@ class Found(Frozen):
                 WRITERS.get(file.suffix, write_text)(file, content)
             every = list(files)
             for name, draw in self.pictures.items():
-                drawn = [
-                    folder / f"{name}{kind}" for kind in ([""] if Path(name).suffix else [".png", ".svg"])
-                ]
+                kinds = [""] if Path(name).suffix else [".png", ".svg"]
+                drawn = [folder / f"{name}{kind}" for kind in kinds]
                 draw(*drawn)
                 every += drawn
             sections = self.sections(folder)

@@ -17,9 +17,7 @@ from comparisons.suite import case
 from comparisons.suites.extremes.cell import Against, Allowance, Cell, Check, circle, energy
 from tsm.elements import ELEMENTS, MIXED, TIMOSHENKO, ClosedForm, ElementType
 
-AXES: dict[str, dict[str, Any]] = tomllib.loads(
-    Path(__file__).with_suffix(".toml").read_text(encoding="utf-8")
-)
+AXES: dict[str, dict[str, Any]] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 SLENDERNESS = 50.0
 """Default slenderness L/h, taken from Konyukhov and Schweizerhof's cantilever."""
 MESH, COARSE = (50, 2), (25, 2)
@@ -84,10 +82,8 @@ def beam(column: str, scene: Scene, kind: ElementType, elements: int | None, row
     """Return the cell of TSM, against the rod of the same shear stiffness: that of an Euler-Bernoulli element is rigid in shear."""
     stiff = scene
     if not kind.sheared:
-        rigid = (
-            replace(one, poissons_ratio=None, shear_modulus=1e9 * one.youngs_modulus) for one in scene.beams
-        )
-        stiff = replace(scene, beams=tuple(rigid))
+        rigid: Any = {"poissons_ratio": None, "shear_modulus": 1e9 * scene.beams[0].youngs_modulus}
+        stiff = replace(scene, beams=(replace(scene.beams[0], **rigid),))
     return cell(TSM, column, scene, rod(stiff), row=row or kind.name, element=kind.name, elements=elements)
 
 
@@ -170,9 +166,8 @@ def _contact(parts: Sequence[float]) -> Iterator[Cell]:
     nodes = beside("node", 0.5)
     for size, (sign, away) in product(parts, (("+", 1), ("-", -1))):
         nodes[f"node {sign}{size:g} l"] = 0.5 + away * size * part
-    clamps = {"at clamp": (0.0, 0.02)} | {
-        f"clamp +{size:g} l": (size * part, 0.1 * size * part) for size in parts
-    }
+    clamps = {f"clamp +{size:g} l": (size * part, 0.1 * size * part) for size in parts}
+    clamps = {"at clamp": (0.0, 0.02)} | clamps
     tips = beside("tip", 1.0) | {f"tip -{size:g} l": 1 - size * part for size in parts}
     paths = {column: ((x, 0.0), (x, 0.02)) for column, x in nodes.items()}
     paths |= {column: ((x, 0.0), (x, lift)) for column, (x, lift) in clamps.items()}
@@ -231,18 +226,11 @@ def _time(counts: Sequence[int]) -> Iterator[Cell]:
 
 
 CELLS: dict[str, Callable[..., Iterator[Cell]]] = {
-    "units": _units,
-    "slenderness": _slenderness,
-    "shear": _shear,
-    "elements": _elements,
-    "ratio": _ratio,
-    "contact": _contact,
-    "load-step": _load_step,
-    "penalty": _penalty,
-    "poissons-ratio": _poissons_ratio,
-    "depth": _depth,
-    "time": _time,
-}
+    axis.__name__[1:].replace("_", "-"): axis
+    for axis in (
+        _units, _slenderness, _shear, _elements, _ratio, _contact, _load_step, _penalty, _poissons_ratio, _depth, _time,
+    )
+}  # fmt: skip
 
 
 def matrix(*, quick: bool = False) -> list[Cell]:

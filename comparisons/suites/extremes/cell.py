@@ -1,6 +1,6 @@
 """One cell of the matrix: what must hold of its answer, against other answers or by a law in closed form, and its verdict."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -52,16 +52,14 @@ def in_units_of(other: BeamSpec, beam: BeamSpec, response: Response) -> Response
     length = other.length / beam.length
     force = other.EI / beam.EI / length**2
 
-    def scaled(histories: Mapping[str, Any], **factors: float) -> dict[str, Any]:
-        return {
-            name: replace(one, **{key: factor * getattr(one, key) for key, factor in factors.items()})
-            for name, one in histories.items()
-        }
+    def scaled(one: Any, **factors: float) -> Any:
+        return replace(one, **{key: factor * getattr(one, key) for key, factor in factors.items()})
 
+    contacts, supports = response.contacts.items(), response.supports.items()
     return replace(
         response,
-        contacts=scaled(response.contacts, force=force, arc_position=length),
-        supports=scaled(response.supports, force=force, moment=force * length),
+        contacts={pair: scaled(one, force=force, arc_position=length) for pair, one in contacts},
+        supports={node: scaled(one, force=force, moment=force * length) for node, one in supports},
         tips={name: length * values for name, values in response.tips.items()},
     )
 

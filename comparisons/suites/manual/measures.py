@@ -250,10 +250,8 @@ def invariance(answers: Answers) -> Iterable[float]:
     other = read_scene(answers.problem.settings["other"], answers.problem.name)
     found = [table(answers.solved(draw=False), along=False), table(answers.solved(other), along=False)]
     answers.lines.extend(undeformed(other))
-    for name in ("force", "moment"):
-        a, b = (
-            np.abs(next(values for key, values in one.items() if key.endswith(f".{name}"))) for one in found
-        )
+    for name in (".force", ".moment"):
+        a, b = (np.abs(next(one[key] for key in one if key.endswith(name))) for one in found)
         yield float(np.abs(b - a).max() / np.abs(a).max())
 
 

@@ -71,23 +71,18 @@ def critical_areas(*, quick: bool, report: Report) -> Study:
                     both = zip(raised, way.ratio, strict=True)
                     curves += ({**place, "displacement": d, "ratio": ratio} for d, ratio in both)
                     wide = {"markevery": [-1], "linewidth": 3.2 - 0.7 * list(LABELS).index(element)}
-                    curve = Line(
-                        LABELS[element], (raised, np.maximum(way.ratio, NEAREST)), wide | line(element)
-                    )
+                    seen = raised, np.maximum(way.ratio, NEAREST)
+                    curve = Line(LABELS[element], seen, wide | line(element))
                     title = f"pin at {start:g} m, tolerance {shown:.0e} EI/L$^2$"
                     panels.setdefault(title, []).append(curve)
     report("floor of the unbalanced force")
     samples = 8 if quick else 50
-    floors = np.array(
-        [[force_floor(**of, ratio=ratio, samples=samples) for ratio in RATIOS] for of in FLOORS]
-    )
-    numbers, cases = measured(areas, floors, shown), zip(product(FLOORS, RATIOS), floors.ravel(), strict=True)
+    cases = [{**of, "ratio": ratio} for of, ratio in product(FLOORS, RATIOS)]
+    rows = [{**of, "floor": force_floor(**of, samples=samples)} for of in cases]
+    floors = np.reshape([row["floor"] for row in rows], (len(FLOORS), -1))
+    numbers = measured(areas, floors, shown)
     return Study(
-        tables={
-            "fig7b": curves,
-            "fig7b-tolerance": areas,
-            "fig7b-floor": [{**of, "ratio": ratio, "floor": floor} for (of, ratio), floor in cases],
-        },
+        tables={"fig7b": curves, "fig7b-tolerance": areas, "fig7b-floor": rows},
         numbers=numbers,
         pictures=pictures(
             fig7b=panels, fig7b_tolerance={"": _areas(numbers)}, fig7b_floor={"": _floors(floors, numbers)}
@@ -197,31 +192,22 @@ def cantilever_shapes(*, quick: bool, report: Report) -> Study:
             scene = replace(scene, load_parameters=scene.load_parameters // 4)
         scenes.append(scene)
         pair, travel = scene.contacts[0].pair, scene.pins[0].points[1][1]
-        tried = {
-            one: solve(scene, TSM.name, Options(element=one))
-            for one in ((TIMOSHENKO, MIXED) if quick else LABELS)
-        }
+        asked = (TIMOSHENKO, MIXED) if quick else LABELS
+        tried = {one: solve(scene, TSM.name, Options(element=one)) for one in asked}
         finer = solve(scene, TSM.name, Options(elements=ELEMENTS[1]))
         beams, rod = tried[MIXED], solve(scene, ROD.name)
         runs |= {f"{place}, {one.model}": one for one in (beams, rod)}
         own, exact = beams.contacts[pair], rod.contacts[pair]
         # forces [N] and arc positions [m] against the displacement of the pin [m], where both are in contact
-        columns = (
-            travel * beams.load_parameter,
-            own.force,
-            exact.force,
-            own.arc_position,
-            exact.arc_position,
-        )
+        way = travel * beams.load_parameter
+        columns = (way, own.force, exact.force, own.arc_position, exact.arc_position)
         history = np.array([row for row in zip(*columns, strict=False) if np.isfinite(row).all()])
         names = ("start", "displacement", "force", "rod_force", "arc", "rod_arc")
         histories += (dict(zip(names, (start, *row), strict=True)) for row in history)
         # up to the slip-off, or the end of the run before it
         off = {one: travel * one.contacts[pair].slip_off for one in (*tried.values(), finer, rod)}
-        ends = {
-            name: np.nanmin([off[one], travel * max(one.load_parameter, default=0.0)])
-            for name, one in tried.items()
-        }
+        last = {name: travel * max(one.load_parameter, default=0.0) for name, one in tried.items()}
+        ends = {name: np.nanmin([off[one], last[name]]) for name, one in tried.items()}
         slip_off = dict(zip(ELEMENTS, (off[beams], off[finer]), strict=True))
         lifts.append({
             "start": start,
@@ -232,10 +218,10 @@ def cantilever_shapes(*, quick: bool, report: Report) -> Study:
             "reached_in_contact": ends,
             "paper_followed": bool(np.isclose(ends[TIMOSHENKO], off[rod], rtol=FOLLOWED)),
         })  # fmt: skip
-        last = int(np.flatnonzero(np.isfinite(own.arc_position))[-1])
+        closed = int(np.flatnonzero(np.isfinite(own.arc_position))[-1])
         shown = {"exact rod": rod, f"TSM mixed, {ELEMENTS[0]} elements": beams}
         title = f"{place}: slips off at {off[beams]:.4f} m"
-        panels[title] = list(shapes(scene, shown, [round(part * last) for part in DEPTHS]))
+        panels[title] = list(shapes(scene, shown, [round(part * closed) for part in DEPTHS]))
     return Study(
         tables={"fig7a": histories},
         numbers={"starting_positions": lifts, "stopped": stops(runs)},

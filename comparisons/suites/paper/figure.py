@@ -48,12 +48,13 @@ def stops(runs: Mapping[str, Response]) -> list[str]:
     return [f"{name}: {one.ended}" for name, one in runs.items() if not one.completed]
 
 
-SIMPLE, CANTILEVER, TIMOSHENKO, MIXED = (
-    kind.name
-    for kind in (
-        elements.EULER_BERNOULLI_SIMPLE, elements.EULER_BERNOULLI_CANTILEVER, elements.TIMOSHENKO, elements.MIXED,
-    )
-)  # fmt: skip
+_KINDS = (
+    elements.EULER_BERNOULLI_SIMPLE,
+    elements.EULER_BERNOULLI_CANTILEVER,
+    elements.TIMOSHENKO,
+    elements.MIXED,
+)
+SIMPLE, CANTILEVER, TIMOSHENKO, MIXED = (kind.name for kind in _KINDS)
 LABELS = {
     SIMPLE: "Euler-Bernoulli, simple",
     CANTILEVER: "Euler-Bernoulli, cantilever",

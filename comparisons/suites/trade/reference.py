@@ -62,11 +62,10 @@ def best_reference(scene: Scene, measured: Results) -> Reference:
     if not rod.completed:
         raise NoReferenceError(f"{scene.name}: the exact rods stopped: {rod.message}")
     apart = errors(exact if exact.completed else rod, rod, scene, end=_end(rod))
-    confirmed = (
-        f"TSM exact, which shares no code with them, agrees within {apart['path']['force']:.1e} of the largest force"
-        if exact.completed
-        else "TSM exact, which would confirm them, did not complete"
-    )
+    confirmed = "TSM exact, which would confirm them, did not complete"
+    if exact.completed:
+        within = f"{apart['path']['force']:.1e} of the largest force"
+        confirmed = f"TSM exact, which shares no code with them, agrees within {within}"
     least = {scope: {name: max(e, ROUND_OFF) for name, e in table.items()} for scope, table in apart.items()}
     what = "the exact Reissner rods, with the beams' stretch and shear, which the elastica leaves out"
     return Reference(response=rod, scene=scene, uncertainty=least, sentence=f"{what}; {confirmed}")
@@ -93,28 +92,25 @@ def extrapolated(responses: Sequence[Response]) -> Response:
 
     def limit(read: Callable[[Response], Mapping[str, Array]]) -> dict[str, Array]:
         coarse, middle, fine = (read(one) for one in responses[-3:])
-        d1, d2 = (
-            max((float(np.nanmax(np.abs(b[name] - a[name]), initial=0.0)) for name in fine), default=0.0)
-            for a, b in ((coarse, middle), (middle, fine))
-        )
+
+        def apart(a: Mapping[str, Array], b: Mapping[str, Array]) -> float:
+            return max(
+                (float(np.nanmax(np.abs(b[name] - a[name]), initial=0.0)) for name in fine), default=0.0
+            )
+
+        d1, d2 = apart(coarse, middle), apart(middle, fine)
         factor = d2 / (d1 - d2) if 0.0 < 1.1 * d2 < d1 else 0.0
         return {name: values + factor * (values - middle[name]) for name, values in fine.items()}
 
-    best = responses[-1]
-    force, moment = limit(forces), limit(moments)
+    best, force, moment = responses[-1], limit(forces), limit(moments)
     arc = limit(lambda one: {pair: contact.arc_position for pair, contact in one.contacts.items()})
     axis = limit(lambda one: sampled_axes(one).position)
+    closed, held = best.contacts.items(), best.supports.items()
     return replace(
         best,
-        contacts={
-            pair: replace(contact, force=force[pair], arc_position=arc[pair])
-            for pair, contact in best.contacts.items()
-        },
-        supports={
-            # with contacts only their forces are extrapolated
-            node: replace(support, force=force.get(node, support.force), moment=moment[node])
-            for node, support in best.supports.items()
-        },
+        contacts={pair: replace(one, force=force[pair], arc_position=arc[pair]) for pair, one in closed},
+        # with contacts only their forces are extrapolated
+        supports={at: replace(one, force=force.get(at, one.force), moment=moment[at]) for at, one in held},
         material_force=limit(lambda one: one.material_force),
         tips=limit(lambda one: one.tips),
         axis_line=SampledAxes(arc_length=sampled_axes(best).arc_length, position=axis),

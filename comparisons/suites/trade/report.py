@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from itertools import pairwise, product
+from itertools import chain, pairwise, product
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from comparisons.output import tabulated
 from comparisons.report import palette
 from comparisons.report.brief import Brief
 from comparisons.report.pages import Section, picture, piece, table
+from comparisons.report.plot import tag
 from comparisons.scene import Scene, to_toml
 from comparisons.suite.progress import Runner
 from comparisons.suite.study import result_rows
@@ -54,17 +55,14 @@ def _draw(axes: Any, trade: Trade, *, own: bool) -> None:
     """Draw the completed settings in the order of the legend, and fronts; what is uncertain bounds errors from below."""
     order = [words for model in MODELS.values() for words in model.styles()]
     models = (model.name for model in MODELS.values() if model.meshed or not model.rod)
-    rows = (row for name in models for row in trade.of_model(name, SCOPE))
-    for row in sorted(
-        rows, key=lambda row: max(k for k, words in enumerate(order) if row.family.startswith(words))
-    ):
+    rows = [row for name in models for row in trade.of_model(name, SCOPE)]
+    ranks = [[k for k, words in enumerate(order) if row.family.startswith(words)] for row in rows]
+    for _, row in sorted(zip(ranks, rows, strict=True), key=lambda ranked: ranked[0][-1]):
         style, error = palette.style(row.family), row.error(SCOPE, SHOWN, own=own)
         floor = trade.uncertainty(row.case.model if own else ROD.name, SCOPE, SHOWN)
+        mark = {"color": style.colour, "marker": style.marker, "markersize": 9 if style.marker == "*" else 6}
         if np.isfinite(error):
-            axes.plot(
-                row.seconds, max(error, floor), color=style.colour, marker=style.marker, linestyle="none", label=row.family,
-                markersize=9 if style.marker == "*" else 6, alpha=0.85,
-            )  # fmt: skip
+            axes.plot(row.seconds, max(error, floor), ls="none", label=row.family, alpha=0.85, **mark)
     title = "against what each model converges to, Pareto fronts" if own else "against the exact rod"
     axes.set(xscale="log", yscale="log", ylabel=f"largest error of {SHOWN}", title=title)
     axes.margins(x=0.3, y=0.06)
@@ -83,14 +81,13 @@ def _draw_front(axes: Any, points: Sequence[Line], model: str) -> None:
     spent, errors = ([one[name] for one in points] for name in ("spent", "own_error"))
     axes.plot(spent, errors, color=MODELS[model].colour, linewidth=1.6, drawstyle="steps-post", zorder=1)
     low, high = np.log(axes.get_ylim())
-    words = {"va": "center", "ha": "right", "fontsize": "small", "textcoords": "offset points"}
-    ground = {"facecolor": "white", "alpha": 0.7, "linewidth": 0.0, "pad": 0.5}
+    style = {"va": "center", "ha": "right", "fontsize": "small"}
     last = np.inf
     for one in points:
         height = np.log(one["own_error"])
         if height < last - APART * (high - low):
             last = height
-            axes.annotate(one["setting"], (one["spent"], one["own_error"]), (-7, 0), bbox=ground, **words)
+            tag(axes, one["setting"], (one["spent"], one["own_error"]), (-7, 0), **style)
 
 
 SETTING = (
@@ -122,11 +119,8 @@ def trade(scene: Scene, run: Runner, *, quick: bool = False) -> Found:
         "pareto": [row for of in product(MESHED, SCOPES, KEPT, COSTS) for row in front(trade, *of)],
     }
     shown, reasons = _tables(trade), _stopped(trade)
-    said = [
-        f"{title}\n\n{tabulated(rows) if rows else 'none'}"
-        for tables in shown.values()
-        for title, rows in tables
-    ]
+    every = chain.from_iterable(shown.values())
+    said = [f"{title}\n\n{tabulated(rows) if rows else 'none'}" for title, rows in every]
     ends = ["settings without a solution:", *(f"  {name}: {why}" for name, why in reasons.items())]
     limit = trade.limit.sentence if trade.limit else "not known: a solid that it is extrapolated from stopped"
     sources = {"errors against": trade.reference.sentence, "the solid's own limit": limit}
@@ -195,9 +189,8 @@ def _brief(trade: Trade, sources: Mapping[str, str], stopped: int) -> Brief:
         more = b["spent"] / a["spent"] - 1.0
         said += f"; {more:.0%} more time buys an error of {b['own_error']:.0e} instead of {a['own_error']:.0e} ({b['setting']})"
     points = [f"{name[0].upper()}{name[1:]}: {what}." for name, what in sources.items()]
-    points.append(
-        f"{len(trade.rows)} settings, {stopped} without a solution; [n]: n load steps; -: no setting does it."
-    )
+    legend = "[n]: n load steps; -: no setting does it."
+    points.append(f"{len(trade.rows)} settings, {stopped} without a solution; {legend}")
     columns = ("target", TSM.name, f"{TSM.name}_seconds", SOLID.name, f"{SOLID.name}_seconds", "ratio")
     names = ("error", "beams", "seconds", SOLID.label, "seconds ", "ratio")
     answer = [{name: row[column] for name, column in zip(names, columns, strict=True)} for row in rows]

@@ -102,13 +102,9 @@ class Trade(Frozen):
 
     def of_model(self, model: str, scope: str) -> list[Row]:
         """Return the completed rows of a model; for the scope ``path`` those with every load parameter of the scene."""
-        return [
-            row
-            for row in self.rows
-            if row.response.completed
-            and row.case.model == model
-            and (scope == "end" or row.case.scene.load_parameters == self.scene.load_parameters)
-        ]
+        rows = [row for row in self.rows if row.response.completed and row.case.model == model]
+        every = self.scene.load_parameters
+        return [row for row in rows if scope == "end" or row.case.scene.load_parameters == every]
 
 
 def measure_trade(scene: Scene, run: Runner, *, quick: bool = False) -> Trade:

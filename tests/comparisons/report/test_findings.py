@@ -15,7 +15,7 @@ from comparisons.report.table import line
 from comparisons.scene import load_scene
 from comparisons.suite import Row
 from comparisons.suite.budget import PARTS, Budget
-from comparisons.suites.compare import ROD, Run, _row, run_of
+from comparisons.suites.compare import ROD, Run, row_of, run_of
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=5)
 
@@ -33,7 +33,7 @@ CHOSEN = (
 @pytest.fixture(scope="module")
 def rows() -> list[Row]:
     answers = {run: certified(solve(KS, run.model, run.options), KS) for run in CHOSEN}
-    return [_row(KS, run, answers[run], answers[ROD]) for run in CHOSEN]
+    return [row_of(KS, run, answers[run], answers[ROD]) for run in CHOSEN]
 
 
 def budget(**parts: float) -> Budget:
