@@ -11,12 +11,12 @@ import numpy as np
 from comparisons import models
 from comparisons.answer import Response
 from comparisons.answer.file import as_dict
-from comparisons.answer.quantities import event_differences, names
+from comparisons.answer.quantities import event_differences, names, table_columns
 from comparisons.files import writable_folder
 from comparisons.models import Model, certified, find, solve
 from comparisons.models.model import Count, ModelError, Options, Watch, uncounted, unwatched
 from comparisons.models.theory import bending
-from comparisons.output import Report, tabulated
+from comparisons.output import NO_VALUE, Report, tabulated
 from comparisons.report.brief import at_largest, filled
 from comparisons.report.export import check_series
 from comparisons.report.findings import BUDGET, findings
@@ -24,15 +24,14 @@ from comparisons.report.motion import motion_section, states_section, tracks
 from comparisons.report.pages import Section, picture, table
 from comparisons.report.palette import style
 from comparisons.report.panel import mises_panels
+from comparisons.report.parts import budget_numbers, budget_section, plot_budget
 from comparisons.report.plot import plot_shapes
 from comparisons.report.render import write_stress
-from comparisons.report.table import budget_numbers, budget_section, caption, line
 from comparisons.scene import Scene, to_toml
 from comparisons.scene.keys import special_keys
 from comparisons.suite import Case, Row
 from comparisons.suite.budget import Budget, error_budget
 from comparisons.suite.measure import verdict
-from comparisons.suites.drawing import plot_budget
 from comparisons.suites.found import Found
 from tsm.elements import MIXED as MIXED_KIND
 from tsm.elements import TIMOSHENKO
@@ -150,6 +149,32 @@ def _cause(case: Case, reference: Response) -> str:
         return ""
     parts = case.found.error_parts(scene, case.options, bending(beam, reference))
     return max(parts, key=lambda why: parts[why]).partition(":")[0]
+
+
+def caption(reference: str) -> str:
+    """Return what the table shows."""
+    return (
+        f"Largest error over the load parameters reached, against the {reference}; forces and moments relative to their "
+        "largest, positions to the length, friction to the contact forces; Newton iterations and seconds for the whole path"
+    )
+
+
+def line(row: Row) -> dict[str, str]:
+    """Return a run for people; a dash stands where the run or the scene does not have a quantity."""
+    response = row.response
+    errors = {one.words: row.error("path", name) for name, one in table_columns().items()}
+    return {
+        "model": row.label if response.completed else f"{row.label} ({response.status})",
+        "unknowns": str(response.unknowns),
+        **{words: _error(value) for words, value in errors.items()},
+        "stable": row.stable,
+        "iterations": str(response.iterations),
+        "seconds": f"{response.wall_seconds:.3f}",
+    }
+
+
+def _error(value: float) -> str:
+    return "-" if np.isnan(value) else NO_VALUE if np.isinf(value) else f"{value:.1e}"
 
 
 def _found(

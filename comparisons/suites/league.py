@@ -16,10 +16,10 @@ from comparisons.models.outside.programs import used
 from comparisons.report import palette
 from comparisons.report.brief import Brief
 from comparisons.report.pages import Section, picture, table
+from comparisons.report.plot import draw
 from comparisons.scene import Scene
 from comparisons.suite import Case, Row, case
 from comparisons.suite.progress import Runner
-from comparisons.suites.drawing import draw
 from comparisons.suites.found import Found
 
 MOST, SCENES = 5, 6

@@ -18,9 +18,9 @@ from comparisons.models import ROD, SOLID, solve
 from comparisons.models.model import Options
 from comparisons.models.solid import to_solid
 from comparisons.models.tsm import to_structure
+from comparisons.report.plot import Line
 from comparisons.scene import LoadSpec, Scene, read_scene
 from comparisons.suite.settings import changed
-from comparisons.suites.drawing import Line
 from comparisons.suites.formula import value_of
 from comparisons.suites.manual.problem import Problem, Quantity, Trial
 from comparisons.suites.solid_accuracy import solved

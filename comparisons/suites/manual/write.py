@@ -18,7 +18,7 @@ from comparisons.output import Report, Row, markdown
 from comparisons.report import palette
 from comparisons.report.brief import Brief
 from comparisons.report.pages import Section, picture, piece, table
-from comparisons.suites.drawing import Line, draw_lines
+from comparisons.report.plot import Line, draw_lines
 from comparisons.suites.finding import Finding, junit_text
 from comparisons.suites.formula import sentence
 from comparisons.suites.found import Found
@@ -205,12 +205,6 @@ def _numbers(case: Sequence[Judgement]) -> dict[str, Any]:
     }
 
 
-def _check(item: Judgement) -> tuple[str, str, float, str | None, str]:
-    """Return the check of `junit_text` for an answer."""
-    measured = "\n".join(one.measured for one in item.findings)
-    return f"manual.{item.problem.name}", item.trial.label, item.seconds, item.failure, measured
-
-
 def manual(files: Sequence[Path], report: Report) -> Found:
     """Solve problems, the files of `comparisons.suites.manual.problem.problems`, and judge the answers; `report` takes a line for each problem."""
     cases = []
@@ -228,6 +222,11 @@ def manual(files: Sequence[Path], report: Report) -> Found:
     every = [_answer(item) for item in judgements]
     links = (f"[{item.problem.title}](#{item.problem.name})" for item in judgements)
     linked = [row | {"case": link} for row, link in zip(every, links, strict=True)]
+    held = ("\n".join(one.measured for one in item.findings) for item in judgements)
+    checks = (
+        (f"manual.{item.problem.name}", item.trial.label, item.seconds, item.failure, text)
+        for item, text in zip(judgements, held, strict=True)
+    )
     words: dict[str, Any] = {"cases": cases, "judgements": judgements, "versions": versions()}
     template = PAGE.read_text(encoding="utf-8")
     text = sentence(template, **words, every=markdown(linked), answers=lambda case: markdown(_answers(case)))
@@ -238,7 +237,7 @@ def manual(files: Sequence[Path], report: Report) -> Found:
         files={
             "index.md": text.replace(" FAILED ", " **FAILED** "),
             "manual.json": {"passed": not wrong, "cases": list(map(_numbers, cases))},
-            "junit.xml": junit_text("crossval run manual", map(_check, judgements)),
+            "junit.xml": junit_text("crossval run manual", checks),
         },
         sections=lambda folder: [
             Section("Answers", table("Of every answer the quantity with the largest error", every)),

@@ -12,9 +12,9 @@ from comparisons.models.model import Options
 from comparisons.output import Report, Row
 from comparisons.report import palette
 from comparisons.report.motion import motion_section, tracks
+from comparisons.report.plot import Line
 from comparisons.scene import Scene, load_scene
 from comparisons.suite.settings import changed
-from comparisons.suites.drawing import Line
 from comparisons.suites.paper.figure import (
     CANTILEVER,
     SIMPLE,

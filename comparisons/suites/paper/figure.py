@@ -13,8 +13,8 @@ from comparisons.models import find
 from comparisons.output import Row
 from comparisons.report import palette
 from comparisons.report.pages import Section
+from comparisons.report.plot import Line, draw_lines
 from comparisons.scene import Scene
-from comparisons.suites.drawing import Line, draw_lines
 from tsm import elements
 
 STATED: dict[str, Any] = tomllib.loads(Path(__file__).with_name("claims.toml").read_text(encoding="utf-8"))

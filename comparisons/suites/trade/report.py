@@ -15,11 +15,10 @@ from comparisons.output import tabulated
 from comparisons.report import palette
 from comparisons.report.brief import Brief
 from comparisons.report.pages import Section, picture, piece, table
-from comparisons.report.plot import tag
+from comparisons.report.plot import draw, tag
 from comparisons.scene import Scene, to_toml
 from comparisons.suite.progress import Runner
 from comparisons.suite.study import result_rows
-from comparisons.suites.drawing import draw
 from comparisons.suites.found import Found
 from comparisons.suites.trade.trade import (
     COSTS,
@@ -191,9 +190,9 @@ def _brief(trade: Trade, sources: Mapping[str, str], stopped: int) -> Brief:
     points = [f"{name[0].upper()}{name[1:]}: {what}." for name, what in sources.items()]
     legend = "[n]: n load steps; -: no setting does it."
     points.append(f"{len(trade.rows)} settings, {stopped} without a solution; {legend}")
-    columns = ("target", TSM.name, f"{TSM.name}_seconds", SOLID.name, f"{SOLID.name}_seconds", "ratio")
     names = ("error", "beams", "seconds", SOLID.label, "seconds ", "ratio")
-    answer = [{name: row[column] for name, column in zip(names, columns, strict=True)} for row in rows]
+    columns = ("target", TSM.name, f"{TSM.name}_seconds", SOLID.name, f"{SOLID.name}_seconds", "ratio")
+    answer = [dict(zip(names, map(row.get, columns), strict=True)) for row in rows]
     about = f"The cheapest settings for an error of {SHOWN} over the path, and their seconds:"
     return Brief(f"{said}.", points, answer, about)
 

@@ -13,8 +13,14 @@ from comparisons.models import MODELS, SOLID, TSM
 from comparisons.scene import Scene
 from comparisons.suite import Row
 from comparisons.suite.progress import Runner
-from comparisons.suites.trade.reference import Reference, best_reference, reference_cases, solid_limit
-from comparisons.suites.trade.settings import chains, sweep_cases
+from comparisons.suites.trade.cases import (
+    Reference,
+    best_reference,
+    chains,
+    reference_cases,
+    solid_limit,
+    sweep_cases,
+)
 
 FEWEST, MOST = 3, 4
 """Points of a fit."""

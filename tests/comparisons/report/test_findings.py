@@ -11,11 +11,10 @@ from comparisons.models import ELASTICA, SOLID, TSM, certified, solve
 from comparisons.models.model import Options
 from comparisons.referee import Verdict
 from comparisons.report.findings import BUDGET, findings  # sentences on data that no scene gives at will
-from comparisons.report.table import line
 from comparisons.scene import load_scene
 from comparisons.suite import Row
 from comparisons.suite.budget import PARTS, Budget
-from comparisons.suites.compare import ROD, Run, row_of, run_of
+from comparisons.suites.compare import ROD, Run, line, row_of, run_of
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=5)
 
