@@ -1,7 +1,6 @@
 """What a page and a terminal begin with: one sentence, at most five points, and the answer in units, model by model."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from shutil import get_terminal_size
 from textwrap import wrap
 from typing import Any, NamedTuple
@@ -99,12 +98,6 @@ def _values(scene: Scene, response: Response, t: float) -> dict[str, float]:
     if not len(at):
         return {}
     k, units, least = int(at[0]), unit_names(scene.units), round_off(response, scene)
-    one = replace(
-        response,
-        load_parameter=response.load_parameter[k : k + 1],
-        axis_line=lambda beam, _: response.axis_line(beam, k),
-        sections=response.sections and (lambda beam, _: response.sections(beam, k)),  # type: ignore[misc]
-    )
     found: dict[str, tuple[str, float]] = {}
     what = "contact force" if response.contacts else "support force"
     acting = forces(response)
@@ -113,7 +106,7 @@ def _values(scene: Scene, response: Response, t: float) -> dict[str, float]:
     turned = {name: float(values[k]) for name, values in moments(response).items() if values.any()}
     for name, moment in turned.items():
         found[f"moment {name}" if len(turned) > 1 else "support moment"] = "moment", moment
-    along = extremes_along(one, scene)
+    along = extremes_along(response, scene, steps=[k])
     for name in ("tensile_stress", "compressive_stress", "displacement"):
         sizes = [extremes[name].value[0] for extremes in along.values() if name in extremes]
         if sizes:

@@ -103,15 +103,12 @@ def motion_section(
     extent = float(np.ptp(ends, axis=0).max())
     decimals, steps = DIGITS - int(np.floor(np.log10(extent))), range(len(times))
     axes = {label: _lines(scene, response, decimals) for label, response in responses.items()}
-    runs = [
-        {
-            "label": one,
-            "shown": not first or one in first,
-            **_line_style(one, number),
-            "lines": axes.get(one, []),
-        }
-        for number, one in enumerate(ordered)
-    ]
+    runs = list[dict[str, Any]]()
+    for number, label in enumerate(ordered):
+        style, dash = palette.style(label), DASHES[number % len(DASHES)]
+        drawn: dict[str, Any] = {"colour": INKS.get(style.colour, style.colour), "width": style.width}
+        drawn |= {"dash": "none" if style.unbroken else dash, "lines": axes.get(label, [])}
+        runs.append({"label": label, "shown": not first or label in first, **drawn})
     way, exact = travel(scene, times), responses[focus]
     start = at_largest(exact) if len(exact.load_parameter) else len(times) - 1
     length = unit_names(scene.units)["length"]
@@ -157,13 +154,6 @@ def _axis(scene: Scene, response: Response, beam: str, k: int) -> Array:
     if last >= 0:
         return response.axis_line(beam, last)[1]
     return np.array([scene.beam(beam).start, scene.beam(beam).end])
-
-
-def _line_style(label: str, number: int) -> dict[str, Any]:
-    """Colour, dashes and width."""
-    style = palette.style(label)
-    dash = "none" if style.unbroken else DASHES[number % len(DASHES)]
-    return {"colour": INKS.get(style.colour, style.colour), "dash": dash, "width": style.width}
 
 
 def _lines(scene: Scene, response: Response, decimals: int) -> list[list[Array]]:

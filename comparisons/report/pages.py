@@ -3,23 +3,19 @@
 import base64
 import json
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from comparisons.files import write_text
 from comparisons.output import cell, plain
 from comparisons.report.brief import Brief
-from comparisons.scene import Scene, to_toml
-from comparisons.version import machine, versions
 
 if TYPE_CHECKING:
     from jinja2 import Environment
     from markupsafe import Markup
 
 FOLDER = Path(__file__).with_name("templates")
-NAME = "report.html"
 TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
 
 
@@ -82,26 +78,6 @@ def page(title: str, brief: Brief, sections: Sequence[Section]) -> str:
     style, script = ((FOLDER / name).read_text(encoding="utf-8") for name in ("style.css", "script.js"))
     parts = {"style": style, "script": script, "data": text}
     return rendered("page", title=title, brief=brief, sections=sections, **parts)
-
-
-def write_page(
-    folder: Path,
-    title: str,
-    brief: Brief,
-    sections: Iterable[Section],
-    scenes: Iterable[Scene],
-    files: Iterable[Path],
-    name: str = NAME,
-) -> Path:
-    """Write a `page` that ends with scenes, versions, machine and links to files; return its file."""
-    inputs = [piece("code", to_toml(scene)) for scene in scenes]
-    closing = [
-        *([Section("Input", "\n".join(inputs))] if inputs else []),
-        Section("Versions and machine", piece("definitions", {**versions(), **machine()})),
-        Section("Files", piece("links", [path.relative_to(folder).as_posix() for path in files])),
-    ]
-    write_text(folder / name, page(title, brief, [*sections, *closing]))
-    return folder / name
 
 
 def table(caption: str, rows: Sequence[Mapping[str, Any]], *, prose: bool = False) -> str:

@@ -20,7 +20,7 @@ from comparisons.models.model import ModelError, Options
 from comparisons.models.shared import joints, kept, line_loads
 from comparisons.output import Report
 from comparisons.referee.rod import face_of
-from comparisons.scene import BeamSpec, PinSpec, Scene, load_scene
+from comparisons.scene import BeamSpec, Scene, load_scene
 from comparisons.scene.conditions import COMPONENTS
 
 Query = dict[str, Any]
@@ -46,6 +46,7 @@ def scenes() -> dict[str, tuple[Scene, tuple[int, ...]]]:
 def resolved(about: str, scene: Scene, at: Sequence[int]) -> dict[str, Any]:
     """Return all that a scene's answer depends on, and nothing that only a program needs."""
     force, length = (unit.strip() for unit in scene.units.split(","))
+    corners = [(0.0, *pin.corners, 1.0 + len(pin.moves or ())) for pin in scene.pins]
     return {
         "name": scene.name,
         "about": about,
@@ -60,7 +61,10 @@ def resolved(about: str, scene: Scene, at: Sequence[int]) -> dict[str, Any]:
             *({"end": one.node, "force": one.force, "moment": one.moment} for one in scene.loads),
             *({"beam": beam.name, "force_per_length": q} for beam, _, (q,), _ in line_loads(scene)),
         ],
-        "pins": [{"name": pin.name, "radius": pin.radius or 0.0, "path": _path(pin)} for pin in scene.pins],
+        "pins": [
+            {"name": pin.name, "radius": pin.radius or 0.0, "path": [(t, *pin.position(t)) for t in turns]}
+            for pin, turns in zip(scene.pins, corners, strict=True)
+        ],
         "contacts": [
             {
                 **kept(one, "pair node beam side"),
@@ -101,13 +105,6 @@ def _product(p: Sequence[Any], q: Sequence[Any]) -> list[float]:
 
 def _coefficients(*values: float) -> float | list[float]:
     return values[0] if not any(values[1:]) else list(values)
-
-
-def _path(pin: PinSpec) -> list[tuple[float, float, float]]:
-    """Return the places of a pin with their load parameters."""
-    stages = len(pin.moves or ()) + 1
-    turns = (0.0, *pin.corners, float(stages))
-    return [(t, *pin.position(t)) for t in turns]
 
 
 def queries(found: Mapping[str, Response]) -> list[Query]:

@@ -224,8 +224,9 @@ def _found(
             yield Section("Stress", picture(folder / "stress.svg", MISES))
 
     wrong = {row.label for row in rows if row.wrong or row.label == ROD.label}
-    stops = [row for row in rows if not row.response.completed]
-    stopped = [f"{row.label}: {row.response.stop(scene)}" for row in stops if row.label in wrong]
+    stops = {
+        row.label: f"{row.label}: {row.response.stop(scene)}" for row in rows if not row.response.completed
+    }
     return Found(
         title=f"{scene.name}: beams, solid and exact answers",
         brief=findings(scene, rows, ROD.label, bodies, budget, left_out),
@@ -234,8 +235,8 @@ def _found(
         pictures=pictures,
         scenes=[scene],
         text="\n".join([*filled(caption(ROD.label)), "", tabulated(shown), *_other_events(rows)]),
-        remarks=[f"{row.label}: {row.response.stop(scene)}" for row in stops if row.label not in wrong],
-        stopped=[*stopped, *_apart(rows)],
+        remarks=[stops[label] for label in stops if label not in wrong],
+        stopped=[*(stops[label] for label in stops if label in wrong), *_apart(rows)],
     )
 
 

@@ -10,8 +10,9 @@ from comparisons.frozen import Frozen
 from comparisons.output import write_numbers, write_rows
 from comparisons.report.brief import Brief
 from comparisons.report.export import write_series
-from comparisons.report.pages import Section, write_page
-from comparisons.scene import Scene
+from comparisons.report.pages import Section, page, piece
+from comparisons.scene import Scene, to_toml
+from comparisons.version import machine, versions
 
 WRITERS: dict[str, Callable[[Path, Any], object]] = {
     ".csv": write_rows,
@@ -39,17 +40,23 @@ class Found(Frozen):
     page: str = "report.html"
 
     def write(self, folder: Path) -> list[Path]:
-        """Write the files, the pictures and the page; return them, the page first. A run waits while another one writes into `folder`."""
-        files = {folder / name: content for name, content in self.files.items() if content}
+        """Write files, pictures, and the page, which ends with scenes, versions and links; return them, the page first.
+
+        A run waits while another one writes into `folder`.
+        """
+        files = {name: content for name, content in self.files.items() if content}
+        names, inputs = list(files), [piece("code", to_toml(scene)) for scene in self.scenes]
         with alone_in(folder):
-            for file, content in files.items():
-                WRITERS.get(file.suffix, write_text)(file, content)
-            every = list(files)
+            for name, content in files.items():
+                WRITERS.get(Path(name).suffix, write_text)(folder / name, content)
             for name, draw in self.pictures.items():
-                kinds = [""] if Path(name).suffix else [".png", ".svg"]
-                drawn = [folder / f"{name}{kind}" for kind in kinds]
-                draw(*drawn)
-                every += drawn
-            sections = self.sections(folder)
-            page = write_page(folder, self.title, self.brief, sections, self.scenes, every, self.page)
-        return [page, *every]
+                drawn = [name] if Path(name).suffix else [f"{name}.png", f"{name}.svg"]
+                draw(*(folder / one for one in drawn))
+                names += drawn
+            closing = [
+                *([Section("Input", "\n".join(inputs))] if inputs else []),
+                Section("Versions and machine", piece("definitions", {**versions(), **machine()})),
+                Section("Files", piece("links", names)),
+            ]
+            write_text(folder / self.page, page(self.title, self.brief, [*self.sections(folder), *closing]))
+        return [folder / name for name in (self.page, *names)]

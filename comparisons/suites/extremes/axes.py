@@ -23,10 +23,6 @@ SLENDERNESS = 50.0
 MESH, COARSE = (50, 2), (25, 2)
 TARGET = Allowance(1e-6, "the target for 40 elements up to L/h = 1e5")
 UNITS = Allowance(1e-9, "units do not matter")
-CUT_BACK = 100
-"""Cycles of what cuts back several steps in each."""
-FINEST = 1000
-"""Number of elements, and of load steps, up to which everything is solved."""
 
 
 def cantilever(*, length: float = 1.0, slenderness: float = SLENDERNESS, **more: Any) -> BeamSpec:
@@ -134,13 +130,13 @@ def _shear(powers: Sequence[int]) -> Iterator[Cell]:
     yield from everything("[P] 4.2", replace(load_scene("ks-printed-shear"), load_parameters=10), 20)
 
 
-def _elements(counts: Sequence[int]) -> Iterator[Cell]:
+def _elements(counts: Sequence[int], finest: int) -> Iterator[Cell]:
     scene = half_circle(cantilever())
     yield from everything("1", scene, None, only=())
     for count in counts:
-        mesh = (count, 2) if 2 <= count <= FINEST else None
+        mesh = (count, 2) if 2 <= count <= finest else None
         yield from everything(f"{count}", scene, count, mesh, only=kinds(meshed=True), exact=False)
-        for kind in kinds(meshed=False) if count <= FINEST else ():
+        for kind in kinds(meshed=False) if count <= finest else ():
             yield beam(f"{count}", scene, kind, count)
 
 
@@ -176,11 +172,11 @@ def _contact(parts: Sequence[float]) -> Iterator[Cell]:
         yield from everything(column, pushed(cantilever(), *path), elements)
 
 
-def _load_step(counts: Sequence[int]) -> Iterator[Cell]:
+def _load_step(counts: Sequence[int], finest: int) -> Iterator[Cell]:
     for steps in counts:
         scene = half_circle(cantilever(), steps=steps)
         yield from everything(f"{steps}", scene, 20, COARSE)
-        for kind in (MIXED, TIMOSHENKO) if steps <= FINEST else ():
+        for kind in (MIXED, TIMOSHENKO) if steps <= finest else ():
             yield beam(f"{steps}", scene, kind, 200, f"{kind.name}, 200 elements")
 
 
@@ -215,11 +211,11 @@ def _depth() -> Iterator[Cell]:
         yield replace(one, checks=(circle,))
 
 
-def _time(counts: Sequence[int]) -> Iterator[Cell]:
+def _time(counts: Sequence[int], cut_back: int) -> Iterator[Cell]:
     """A pin under ``.9 L`` that touches, lifts the beam by ``.1 L`` and leaves it; two states a cycle."""
     low, high = (0.9, -0.1), (0.9, 0.1)
     for count in counts:
-        few = count <= CUT_BACK
+        few = count <= cut_back
         scene = pushed(cantilever(), low, *(high, low) * count, steps=2 * count)
         only = [kind for kind in kinds() if few or kind.contact_unknowns]
         yield from everything(f"{count}", scene, 15, COARSE if few else None, only=only)

@@ -3,7 +3,8 @@
 from collections.abc import Mapping, Sequence
 from functools import partial
 from itertools import chain, pairwise, product
-from math import isfinite
+from math import isfinite, log
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -117,9 +118,10 @@ def trade(scene: Scene, run: Runner, *, quick: bool = False) -> Found:
         "orders": fitted,
         "pareto": [row for of in product(MESHED, SCOPES, KEPT, COSTS) for row in front(trade, *of)],
     }
-    shown, reasons = _tables(trade), _stopped(trade)
-    every = chain.from_iterable(shown.values())
-    said = [f"{title}\n\n{tabulated(rows) if rows else 'none'}" for title, rows in every]
+    every = [(f"{row.label} [{row.case.scene.load_parameters}]", row.response) for row in trade.rows]
+    shown, reasons = _tables(trade), {name: one.ended for name, one in every if not one.completed}
+    titled = chain.from_iterable(shown.values())
+    said = [f"{title}\n\n{tabulated(rows) if rows else 'none'}" for title, rows in titled]
     ends = ["settings without a solution:", *(f"  {name}: {why}" for name, why in reasons.items())]
     limit = trade.limit.sentence if trade.limit else "not known: a solid that it is extrapolated from stopped"
     sources = {"errors against": trade.reference.sentence, "the solid's own limit": limit}
@@ -169,12 +171,6 @@ def _tables(trade: Trade) -> dict[str, list[tuple[str, list[Line]]]]:
     return {"Cheapest settings": cheap, "Orders of convergence": orders_of}
 
 
-def _stopped(trade: Trade) -> dict[str, str]:
-    """Return the settings without a completed and checked solution, and why."""
-    ends = {f"{row.label} [{row.case.scene.load_parameters}]": row.response for row in trade.rows}
-    return {name: one.ended for name, one in ends.items() if not one.completed}
-
-
 def _brief(trade: Trade, sources: Mapping[str, str], stopped: int) -> Brief:
     """Return what is found: what the solid costs beside beams of equal error, and what more time buys."""
     rows = [cheapest(trade, SCOPE, SHOWN, target) for target in TARGETS]
@@ -184,7 +180,9 @@ def _brief(trade: Trade, sources: Mapping[str, str], stopped: int) -> Brief:
         between = " to ".join(dict.fromkeys(f"{ratio:.2g}" for ratio in (min(ratios), max(ratios))))
         said = f"At equal error the solid takes {between} times the seconds of beams"
     steps = pairwise(front(trade, TSM.name, SCOPE, SHOWN, COSTS[0]))
-    for a, b in sorted(steps, key=lambda ab: _gain(*ab))[-1:]:
+    # by how many decades the error falls over how many the seconds rise
+    gains = [(log(a["own_error"] / b["own_error"]) / log(b["spent"] / a["spent"]), a, b) for a, b in steps]
+    for _, a, b in sorted(gains, key=itemgetter(0))[-1:]:
         more = b["spent"] / a["spent"] - 1.0
         said += f"; {more:.0%} more time buys an error of {b['own_error']:.0e} instead of {a['own_error']:.0e} ({b['setting']})"
     points = [f"{name[0].upper()}{name[1:]}: {what}." for name, what in sources.items()]
@@ -195,8 +193,3 @@ def _brief(trade: Trade, sources: Mapping[str, str], stopped: int) -> Brief:
     answer = [dict(zip(names, map(row.get, columns), strict=True)) for row in rows]
     about = f"The cheapest settings for an error of {SHOWN} over the path, and their seconds:"
     return Brief(f"{said}.", points, answer, about)
-
-
-def _gain(a: Line, b: Line) -> float:
-    """Return by how many decades the error falls over how many the seconds rise."""
-    return float(np.log(a["own_error"] / b["own_error"]) / np.log(b["spent"] / a["spent"]))
