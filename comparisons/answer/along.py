@@ -1,6 +1,6 @@
 """Extremes of section forces, axial stress and displacement along the beams, with their places."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -41,19 +41,22 @@ class Extreme(NamedTuple):
     arc_position: Array
 
 
-def extremes_along(response: Answer, scene: Scene, *, every: bool = True) -> dict[str, dict[str, Extreme]]:
-    """Return the extremes by beam and by quantity, a key of `ALONG`; without quantities that the model does not state.
+def extremes_along(
+    response: Answer, scene: Scene, *, every: bool = True, steps: Iterable[int] | None = None
+) -> dict[str, dict[str, Extreme]]:
+    """Return the extremes by beam and by quantity, a key of `ALONG`, at all load parameters or some; without quantities that the model does not state.
 
     An extreme may lie between stations, see `peak`. Without `every` it is 0 where it cannot be the largest over the load parameters.
     """
-    return {beam.name: _along(response, beam, every) for beam in scene.beams}
+    chosen = range(len(response.load_parameter)) if steps is None else steps
+    return {beam.name: _along(response, beam, every, chosen) for beam in scene.beams}
 
 
-def _along(response: Answer, beam: BeamSpec, every: bool) -> dict[str, Extreme]:
+def _along(response: Answer, beam: BeamSpec, every: bool, steps: Iterable[int]) -> dict[str, Extreme]:
     rows: dict[str, list[list[Curve]]] = {}
     undeformed = cache(lambda arcs: np.array([beam.place(arc / beam.length) for arc in arcs]))
     section = cache(lambda arcs: _sections(beam, arcs))
-    for k in range(len(response.load_parameter)):
+    for k in steps:
         found = {} if response.sections is None else _forces(response.sections(beam.name, k), beam, section)
         arc, line = response.axis_line(beam.name, k)
         found["displacement"] = [(arc, np.hypot(*(line - undeformed(tuple(arc))).T), lambda: slice(None))]

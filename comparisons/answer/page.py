@@ -81,7 +81,7 @@ def _head(response: Answer, rule: str) -> Iterator[tuple[str, str]]:
     asked = f" of {len(scene.times)}" if scene is not None else ""
     stage = f" in stage {response.stage[-1]}" if reached and response.stage[-1] > 1 else ""
     last = f", the last {response.load_parameter[-1]:.6g}{stage}" if reached else ""
-    yield "status", f"{response.status}: {response.message} ({reached}{asked} load parameters{last})"
+    yield "status", f"{response.ended} ({reached}{asked} load parameters{last})"
     yield "stability", stability(response)
     judged = response.certificate
     yield "certificate", "not judged; crossval certify judges it" if judged is None else judged.line()

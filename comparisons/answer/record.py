@@ -159,6 +159,15 @@ class Answer(Frozen):
         return f"{self.model} {self.setting}".rstrip()
 
     @property
+    def ended(self) -> str:
+        """How the solution ended: its status and the sentence."""
+        return f"{self.status}: {self.message}"
+
+    def stop(self, scene: Scene) -> str:
+        """Return how the solution ended, and at how many of a scene's load parameters."""
+        return f"{self.ended}; {len(self.load_parameter)} of {len(scene.times)} load parameters reached"
+
+    @property
     def completed(self) -> bool:
         """Whether the solution is complete, and neither a check nor the referee refused it."""
         return self.status == "COMPLETED"

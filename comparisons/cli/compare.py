@@ -4,18 +4,15 @@ import argparse
 from functools import partial
 from pathlib import Path
 
-from comparisons.cli.command import DONE, STOPPED, WRONG, report
+from comparisons.cli.command import DONE, WRONG, report
 from comparisons.cli.options import chosen, outputs, refuse, workers
-from comparisons.cli.screen import exit_status, files_named, say, shown, staging, teller, watching
+from comparisons.cli.screen import exit_status, shown, staging, teller, watching
 from comparisons.files import writable_folder, write_text
 from comparisons.models import TSM, find
 from comparisons.models.model import ModelError
-from comparisons.output import tabulated
-from comparisons.report.brief import filled
-from comparisons.report.table import caption, line
 from comparisons.scene import Scene, built_in_scenes, load_scene
 from comparisons.suite.progress import running
-from comparisons.suites.compare import ROD, Run, compare, run_of
+from comparisons.suites.compare import Run, compare, run_of
 from comparisons.suites.gate import gate
 from comparisons.suites.league import FILES, league
 
@@ -53,17 +50,8 @@ def _compare(scene: Scene, given: argparse.Namespace) -> int:
         label = f"{model.label} {model.setting(scene, options)}".rstrip()
         more.append(Run(label=label, model=model.name, options=options))
     watch, stage = partial(watching, quiet=given.quiet), partial(staging, quiet=given.quiet)
-    found = compare(scene, given.out or Path("out") / scene.name, tell, watch, stage, more)
-    say(found.brief)
-    print(*filled(caption(ROD.label)), "", tabulated([line(row) for row in found.rows]), sep="\n")
-    if found.other_events:
-        print("", *found.other_events, sep="\n")
-    print()
-    files_named(*found.files)
-    exit_status(scene, ((f"{row.label}: ", row.response) for row in found.rows))
-    for row in found.apart:
-        report(f"crossval: {row.label}: OTHER_BRANCH: ends in another equilibrium than the {ROD.label}")
-    return STOPPED if found.apart or found.wrong else DONE
+    folder = given.out or Path("out") / scene.name
+    return shown(compare(scene, folder, tell, watch, stage, more), folder)
 
 
 def _held(scene: Scene, given: argparse.Namespace) -> int:

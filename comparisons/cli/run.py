@@ -23,7 +23,7 @@ from comparisons.suites.manual import manual, problems
 from comparisons.suites.names import FIGURES, QUESTIONS
 from comparisons.suites.paper.reproduce import reproduce
 from comparisons.suites.solid_accuracy import STUDIES
-from comparisons.suites.trade.reference import NoReferenceError
+from comparisons.suites.trade.cases import NoReferenceError
 from comparisons.suites.trade.report import trade
 
 

@@ -53,6 +53,8 @@ def shown(found: "Found", folder: "Path") -> int:
     say(found.brief)
     if found.text:
         print(found.text, end="\n\n")
+    for line in found.remarks:
+        report(f"crossval: {line}")
     return ended(files, found.wrong or found.stopped, WRONG if found.wrong else STOPPED)
 
 
@@ -60,8 +62,7 @@ def exit_status(scene: Scene, responses: Iterable[tuple[str, Response]]) -> int:
     """Name every solution that stopped, by its label, and what was reached; return the exit status."""
     stopped = [(label, response) for label, response in responses if not response.completed]
     for label, response in stopped:
-        reached = f"{len(response.load_parameter)} of {len(scene.times)} load parameters reached"
-        report(f"crossval: {label}{response.status}: {response.message}; {reached}")
+        report(f"crossval: {label}{response.stop(scene)}")
     return STOPPED if stopped else DONE
 
 

@@ -64,7 +64,7 @@ def _write(kind: str, path: Path, response: Response, scene: Scene, more: dict[s
 
         write(path, csv_history(response, scene.units))
     elif kind == ".html":
-        from comparisons.report.sheet import write_sheet
+        from comparisons.report.answer import write_sheet
 
         write_sheet(path, response, scene)
     elif not kind:

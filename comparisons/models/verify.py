@@ -45,7 +45,7 @@ def verified(response: Response, scene: Scene) -> Response:
     names = CHECKS if response.completed else UNRESOLVED
     reason = next((said for name in names for said in CHECKS[name](response, scene)), None)
     if reason is not None:
-        stop = "" if response.completed else f"; then {response.status}: {response.message}"
+        stop = "" if response.completed else f"; then {response.ended}"
         return replace(response, status=CHECK_FAILED, message=reason + stop)
     if not response.completed or response.index is None or not np.any(response.index > 0):
         return response

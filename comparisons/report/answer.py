@@ -1,18 +1,24 @@
-"""The picture of one answer: deformed shape, section forces along the beams, and forces over the load parameter."""
+"""One answer: a picture of its shape, section forces and forces, and an engineer's sheet, which fits on one page of paper."""
 
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 
 from comparisons.answer import Response
 from comparisons.answer.along import peak
+from comparisons.answer.page import html, stability
 from comparisons.answer.quantities import forces, size
 from comparisons.answer.round_off import round_off
 from comparisons.answer.table import unit_names
+from comparisons.files import write_text
 from comparisons.report import palette
-from comparisons.report.brief import at_largest, spring_rate, travel
-from comparisons.report.plot import WIDTH, figure
-from comparisons.report.sketch import ARROW, Sketch
+from comparisons.report.brief import Brief, at_largest, in_units, spring_rate, travel
+from comparisons.report.pages import Section, page
+from comparisons.report.pages import picture as image
+from comparisons.report.plot import WIDTH, figure, save, tag
+from comparisons.report.sketch import ARROW, Sketch, draw
 from comparisons.report.symbols import LEFT, axis
 from comparisons.scene import Scene
 from comparisons.version import release
@@ -85,12 +91,9 @@ def _shape(axes: Any, response: Response, scene: Scene, k: int) -> None:
     sketch.loads(loads, scene.gravity_at(t))
     sketch.symbols()
     entries = {words.partition(" of ")[0]: entry for words, entry in sketch.legend.items()}
-    place: dict[str, Any] = {
-        "loc": "upper center",
-        "bbox_to_anchor": (0.5, -0.17),
-        "ncols": 5 if len(entries) <= 5 else 4,
-    }
-    axes.legend(entries.values(), entries, fontsize="x-small", frameon=False, labelspacing=1.2, **place)
+    style: dict[str, Any] = {"fontsize": "x-small", "frameon": False, "labelspacing": 1.2}
+    place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.17), "ncols": 5 - (len(entries) > 5)}
+    axes.legend(entries.values(), entries, **place, **style)
     sketch.separate(1)
 
 
@@ -105,16 +108,9 @@ def _diagram(axes: Any, response: Response, scene: Scene, name: str, kind: str, 
         if values.any():
             value, place = peak(at.arc, values)
             axes.plot(place, value, ".", color=colour, markersize=5)
-            near = {"textcoords": "offset points", "ha": "right" if place > beam.length / 2 else "left"}
-            axes.annotate(
-                f"{value:.4g}",
-                (place, value),
-                (-4 if place > beam.length / 2 else 4, 0),
-                va="center",
-                fontsize="x-small",
-                bbox={"facecolor": "white", "alpha": 0.75, "linewidth": 0.0, "pad": 0.5},
-                **near,
-            )
+            way = -1 if place > beam.length / 2 else 1
+            side = {"ha": "left" if way > 0 else "right", "va": "center", "fontsize": "x-small"}
+            tag(axes, f"{value:.4g}", (place, value), (4 * way, 0), **side)
     axes.axhline(0.0, color="0.3", linewidth=0.6)
     axes.grid(visible=True, linewidth=0.3)
     axes.margins(x=0.01, y=0.15)
@@ -126,18 +122,52 @@ def _history(axes: Any, response: Response, scene: Scene) -> None:
     way, rate = travel(scene, t), spring_rate(response, scene)
     across, words = (t, "load parameter") if way is None else (way, f"travel of the pin [{units['length']}]")
     for number, (name, values) in enumerate(forces(response).items()):
-        colour, whole = COLOURS[number % len(COLOURS)], np.append(0.0, size(values))
-        axes.plot(
-            np.append(0.0, across), whole, label=name, color=colour, marker=".", markersize=3, linewidth=1.2
-        )
+        style = {"color": COLOURS[number % len(COLOURS)], "marker": ".", "markersize": 3, "linewidth": 1.2}
+        axes.plot(np.append(0.0, across), np.append(0.0, size(values)), label=name, **style)
     what = "contact force" if response.contacts else "reaction"
     axes.set_xlabel(words)
     axes.set_ylabel(f"{what}\n[{units['force']}]", fontsize="small")
     axes.grid(visible=True, linewidth=0.3)
     axes.set_xlim(left=0.0)
-    title = (
-        f"spring rate at first touch {rate:.4g} {units['force']}/{units['length']}"
-        if np.isfinite(rate)
-        else None
-    )
+    title = f"spring rate at first touch {rate:.4g} {units['force']}/{units['length']}"
+    title = title if np.isfinite(rate) else ""
     axes.legend(loc="best", fontsize="x-small", title=title, title_fontsize="x-small")
+
+
+def write_sheet(path: Path, response: Response, scene: Scene) -> None:
+    """Write the sheet of an answer as a page of HTML."""
+    with TemporaryDirectory() as folder:
+        given, found = Path(folder) / "input.svg", Path(folder) / "result.svg"
+        draw(scene, given)
+        shown, k = "", -1
+        if len(response.load_parameter):
+            k = at_largest(response)
+            save(picture(response, scene), found)
+            shown = image(found, "The result, and the section forces with their peaks.")
+        beside = image(given, f"The input, in {scene.units}.")
+    tables = html(response, k).partition("</table>")[2]  # the head is said above
+    section = Section("Result", shown, more=f'<div class="sheet">{tables}</div>', beside=beside)
+    write_text(path, page(f"{scene.name}: {response.named}", _brief(response, scene), [section]))
+
+
+def _brief(response: Response, scene: Scene) -> Brief:
+    """Return the largest values, and how far they can be trusted; why a solution stopped that did."""
+    judged = response.certificate
+    certificate = "Not judged by the referee." if judged is None else judged.line()
+    points = [certificate, f"Stability: {stability(response)}."]
+    if not len(response.load_parameter):
+        return Brief(response.ended, points)
+    t = float(response.load_parameter[at_largest(response)])
+    answer = in_units(scene, {response.named: response}, t)
+    said: dict[str, str] = {}  # the first quantity of each unit that acts
+    for name, value in map(dict.values, answer):
+        words, unit = name.removesuffix("]").split(" [")
+        if value != "0":
+            number = f"{value} {unit}".replace(" ", "\N{NO-BREAK SPACE}")
+            said.setdefault(unit, f"{words} {number}")
+    sentence = f"At load parameter {t:.4g}, where the force is largest: {', '.join(said.values())}."
+    if not response.completed:
+        points.insert(0, sentence)
+        sentence = f"{response.ended}."
+    about = "The answer there; moments of supports act on the beam, anticlockwise positive:"
+    return Brief(sentence, points, answer, about)

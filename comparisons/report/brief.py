@@ -1,10 +1,9 @@
 """What a page and a terminal begin with: one sentence, at most five points, and the answer in units, model by model."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from shutil import get_terminal_size
-from textwrap import TextWrapper
-from typing import NamedTuple
+from textwrap import wrap
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,10 +24,8 @@ DIGITS, LEAST = 4, 1e-9
 
 def filled(words: str, first: str = "", rest: str = "") -> list[str]:
     """Return lines that fit the terminal, the first one and the others indented; no word is broken."""
-    style = TextWrapper(
-        get_terminal_size().columns, first, rest, break_long_words=False, break_on_hyphens=False
-    )
-    return style.wrap(words)
+    whole: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
+    return wrap(words, get_terminal_size().columns, initial_indent=first, subsequent_indent=rest, **whole)
 
 
 class Brief(NamedTuple):
@@ -66,11 +63,8 @@ def travel(scene: Scene, load_parameter: Array) -> Array | None:
 def spring_rate(response: Response, scene: Scene) -> float:
     """Return the rise of the force of the one moving pin over its travel as it begins to push; nan without one."""
     way = travel(scene, response.load_parameter)
-    pushing = [
-        one.force
-        for pair, one in response.contacts.items()
-        if pair.partition("->")[0] in {p.name for p in scene.pins if p.moving}
-    ]
+    moving = {pin.name for pin in scene.pins if pin.moving}
+    pushing = [one.force for pair, one in response.contacts.items() if pair.partition("->")[0] in moving]
     if way is None or len(pushing) != 1:
         return np.nan
     closed = np.flatnonzero(pushing[0] > 0.0)
@@ -104,12 +98,6 @@ def _values(scene: Scene, response: Response, t: float) -> dict[str, float]:
     if not len(at):
         return {}
     k, units, least = int(at[0]), unit_names(scene.units), round_off(response, scene)
-    one = replace(
-        response,
-        load_parameter=response.load_parameter[k : k + 1],
-        axis_line=lambda beam, _: response.axis_line(beam, k),
-        sections=response.sections and (lambda beam, _: response.sections(beam, k)),  # type: ignore[misc]
-    )
     found: dict[str, tuple[str, float]] = {}
     what = "contact force" if response.contacts else "support force"
     acting = forces(response)
@@ -118,15 +106,13 @@ def _values(scene: Scene, response: Response, t: float) -> dict[str, float]:
     turned = {name: float(values[k]) for name, values in moments(response).items() if values.any()}
     for name, moment in turned.items():
         found[f"moment {name}" if len(turned) > 1 else "support moment"] = "moment", moment
-    along = extremes_along(one, scene)
+    along = extremes_along(response, scene, steps=[k])
     for name in ("tensile_stress", "compressive_stress", "displacement"):
         sizes = [extremes[name].value[0] for extremes in along.values() if name in extremes]
         if sizes:
             kind, words = ALONG[name]
-            found[f"largest {words.removeprefix('nominal axial ').removesuffix(' of the axis')}"] = (
-                kind,
-                max(sizes, key=abs),
-            )
+            words = words.removeprefix("nominal axial ").removesuffix(" of the axis")
+            found[f"largest {words}"] = kind, max(sizes, key=abs)
     rate = spring_rate(response, scene)
     units["rate"] = f"{units['force']}/{units['length']}"
     if np.isfinite(rate):

@@ -62,10 +62,8 @@ def blocks(response: Response, scene: Scene, k: int) -> dict[str, Grid]:
 
 def _contacts(response: Response, scene: Scene, k: int) -> Grid:
     """Return the nodes of the contacts: pins, and ends that touch another beam; with what acts on the beam there."""
-    start, deformed, touched, force = (
-        np.array(column)
-        for column in zip(*(_contact(response, scene, one, k) for one in scene.contacts), strict=True)
-    )
+    found = zip(*(_contact(response, scene, one, k) for one in scene.contacts), strict=True)
+    start, deformed, touched, force = map(np.array, found)
     histories = [response.contacts[contact.pair] for contact in scene.contacts]
     data = {
         "beam_displacement": touched,
@@ -90,9 +88,8 @@ def _contact(response: Response, scene: Scene, contact: ContactSpec, k: int) -> 
     arc = float(history.arc_position[k])
     if np.isfinite(arc):
         beam = scene.beam(contact.beam)
-        moved = at_arcs(history.arc_position[k], *response.axis_line(beam.name, k)) - beam.place(
-            arc / beam.length
-        )
+        moved = at_arcs(history.arc_position[k], *response.axis_line(beam.name, k))
+        moved = moved - beam.place(arc / beam.length)
     if history.vector is not None:  # a model without force vectors has one pair, which the supports balance
         return start, deformed, moved, history.vector[k]
     return start, deformed, moved, -sum((one.force[k] for one in response.supports.values()), np.zeros(2))
@@ -103,7 +100,7 @@ def _reactions(response: Response, scene: Scene, k: int) -> dict[str, Array]:
     found = [response.supports.get(one.node) for one in scene.all_supports]
     found += [response.springs.get(one.node) for one in scene.springs]
     return {
-        "reaction_force": np.array([np.full(2, np.nan) if one is None else one.force[k] for one in found]),
+        "reaction_force": np.array([(np.nan, np.nan) if one is None else one.force[k] for one in found]),
         "reaction_moment": np.array([np.nan if one is None else one.moment[k] for one in found]),
         "held": fixed(scene),
         "inward": np.array([inward(scene, one) for one in scene.holding]),
@@ -196,12 +193,7 @@ class Series(NamedTuple):
 
 def solved_series(response: Response, scene: Scene, title: str) -> Series:
     """Return the series of a response."""
-    return Series(
-        title=title,
-        load_parameter=response.load_parameter,
-        blocks=lambda k: blocks(response, scene, k),
-        units=field_units(scene),
-    )
+    return Series(title, response.load_parameter, lambda k: blocks(response, scene, k), field_units(scene))
 
 
 def read_series(folder: Path) -> list[Series]:
@@ -222,9 +214,9 @@ def read_series(folder: Path) -> list[Series]:
 
 def _read(path: Path) -> Series:
     entries = read_entries(path, "timestep")
-    return Series(
-        title=path.stem,
-        load_parameter=np.array([float(t) for t, _ in entries]),
-        blocks=lambda k: {name: read_grid(file) for name, file in read_entries(entries[k][1], "name")},
-        units=read_units(entries[0][1]) if entries else {},
-    )
+    times = np.array([float(t) for t, _ in entries])
+
+    def read(k: int) -> dict[str, Grid]:
+        return {name: read_grid(file) for name, file in read_entries(entries[k][1], "name")}
+
+    return Series(path.stem, times, read, read_units(entries[0][1]) if entries else {})

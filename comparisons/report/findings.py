@@ -82,9 +82,8 @@ def _sentence(
     others: Sequence[Row], scene: Scene, reference: str, bodies: Row | None, budget: Budget | None
 ) -> str:
     """Return how far beams and solid are apart, why, and what is enough for `ASKED`."""
-    beams = [
-        row for row in _near(others, scene) if find(row.response.model).meshed and not row.response.continuum
-    ]
+    meshed = [row for row in _near(others, scene) if find(row.response.model).meshed]
+    beams = [row for row in meshed if not row.response.continuum]
     least = min(beams, key=lambda row: row.response.unknowns, default=None)
     enough = f"for {_size(ASKED)} of the {reference} no beam here is enough"
     if least is not None:
@@ -164,14 +163,10 @@ def _falling(rows: list[Row], scene: Scene) -> str:
 
 def _largest(budget: Budget) -> tuple[str, int, dict[str, float]]:
     """Return the quantity and the number of the load parameter of the largest difference, and its parts."""
-    names = list(budget.total)
-    sizes = np.nan_to_num([np.abs(budget.total[name]) for name in names])
-    number, k = np.unravel_index(np.argmax(sizes), sizes.shape)
-    return (
-        names[number],
-        int(k),
-        {name: float(values[k]) for name, values in budget.parts[names[number]].items()},
-    )
+    sizes = np.nan_to_num([np.abs(total) for total in budget.total.values()])
+    number, k = map(int, np.unravel_index(np.argmax(sizes), sizes.shape))
+    quantity = list(budget.total)[number]
+    return quantity, k, {name: float(values[k]) for name, values in budget.parts[quantity].items()}
 
 
 def _parts(budget: Budget, sentence: str) -> str:
@@ -198,8 +193,7 @@ def _stopped(rows: Sequence[Row]) -> Iterator[str]:
     # the message of the first run of a family stands for those that differ from it in numbers only
     for label, response in _together(stopped, lambda row: re.sub(r"[\d.]+", "", row.response.message)):
         reached = float(response.load_parameter.max(initial=0.0))
-        why = f"{response.status}: {response.message}"
-        yield f"{label} did not complete ({why}); errors are those up to load parameter {reached:.4g}."
+        yield f"{label} did not complete ({response.ended}); errors are those up to load parameter {reached:.4g}."
 
 
 def _together(rows: Iterable[Row], key: Callable[[Row], str]) -> Iterator[tuple[str, Response]]:
@@ -218,36 +212,35 @@ def _left_out(left_out: Mapping[str, str]) -> Iterator[str]:
 
 def _stability(rows: Sequence[Row]) -> Iterator[str]:
     """Yield what is not stable; a family that states an index in one run is not silent."""
-    states = {
+    of = {
         state: dict.fromkeys(row.family for row in rows if row.stable == state) for state in (*STATES, "yes")
     }
-    spoken = {*states["in part"], *states["no"], *states["yes"]}
-    left = {"-": spoken, "in part": {*states["no"]}, "no": set[str]()}
+    left = {"-": of["in part"] | of["no"] | of["yes"], "in part": of["no"], "no": {}}
     for state, words in STATES.items():
-        families = [family for family in states[state] if family not in left[state]]
-        if families:
+        if families := [family for family in of[state] if family not in left[state]]:
             yield words.format(_listed(families))
 
 
 def _certified(rows: Sequence[Row]) -> str:
-    doubtful = [
-        row for row in rows if row.response.certificate is None or not row.response.certificate.certified
-    ]
-    if not doubtful:
-        return "The referee, an independent solver, certified every answer."
+    doubtful = [row for row in rows if _judged(row.response)]
     rest = [
-        f"{label} was {_judged(one)}" for label, one in _together(doubtful, lambda row: _judged(row.response))
+        f"; {label} was {_judged(one)}"
+        for label, one in _together(doubtful, lambda row: _judged(row.response))
     ]
-    certified = len(rows) - len(doubtful)
-    return f"The referee, an independent solver, certified {certified} of {len(rows)} answers; {'; '.join(rest)}."
+    count = f"{len(rows) - len(doubtful)} of {len(rows)} answers" if doubtful else "every answer"
+    return f"The referee, an independent solver, certified {count}{''.join(rest)}."
 
 
 def _judged(response: Response) -> str:
+    """Return what the referee said of an answer that it did not certify."""
     found = response.certificate
     if found is None:
         return "not judged"
-    said = "not judged" if found.verdict is Verdict.NOT_JUDGED else "refused"
-    return f"{said} ({found.reason})"
+    return (
+        ""
+        if found.certified
+        else f"{'not judged' if found.verdict is Verdict.NOT_JUDGED else 'refused'} ({found.reason})"
+    )
 
 
 def _size(value: float) -> str:

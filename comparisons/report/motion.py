@@ -1,6 +1,6 @@
 """Sections of a page about answers: shapes under a slider with histories, bands of stick and slip."""
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import field
 from itertools import groupby
 from typing import Any
@@ -103,44 +103,38 @@ def motion_section(
     extent = float(np.ptp(ends, axis=0).max())
     decimals, steps = DIGITS - int(np.floor(np.log10(extent))), range(len(times))
     axes = {label: _lines(scene, response, decimals) for label, response in responses.items()}
-    runs = [
-        {
-            "label": label,
-            "shown": not first or label in first,
-            **_line_style(label, number),
-            "lines": axes.get(label, []),
-        }
-        for number, label in enumerate(ordered)
-    ]
+    runs = list[dict[str, Any]]()
+    for number, label in enumerate(ordered):
+        style, dash = palette.style(label), DASHES[number % len(DASHES)]
+        drawn: dict[str, Any] = {"colour": INKS.get(style.colour, style.colour), "width": style.width}
+        drawn |= {"dash": "none" if style.unbroken else dash, "lines": axes.get(label, [])}
+        runs.append({"label": label, "shown": not first or label in first, **drawn})
     way, exact = travel(scene, times), responses[focus]
     start = at_largest(exact) if len(exact.load_parameter) else len(times) - 1
+    length = unit_names(scene.units)["length"]
     across = {"title": "load parameter", "values": times}
     if way is not None:
-        across = {"title": f"travel of the pin [{unit_names(scene.units)['length']}]", "values": way}
+        across = {"title": f"travel of the pin [{length}]", "values": way}
+    rest = (np.linspace(0.0, 1.0, ARC if beam.turn else 2) for beam in scene.beams)
     data = {
         "load_parameter": times,
         "across": across,
         "start": start,
-        "length": {"unit": unit_names(scene.units)["length"]},
-        "beams": [
-            [beam.place(part) for part in np.linspace(0.0, 1.0, ARC if beam.turn else 2)]
-            for beam in scene.beams
-        ],
+        "length": {"unit": length},
+        "beams": [list(map(beam.place, parts)) for beam, parts in zip(scene.beams, rest, strict=True)],
         "pins": [
             {
                 "name": pin.name,
                 "path": pin.points,
                 "radius": pin.radius or 0.0,
-                "at": [pin.position(float(t)) for t in times],
+                "at": list(map(pin.position, times.tolist())),
             }
             for pin in scene.pins
         ],
         "symbols": [
             {
                 "lines": np.round(SYMBOL * extent * one.segments, decimals),
-                "at": np.round(
-                    [one.at(_axis(scene, responses[focus], one.item.beam, k)) for k in steps], decimals
-                ),
+                "at": np.round([one.at(_axis(scene, exact, one.item.beam, k)) for k in steps], decimals),
             }
             for one in end_symbols(scene)
         ],
@@ -162,13 +156,6 @@ def _axis(scene: Scene, response: Response, beam: str, k: int) -> Array:
     return np.array([scene.beam(beam).start, scene.beam(beam).end])
 
 
-def _line_style(label: str, number: int) -> dict[str, Any]:
-    """Colour, dashes and width."""
-    style = palette.style(label)
-    dash = "none" if style.unbroken else DASHES[number % len(DASHES)]
-    return {"colour": INKS.get(style.colour, style.colour), "dash": dash, "width": style.width}
-
-
 def _lines(scene: Scene, response: Response, decimals: int) -> list[list[Array]]:
     """Return the deformed axes (POINTS, 2) of all beams at every load parameter, rounded to what a screen can show."""
     from scipy.interpolate import CubicSpline  # straight pieces would show where differences are enlarged
@@ -181,18 +168,17 @@ def _lines(scene: Scene, response: Response, decimals: int) -> list[list[Array]]
     return [[thinned(*response.axis_line(beam.name, k)) for beam in scene.beams] for k in steps]
 
 
-def states_section(responses: Mapping[str, Response]) -> Section | None:
-    """Return a section with one band for each run and contact with friction; None without friction."""
+def states_section(responses: Mapping[str, Response]) -> Iterator[Section]:
+    """Yield a section with one band for each run and contact with friction; nothing without friction."""
     bands = {
         f"{label}, {pair}" if len(response.contacts) > 1 else label: band(response, pair)
         for label, response in responses.items()
         for pair, contact in response.contacts.items()
         if contact.friction is not None and len(response.load_parameter)
     }
-    if not bands:
-        return None
-    last = max(parts[-1][2] for parts in bands.values())
-    return Section("Stick and slip", piece("states", bands, STATES, last))
+    if bands:
+        last = max(parts[-1][2] for parts in bands.values())
+        yield Section("Stick and slip", piece("states", bands, STATES, last))
 
 
 def band(response: Response, pair: str) -> list[tuple[str, float, float]]:

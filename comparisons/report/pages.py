@@ -3,23 +3,19 @@
 import base64
 import json
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from comparisons.files import write_text
 from comparisons.output import cell, plain
 from comparisons.report.brief import Brief
-from comparisons.scene import Scene, to_toml
-from comparisons.version import machine, versions
 
 if TYPE_CHECKING:
     from jinja2 import Environment
     from markupsafe import Markup
 
 FOLDER = Path(__file__).with_name("templates")
-NAME = "report.html"
 TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
 
 
@@ -47,15 +43,9 @@ class Section(NamedTuple):
 def _templates() -> "Environment":
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    found = Environment(
-        loader=FileSystemLoader(FOLDER),
-        autoescape=True,
-        trim_blocks=True,
-        keep_trailing_newline=True,
-        undefined=StrictUndefined,
-    )
-    found.filters["cell"] = cell
-    found.filters["whole"] = whole
+    found = Environment(loader=FileSystemLoader(FOLDER), autoescape=True, undefined=StrictUndefined)
+    found.trim_blocks = found.keep_trailing_newline = True
+    found.filters |= {"cell": cell, "whole": whole}
     return found
 
 
@@ -86,29 +76,8 @@ def page(title: str, brief: Brief, sections: Sequence[Section]) -> str:
     data = {section.ident: plain(section.data) for section in sections if section.data is not None}
     text = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     style, script = ((FOLDER / name).read_text(encoding="utf-8") for name in ("style.css", "script.js"))
-    return rendered(
-        "page", title=title, brief=brief, style=style, script=script, data=text, sections=sections
-    )
-
-
-def write_page(
-    folder: Path,
-    title: str,
-    brief: Brief,
-    sections: Iterable[Section],
-    scenes: Iterable[Scene],
-    files: Iterable[Path],
-    name: str = NAME,
-) -> Path:
-    """Write a `page` that ends with scenes, versions, machine and links to files; return its file."""
-    inputs = [piece("code", to_toml(scene)) for scene in scenes]
-    closing = [
-        *([Section("Input", "\n".join(inputs))] if inputs else []),
-        Section("Versions and machine", piece("definitions", {**versions(), **machine()})),
-        Section("Files", piece("links", [path.relative_to(folder).as_posix() for path in files])),
-    ]
-    write_text(folder / name, page(title, brief, [*sections, *closing]))
-    return folder / name
+    parts = {"style": style, "script": script, "data": text}
+    return rendered("page", title=title, brief=brief, sections=sections, **parts)
 
 
 def table(caption: str, rows: Sequence[Mapping[str, Any]], *, prose: bool = False) -> str:
@@ -120,8 +89,7 @@ def picture(path: Path, caption: str) -> str:
     """Return an SVG or PNG file as an image: markup of two SVGs in one page would share names and styles. An SVG has a dark variant."""
     content = path.read_bytes()
     if path.suffix == ".svg":
-        content = content.replace(
-            b"<defs>", b"<style>%s</style><defs>" % (FOLDER / "picture.css").read_bytes(), 1
-        )
+        style = b"<style>%s</style><defs>" % (FOLDER / "picture.css").read_bytes()
+        content = content.replace(b"<defs>", style, 1)
     text = base64.b64encode(content).decode("ascii")
     return piece("picture", caption, f"data:{TYPES[path.suffix]};base64,{text}")

@@ -57,9 +57,8 @@ class Panel(NamedTuple):
     def outline(self) -> list[Array]:
         """Return points (..., 2) within which all is drawn but the arrows."""
         reach = self.radii[:, None]
-        return [
-            part.reshape(-1, 2) for part in (self.quads, self.pins + reach, self.pins - reach, self.supports)
-        ]
+        parts = (self.quads, self.pins + reach, self.pins - reach, self.supports)
+        return [part.reshape(-1, 2) for part in parts]
 
 
 def mises_panels(beams: Response, solid: Response, scene: Scene, t: float) -> tuple[list[Panel], float]:
@@ -86,9 +85,8 @@ def mises_panels(beams: Response, solid: Response, scene: Scene, t: float) -> tu
         middle = at_arcs(arc, *solid.axis_line(beam.name, steps[1]))
         body.point_data["deformed"] = middle + wide * (body.point_data["deformed"] - middle)
         stress = _stress(data, data["arc"], arc, 2.0 * y / np.interp(arc, data["arc"], height))
-        less[beam.name] = replace(
-            body, point_data=body.point_data | {"von_mises": stress - body.point_data["von_mises"]}
-        )
+        apart = {"von_mises": stress - body.point_data["von_mises"]}
+        less[beam.name] = replace(body, point_data=body.point_data | apart)
     named = {"beams": ribbons, "the solid": bodies, "beams less solid": less}
     found = [panel(grids, title, stress="von_mises") for title, grids in named.items()]
     return [one._replace(forces=0.0 * one.forces) for one in found], wide
@@ -115,10 +113,8 @@ def panel(
     """Return a state, given as its `blocks`, with displacements enlarged by `factor`."""
     structure = [grid for name, grid in grids.items() if name not in POINTS]
     size = float(np.ptp(np.concatenate([grid.points for grid in structure]), axis=0).max())
-    bodies = [
-        _solid(grid, stress, factor) if QUARTERS.keys() & grid.cells.keys() else _ribbon(grid, size, factor)
-        for grid in structure
-    ]
+    bodies = [_body(grid, stress, size, factor) for grid in structure]
+    quads, stresses = map(np.concatenate, zip(*bodies, strict=True))
     none = dict.fromkeys(("contact_force", "beam_displacement", "deformed"), np.zeros((0, 2)))
     contacts = grids[CONTACTS].point_data if CONTACTS in grids else {**none, "radius": np.zeros(0)}
     forces = contacts["contact_force"]
@@ -126,8 +122,8 @@ def panel(
     symbols = [place + SYMBOL * size * symbol for place, symbol in _symbols(grids, factor)]
     return Panel(
         title=title if factor == 1.0 else f"{title}, deformation x {factor:g}",
-        quads=np.concatenate([quads for quads, _ in bodies]),
-        stress=np.concatenate([values for _, values in bodies]),
+        quads=quads,
+        stress=stresses,
         pins=contacts["deformed"] + (factor - 1.0) * contacts["beam_displacement"],
         radii=contacts["radius"],
         forces=forces,
@@ -136,9 +132,11 @@ def panel(
     )
 
 
-def _solid(grid: Grid, stress: str, factor: float) -> Body:
-    """Return a solid's deformed body with one of its stresses."""
+def _body(grid: Grid, stress: str, size: float, factor: float) -> Body:
+    """Return a deformed body with one of its stresses: a solid, or the ribbon of a beam."""
     found = [grid.cells[kind][:, own].reshape(-1, 4) for kind, own in QUARTERS.items() if kind in grid.cells]
+    if not found:
+        return _ribbon(grid, size, factor)
     quads = np.concatenate(found)
     return _enlarged(grid, factor)[quads], grid.point_data[stress][quads]
 
@@ -155,11 +153,10 @@ def _ribbon(grid: Grid, size: float, factor: float) -> Body:
     arc, own = np.unique(np.append(0.0, np.cumsum(steps)), return_index=True)  # a jump has two points
     data = {name: values[own] for name, values in grid.point_data.items()}
     start = CubicSpline(arc, grid.points[own])(arc, 1)
+    tangent = CubicSpline(arc, data["deformed"])(arc, 1)
     if "rotation" in data:
-        cosine, sine = np.cos(data["rotation"])[:, None], np.sin(data["rotation"])[:, None]
-        tangent = cosine * start + sine * start @ LEFT
-    else:
-        tangent = CubicSpline(arc, data["deformed"])(arc, 1)
+        turn = data["rotation"][:, None]
+        tangent = np.cos(turn) * start + np.sin(turn) * start @ LEFT
     curve = CubicHermiteSpline(arc, _enlarged(grid, factor)[own], start + factor * (tangent - start))
     count = len(arc) - 1
     at = np.interp(np.linspace(0.0, count, PARTS * count + 1), np.arange(count + 1), arc)
@@ -195,12 +192,10 @@ def _symbols(grids: Mapping[str, Grid], factor: float) -> Iterator[tuple[Array, 
     """Yield the symbols of supports, springs and hinges with their places."""
     for place in _enlarged(grids[HINGES], factor) if HINGES in grids else ():
         yield place, HINGE
-    if SUPPORTS not in grids:
-        return
-    data = grids[SUPPORTS].point_data
-    places = _enlarged(grids[SUPPORTS], factor)
-    for place, kinds, away in zip(places, data["held"], data["inward"], strict=True):
-        yield from ((place, symbol) for _, symbol in fixings(kinds, away))
+    if SUPPORTS in grids:
+        data, places = grids[SUPPORTS].point_data, _enlarged(grids[SUPPORTS], factor)
+        for place, kinds, away in zip(places, data["held"], data["inward"], strict=True):
+            yield from ((place, symbol) for _, symbol in fixings(kinds, away))
 
 
 def _state(force: Array, slip: float) -> str:

@@ -1,11 +1,13 @@
-"""Pictures by matplotlib: what all of them share, and the overlay of deflected shapes."""
+"""Pictures by matplotlib: what all of them share, panels with one legend, and the overlay of deflected shapes."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from comparisons.answer import Array, Response
 from comparisons.answer.table import unit_names
@@ -55,10 +57,9 @@ def save(fig: Any, *paths: Path) -> None:
     fig.set_layout_engine(None)  # with "none", each file would be drawn twice
     for path in paths:
         with replacing(path) as temporary, rc_context({"svg.fonttype": "none"}):
-            fig.savefig(
-                temporary, dpi=SHARP if path.suffix == ".svg" else max(SHARP, PIXELS / fig.get_figwidth())
-            )
-            if path.suffix == ".svg":
+            vector = path.suffix == ".svg"
+            fig.savefig(temporary, dpi=SHARP if vector else max(SHARP, PIXELS / fig.get_figwidth()))
+            if vector:
                 text = re.sub(r"'DejaVu Sans'[^;\"]*", "system-ui, sans-serif", temporary.read_text("utf-8"))
                 temporary.write_text(text, encoding="utf-8")
 
@@ -68,6 +69,76 @@ def arrow(axes: Any, tail: Array, tip: Array, colour: str, width: float = 1.2) -
     style = {"arrowstyle": "-|>", "color": colour, "linewidth": width, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", tip, tail, arrowprops=style, zorder=6)
     axes.update_datalim([tail, tip])
+
+
+def tag(axes: Any, words: str, place: Any, offset: tuple[float, float], **style: Any) -> None:
+    """Write on a pale ground beside a place, by an offset [point]."""
+    ground = {"facecolor": "white", "alpha": 0.75, "linewidth": 0.0, "pad": 0.5}
+    axes.annotate(words, place, offset, textcoords="offset points", bbox=ground, **style)
+
+
+def legend_below(fig: Any, entries: Mapping[str, Any], columns: int = 2) -> None:
+    """Write a legend below all axes, the entries by their words."""
+    style = {"loc": "outside lower center", "fontsize": "small", "frameon": False}
+    fig.legend(entries.values(), entries.keys(), ncols=columns, **style)
+
+
+class Line(NamedTuple):
+    """A line of a panel."""
+
+    label: str  #: Its words in the legend, which lines alike share; none after a leading underscore.
+    points: ArrayLike  #: x and y, shape (2, n).
+    style: Mapping[str, Any] = {}  #: Keywords of matplotlib.
+
+
+def draw(
+    panels: Sequence[Callable[[Any], None]],
+    *paths: Path,
+    tall: float,
+    title: str = "",
+    columns: int = 2,
+    **shared: bool,
+) -> None:
+    """Draw panels beside each other, each `tall` inches high, with axes `shared` as `Figure.subplots` says; a label stands once in the legend below them."""
+    columns = min(columns, len(panels))
+    rows = -(-len(panels) // columns)
+    fig = figure(figsize=(WIDTH, 1.3 + tall * rows))
+    grid = fig.subplots(rows, columns, squeeze=False, **shared)
+    named: dict[str, Any] = {}
+    for axes in grid.flat[len(panels) :]:
+        axes.set_axis_off()
+    for axes, panel in zip(grid.flat, panels, strict=False):
+        panel(axes)
+        axes.title.set_fontsize("small")
+        axes.grid(visible=True, linewidth=0.3)
+        handles, labels = axes.get_legend_handles_labels()
+        named = dict(zip(labels, handles, strict=True)) | named
+    first = grid.flat[0]
+    if shared.get("sharex") and first.get_xscale() == "log":
+        low, high = np.log10(first.get_xlim())  # whole decades have labels that do not overlap
+        first.set_xlim(10.0 ** np.floor(low), 10.0 ** np.ceil(high))
+    legend_below(fig, named, 1 if max(map(len, named)) > 50 else 2)
+    fig.suptitle(title, fontsize="medium")
+    save(fig, *paths)
+
+
+def draw_lines(
+    panels: Mapping[str, Iterable[Line]],
+    *paths: Path,
+    tall: float,
+    suptitle: str = "",
+    columns: int = 2,
+    **settings: Any,
+) -> None:
+    """Draw panels of lines by their titles, all with the same `settings` of their axes."""
+    drawn = [partial(_plot, lines=lines, title=title, **settings) for title, lines in panels.items()]
+    draw(drawn, *paths, tall=tall, title=suptitle, columns=columns)
+
+
+def _plot(axes: Any, *, lines: Iterable[Line], **settings: Any) -> None:
+    for label, points, style in lines:
+        axes.plot(*np.asarray(points), label=label, **style)
+    axes.set(**settings)
 
 
 def nearest_steps(load_parameter: Array, last: float = 1.0) -> list[int]:
@@ -134,9 +205,7 @@ def _draw_places(axes: Any, places: dict[float, Array], label: str, apart: float
     last = None
     for t, place in places.items():
         if last is None or np.hypot(*(place - last)) > apart:
-            words = {"textcoords": "offset points", "fontsize": "small", "clip_on": True, "zorder": 6}
-            ground = {"facecolor": "white", "alpha": 0.75, "linewidth": 0.0, "pad": 0.5}
-            axes.annotate(f"t = {t:.3g}", place, (6, -11), bbox=ground, **words)
+            tag(axes, f"t = {t:.3g}", place, (6, -11), fontsize="small", clip_on=True, zorder=6)
             last = place
 
 
@@ -160,11 +229,8 @@ def _zoom_on_tip(whole: Any, detail: Any, scene: Scene, exact: Response) -> None
     beam = scene.beams[0]
     x, y = exact.tips[beam.name][-1]
     half = 0.02 * beam.length
-    detail.set(
-        xlim=(x - half, x + half),
-        ylim=(y - half, y + half),
-        title=f"The framed tip, t = {exact.load_parameter[-1]:.3g}",
-    )
+    title = f"The framed tip, t = {exact.load_parameter[-1]:.3g}"
+    detail.set(xlim=(x - half, x + half), ylim=(y - half, y + half), title=title)
     detail.ticklabel_format(useOffset=False)
     detail.locator_params(nbins=3)
     box = whole.indicate_inset(bounds=(x - half, y - half, 2.0 * half, 2.0 * half), edgecolor="0.3")

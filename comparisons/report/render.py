@@ -1,6 +1,7 @@
 """Pictures, films and windows of stressed bodies: panels with one scale of stress and one of forces."""
 
 from collections.abc import Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -12,7 +13,7 @@ from comparisons.models.model import Count, unwatched
 from comparisons.report import palette
 from comparisons.report.export import Series
 from comparisons.report.panel import COLOURS, Panel, Scale, panel
-from comparisons.report.plot import SHARP, WIDTH, arrow, figure, save
+from comparisons.report.plot import SHARP, WIDTH, arrow, figure, legend_below, save
 from comparisons.scene import Scene
 
 FRAMES = 40
@@ -45,14 +46,13 @@ def film(series: Sequence[Series], factor: float = 1.0) -> Film:
     units = series[0].units
     stress = units.get("axial_stress", units.get("axial_stress_left"))
     label = f"axial stress [{stress}]" if stress else "axial stress"
-    return Film(
-        frames, Scale.of([one for panels in frames for one in panels], label, units.get("contact_force", ""))
-    )
+    return Film(frames, Scale.of(list(chain.from_iterable(frames)), label, units.get("contact_force", "")))
 
 
 def _panel(series: Series, t: float, factor: float) -> Panel:
-    k = int(np.flatnonzero(series.load_parameter == t)[0])
-    return panel(series.blocks(k), f"{series.title}, t = {t:.3f}", factor)
+    return panel(
+        series.blocks(series.load_parameter.tolist().index(t)), f"{series.title}, t = {t:.3f}", factor
+    )
 
 
 def write_stress(panels: Sequence[Panel], wide: float, scene: Scene, t: float, path: Path) -> None:
@@ -118,13 +118,11 @@ class _Drawing:
         wide, tall = (max(half, 0.15 * scale.half) for half in scale.extent)
         columns = 1 if wide > 1.5 * tall else count
         rows = count // columns
-        marks = {state: (".", COLOURS[state]) for state in COLOURS if state in states}
-        marks |= {scale.arrow: (">", palette.BLACK)} if scale.arrow else {}
-        handles = [
-            Line2D([], [], linestyle="none", marker=mark, color=colour) for mark, colour in marks.values()
-        ]
+        named = {state: (".", COLOURS[state]) for state in COLOURS if state in states}
+        named |= {scale.arrow: (">", palette.BLACK)} if scale.arrow else {}
+        marks = {words: Line2D([], [], ls="none", marker=m, color=c) for words, (m, c) in named.items()}
         if marks:
-            made.legend(handles, marks, loc="outside lower center", ncols=4, fontsize="small", frameon=False)
+            legend_below(made, marks, 4)
         height = min(TALL, WIDTH / columns * tall / wide) + 0.35
         self.figure, self.view = made, (np.array(scale.centre), np.array([wide, tall]))
         made.set_size_inches(WIDTH, rows * height + 1.4)
@@ -140,9 +138,8 @@ class _Drawing:
             axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
             if scale.label not in self.bars:
                 own = [own for own, other in zip(self.panels, scales, strict=True) if other is scale]
-                self.bars[scale.label] = bar = self.figure.colorbar(
-                    bodies, ax=own, location="bottom", fraction=0.05, pad=0.02
-                )
+                place: dict[str, Any] = {"location": "bottom", "fraction": 0.05, "pad": 0.02}
+                self.bars[scale.label] = bar = self.figure.colorbar(bodies, ax=own, **place)
                 bar.set_label(scale.label, fontsize="small")
                 bar.ax.tick_params(labelsize="small")
                 bar.ax.locator_params(nbins=3)
@@ -157,18 +154,11 @@ def _draw(axes: Any, one: Panel, scale: Scale) -> Any:
     axes.set_title(one.title, fontsize="small")
     corners = np.arange(one.stress.size).reshape(-1, 4)
     triangles = np.concatenate([corners[:, :3], corners[:, [0, 2, 3]]])
-    axes.add_collection(
-        PolyCollection(list(one.quads), facecolor=BODY, edgecolor=BODY, linewidth=1.0, rasterized=True)
-    )
-    colours = {"cmap": scale.colours, "vmin": scale.stress[0], "vmax": scale.stress[1]}
-    bodies = axes.tripcolor(
-        *one.quads.reshape(-1, 2).T,
-        triangles,
-        one.stress.ravel(),
-        shading="gouraud",
-        rasterized=True,
-        **colours,
-    )
+    rim: dict[str, Any] = {"facecolor": BODY, "edgecolor": BODY, "linewidth": 1.0, "rasterized": True}
+    axes.add_collection(PolyCollection(list(one.quads), **rim))
+    style = {"cmap": scale.colours, "vmin": scale.stress[0], "vmax": scale.stress[1], "rasterized": True}
+    x, y = one.quads.reshape(-1, 2).T
+    bodies = axes.tripcolor(x, y, triangles, one.stress.ravel(), shading="gouraud", **style)
     axes.add_collection(LineCollection(list(one.supports), colors=palette.BLACK, linewidths=1.0))
     lengths = np.hypot(*one.forces.T)
     for state, colour in COLOURS.items():

@@ -14,7 +14,7 @@ from comparisons.models import MODELS, find
 from comparisons.models.model import ModelError
 from comparisons.models.outside.programs import offered
 from comparisons.report import palette
-from comparisons.report.plot import WIDTH, arrow, figure, save
+from comparisons.report.plot import WIDTH, arrow, figure, legend_below, save
 from comparisons.report.symbols import LEFT, Axis, arc, at_arcs, axis, chain, draw_symbols, legend_symbol
 from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene
 from comparisons.scene.conditions import LoadSpec
@@ -116,10 +116,8 @@ class Sketch:
         """Draw loads (force or force per length, and moment) and weights as arrows of one length."""
         force = self.units["force"]
         for load, (*vector, moment) in loads:
-            along = load.force_per_length is not None
-            at = (
-                np.linspace(*load.span, ROW) if along else [load.end == "end" if load.at is None else load.at]
-            )
+            along, one = load.force_per_length is not None, load.end == "end" if load.at is None else load.at
+            at = np.linspace(*load.span, ROW) if along else [one]
             tips, unit = self.at(load.beam, at), f"{force}/{self.units['length']}" if along else force
             self._force(tips, vector, f"{hypot(*vector):.6g} {unit}{after}", load)
             if moment:
@@ -148,12 +146,9 @@ class Sketch:
 
     def label(self, words: str, at: Array, direction: Array, colour: str) -> None:
         """Write beside a place, in the direction given."""
-        x, y = np.round(_unit(direction))
-        sides: dict[str, Any] = {
-            "ha": ("center", "left", "right")[int(x)],
-            "va": ("center", "bottom", "top")[int(y)],
-        }
-        style = {"color": colour, "fontsize": self.letters, "zorder": 6, **sides}
+        x, y = map(int, np.round(_unit(direction)))
+        style: dict[str, Any] = {"color": colour, "fontsize": self.letters, "zorder": 6}
+        style |= {"ha": ("center", "left", "right")[x], "va": ("center", "bottom", "top")[y]}
         label = self.axes.annotate(words, at, 7 * _unit(direction), textcoords="offset points", **style)
         self.labels.append((label, -1.0 if y < 0.0 else 1.0))
 
@@ -198,8 +193,7 @@ def draw(scene: Scene, path: Path) -> None:
         sketch.loads(amounts, scene.stage_gravities[stage], _after(stage + 1))
     for pin in scene.pins:
         _pin(sketch, pin)
-    place = {"loc": "outside lower center", "ncols": 2, "fontsize": "small", "frameon": False}
-    fig.legend(sketch.legend.values(), sketch.legend.keys(), **place)
+    legend_below(fig, sketch.legend)
     sketch.separate(ROUNDS)
     save(fig, path)
 

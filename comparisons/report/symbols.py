@@ -35,9 +35,7 @@ HATCHES = 5
 def axis(beam: BeamSpec, points: int = 41) -> Axis:
     """Return the undeformed axis of a beam."""
     parts = np.linspace(0.0, 1.0, points)
-    line, tangents = (
-        np.array([read(part) for part in parts.tolist()]) for read in (beam.place, beam.tangent)
-    )
+    line, tangents = (np.array(list(map(read, parts.tolist()))) for read in (beam.place, beam.tangent))
     return beam.length * parts, line, tangents @ LEFT
 
 
@@ -158,9 +156,8 @@ def legend_symbol(segments: Segments, colour: str = palette.BLACK) -> Any:
     vertices = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2
     marker = Marker(vertices, [Marker.MOVETO, Marker.LINETO] * len(segments))
     size = min(13 * float(np.abs(vertices).max()), LARGEST)  # matplotlib enlarges all markers to one size
-    return Line2D(
-        [], [], color=colour, marker=marker, markersize=size, markerfacecolor="none", linestyle="none"
-    )
+    style: dict[str, Any] = {"marker": marker, "markersize": size, "markerfacecolor": "none"}
+    return Line2D([], [], color=colour, linestyle="none", **style)
 
 
 def inward(scene: Scene, support: SupportSpec | SpringSpec) -> Array:

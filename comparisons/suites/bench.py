@@ -20,7 +20,8 @@ from comparisons.models.model import ModelError, Options
 from comparisons.models.shared import joints, kept, line_loads
 from comparisons.output import Report
 from comparisons.referee.rod import face_of
-from comparisons.scene import BeamSpec, PinSpec, Scene, load_scene
+from comparisons.scene import BeamSpec, Scene, load_scene
+from comparisons.scene.conditions import COMPONENTS
 
 Query = dict[str, Any]
 SET = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
@@ -45,6 +46,7 @@ def scenes() -> dict[str, tuple[Scene, tuple[int, ...]]]:
 def resolved(about: str, scene: Scene, at: Sequence[int]) -> dict[str, Any]:
     """Return all that a scene's answer depends on, and nothing that only a program needs."""
     force, length = (unit.strip() for unit in scene.units.split(","))
+    corners = [(0.0, *pin.corners, 1.0 + len(pin.moves or ())) for pin in scene.pins]
     return {
         "name": scene.name,
         "about": about,
@@ -53,20 +55,15 @@ def resolved(about: str, scene: Scene, at: Sequence[int]) -> dict[str, Any]:
         "beams": [_beam(beam) for beam in scene.beams],
         "joints": joints(scene),
         "hinges": [one.node for one in scene.hinges],
-        "supports": [
-            {"end": one.node, **dict(zip(("x", "y", "rotation"), one.motion, strict=True))}
-            for one in scene.all_supports
-        ],
-        "springs": [
-            {"end": one.node, "x": one.stiffness[0], "y": one.stiffness[1], "rotation": one.rotation}
-            for one in scene.springs
-        ],
+        "supports": [_held(one.node, one.motion) for one in scene.all_supports],
+        "springs": [_held(one.node, (*one.stiffness, one.rotation)) for one in scene.springs],
         "loads": [
             *({"end": one.node, "force": one.force, "moment": one.moment} for one in scene.loads),
             *({"beam": beam.name, "force_per_length": q} for beam, _, (q,), _ in line_loads(scene)),
         ],
         "pins": [
-            {"name": pin.name, "radius": pin.radius or 0.0, "path": _path(pin)} for pin in scene.pins
+            {"name": pin.name, "radius": pin.radius or 0.0, "path": [(t, *pin.position(t)) for t in turns]}
+            for pin, turns in zip(scene.pins, corners, strict=True)
         ],
         "contacts": [
             {
@@ -79,19 +76,18 @@ def resolved(about: str, scene: Scene, at: Sequence[int]) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def _held(end: str, values: Sequence[Any]) -> dict[str, Any]:
+    return {"end": end, **dict(zip(COMPONENTS, values, strict=True))}
+
+
 def _beam(beam: BeamSpec) -> dict[str, Any]:
     """Return a beam with its stiffnesses, polynomials in the fraction of its length where it tapers."""
     EA, GA, EI = ([value] for value in (beam.EA, beam.GA, beam.EI))
     if beam.tapers:
-        h, b = (
-            [one[0], one[1] - one[0]] if isinstance(one, tuple) else [one]
-            for one in (beam.height, beam.width)
-        )
-        area = _product(h, b)
-        EA, EI = (
-            [c * beam.youngs_modulus / k for c in p]
-            for p, k in ((area, 1.0), (_product(area, _product(h, h)), 12.0))
-        )
+        sides = (beam.height, beam.width)
+        h, b = ([one[0], one[1] - one[0]] if isinstance(one, tuple) else [one] for one in sides)
+        area, E = _product(h, b), beam.youngs_modulus
+        EA, EI = [c * E for c in area], [c * E / 12.0 for c in _product(area, _product(h, h))]
         GA = [c * beam.stiffness(0.0)[1] / EA[0] for c in EA]
     stiffness = zip(("EA", "GA", "EI"), (EA, GA, EI), strict=True)
     return {
@@ -103,20 +99,12 @@ def _beam(beam: BeamSpec) -> dict[str, Any]:
 
 def _product(p: Sequence[Any], q: Sequence[Any]) -> list[float]:
     """Product of polynomials, by float sums whose order every machine keeps."""
-    return [
-        sum(p[i] * q[k - i] for i in range(len(p)) if 0 <= k - i < len(q)) for k in range(len(p) + len(q) - 1)
-    ]
+    powers = range(len(p) + len(q) - 1)
+    return [sum(p[i] * q[k - i] for i in range(len(p)) if 0 <= k - i < len(q)) for k in powers]
 
 
 def _coefficients(*values: float) -> float | list[float]:
     return values[0] if not any(values[1:]) else list(values)
-
-
-def _path(pin: PinSpec) -> list[tuple[float, float, float]]:
-    """Return the places of a pin with their load parameters."""
-    stages = len(pin.moves or ()) + 1
-    turns = (0.0, *pin.corners, float(stages))
-    return [(t, *pin.position(t)) for t in turns]
 
 
 def queries(found: Mapping[str, Response]) -> list[Query]:
@@ -138,11 +126,8 @@ def _queries(scene: Scene, at: Sequence[int], right: Response) -> Iterator[Query
         alike = (v for key, v in columns.items() if key.rpartition(".")[2].rstrip("xy") == what.rstrip("xy"))
         largest, scale = (max(np.nanmax(np.abs(v), initial=0.0) for v in one) for one in ([values], alike))
         if largest > 1e-9 * scale:
-            yield from (
-                {"scene": scene.name, "of": of, "what": what, "at": k}
-                for k, value in enumerate(values)
-                if math.isfinite(value)
-            )
+            known = np.flatnonzero(np.isfinite(values)).tolist()
+            yield from ({"scene": scene.name, "of": of, "what": what, "at": k} for k in known)
     last, numbers = scene.times[at[-1]], dict[tuple[str, str], int]()
     jumps = {event.load_parameter for event in right.events or () if event.kind == "slip-off"}
     # by contact: round-off orders two events at one load parameter
@@ -158,10 +143,8 @@ def _queries(scene: Scene, at: Sequence[int], right: Response) -> Iterator[Query
 def _free(scene: Scene) -> list[str]:
     """Return an end at every place whose position is not held."""
     held = {scene.place(one.node) for one in scene.all_supports if {"x", "y"} <= set(one.held)}
-    ends = {
-        scene.place(node): node for beam in scene.beams for node in (f"{beam.name}.start", f"{beam.name}.end")
-    }
-    return [node for place, node in ends.items() if place not in held]
+    nodes = [f"{beam.name}.{end}" for beam in scene.beams for end in ("start", "end")]
+    return [node for place, node in {scene.place(node): node for node in nodes}.items() if place not in held]
 
 
 def histories(scene: Scene, response: Response) -> dict[str, Any]:
@@ -224,7 +207,7 @@ def answers(words: str, given: Mapping[str, Any], report: Report) -> str:
             refused[scene.name] = str(error)
             continue
         columns = histories(scene, response) if len(response.load_parameter) else {}
-        why = "is not stated" if response.completed else f"{response.status}: {response.message}"
+        why = "is not stated" if response.completed else response.ended
         for query in (query for query in given["queries"] if query["scene"] == scene.name):
             value = told(query, response, columns)
             rows.append(query | ({"refused": why} if value is None else {"value": value}))

@@ -1,40 +1,38 @@
 """One scene through every model: table, pictures and files."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import field
+from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from comparisons import models
 from comparisons.answer import Response
 from comparisons.answer.file import as_dict
-from comparisons.answer.quantities import event_differences, names
-from comparisons.files import alone_in, writable_folder, write_text
-from comparisons.frozen import Frozen
+from comparisons.answer.quantities import event_differences, names, table_columns
+from comparisons.files import writable_folder
 from comparisons.models import Model, certified, find, solve
 from comparisons.models.model import Count, ModelError, Options, Watch, unwatched
 from comparisons.models.theory import bending
-from comparisons.output import Report, json_text
-from comparisons.report.brief import Brief, at_largest
-from comparisons.report.export import check_series, write_series
+from comparisons.output import NO_VALUE, Report, tabulated
+from comparisons.report.brief import at_largest, filled
+from comparisons.report.export import check_series
 from comparisons.report.findings import BUDGET, findings
 from comparisons.report.motion import motion_section, states_section, tracks
-from comparisons.report.pages import Section, picture, table, write_page
+from comparisons.report.pages import Section, picture, table
 from comparisons.report.palette import style
 from comparisons.report.panel import mises_panels
+from comparisons.report.parts import budget_numbers, budget_section, plot_budget
 from comparisons.report.plot import plot_shapes
 from comparisons.report.render import write_stress
-from comparisons.report.table import budget_section, caption, line, table_csv, write_budget
 from comparisons.scene import Scene, to_toml
 from comparisons.scene.keys import special_keys
 from comparisons.suite import Case, Row
 from comparisons.suite.budget import Budget, error_budget
 from comparisons.suite.measure import verdict
-from comparisons.suites.drawing import plot_budget
-from comparisons.version import versions
+from comparisons.suites.found import Found
 from tsm.elements import MIXED as MIXED_KIND
 from tsm.elements import TIMOSHENKO
 
@@ -79,58 +77,6 @@ APART = 0.5
 """Error of one of these quantities beyond which two answers are different equilibria."""
 
 
-class Comparison(Frozen):
-    """Result of a comparison: rows, the budget, who is left out and why by family, and the files written."""
-
-    scene: Scene
-    rows: list[Row]
-    budget: Budget | None
-    left_out: Mapping[str, str]
-    files: list[Path] = field(default_factory=list)
-
-    @property
-    def responses(self) -> dict[str, Response]:
-        """The answers by label."""
-        return {row.label: row.response for row in self.rows}
-
-    @property
-    def exported(self) -> list[tuple[Run, Response]]:
-        """The answers of beams and solid that are exported and rendered."""
-        return [(run, self.responses[run.label]) for run in EXPORTED if run.label in self.responses]
-
-    @property
-    def brief(self) -> Brief:
-        """What is found."""
-        rows = {row.label: row for row in self.rows}
-        beam, solid = rows.get(MIXED.label), rows.get(SOLID.label)
-        bodies = None if beam is None or solid is None else beam.against(solid.response, names(mesh=False))
-        return findings(self.scene, self.rows, ROD.label, bodies, self.budget, self.left_out)
-
-    @property
-    def apart(self) -> list[Row]:
-        """The completed runs on another branch than the reference, without the elastica, another rod."""
-        judged = (row for row in self.rows if row.label != ELASTICA.label and row.response.completed)
-        return [row for row in judged if any(row.error("path", name) > APART for name in BRANCH)]
-
-    @property
-    def other_events(self) -> list[str]:
-        """A sentence for each completed run about the first event that it or the reference does not have."""
-        found = []
-        exact = next(row.response for row in self.rows if row.label == ROD.label)
-        for row in self.rows:
-            events = event_differences(row.response, exact) if row.response.completed else []
-            missing = [item for item in events if item.apart == np.inf]
-            found += [item.line(row.label, ROD.label) for item in missing[:1]]
-        return found
-
-    @property
-    def wrong(self) -> list[Row]:
-        """The runs that were refused by the checks or the referee, and the reference if it stopped."""
-        return [
-            row for row in self.rows if row.wrong or (row.label == ROD.label and not row.response.completed)
-        ]
-
-
 def compare(
     scene: Scene,
     folder: Path,
@@ -138,8 +84,8 @@ def compare(
     watching: Watching = lambda _: nullcontext(unwatched),
     staging: Staging = lambda _: nullcontext(unwatched),
     more: Sequence[Run] = (),
-) -> Comparison:
-    """Solve `scene` with every model that can state it, and with `more` runs, and write the results to `folder`.
+) -> Found:
+    """Solve `scene` with every model that can state it, and with `more` runs; `folder` is tried out for the results.
 
     Errors are measured against the exact rods. `report` receives lines about the progress. ``watching(label)`` gives a context with the
     `Watch` of a run, ``staging(label)`` one with the `Count` of a stage of the work after the runs.
@@ -165,14 +111,13 @@ def compare(
         try:
             with watching(head) as watch:
                 answers[run] = one = certified(solve(scene, run.model, run.options, watch), scene)
-            end = f"{one.wall_seconds:.2f} s" if one.completed else f"{one.status}: {one.message}"
+            end = f"{one.wall_seconds:.2f} s" if one.completed else one.ended
             report(f"{head}: {end}")
         except ModelError as error:
-            left_out[find(run.model).family(scene, run.options)] = why = str(error).removeprefix(
-                f"{run.model}: "
-            )
+            why = str(error).removeprefix(f"{run.model}: ")
+            left_out[find(run.model).family(scene, run.options)] = why
             report(f"{head}: left out, {why}")
-    rows = [_row(scene, run, response, answers[ROD]) for run, response in answers.items()]
+    rows = [row_of(scene, run, response, answers[ROD]) for run, response in answers.items()]
     with staging("measuring the error budget") as count:
         budget, lack = None, "it takes the solid"
         if SOLID in answers and answers[SOLID].completed:
@@ -183,13 +128,11 @@ def compare(
         if budget is None:
             left_out[BUDGET] = lack
             report(f"budget.json: left out, {lack}")
-    found = Comparison(scene=scene, rows=rows, budget=budget, left_out=left_out)
-    with staging("drawing and writing files"), alone_in(folder):
-        found.files.extend(_write(found, folder, report))
-    return found
+    report("drawing and writing files")
+    return _found(scene, rows, budget, left_out, report)
 
 
-def _row(scene: Scene, run: Run, response: Response, reference: Response) -> Row:
+def row_of(scene: Scene, run: Run, response: Response, reference: Response) -> Row:
     """Return the row of a run with its errors and their cause."""
     case = Case(scene=scene, model=run.model, options=run.options)
     judged, cause = verdict(response), _cause(case, reference)
@@ -208,53 +151,108 @@ def _cause(case: Case, reference: Response) -> str:
     return max(parts, key=lambda why: parts[why]).partition(":")[0]
 
 
-def _write(found: Comparison, folder: Path, report: Report) -> list[Path]:
-    """Write all files; return them, the page first."""
-    scene, responses = found.scene, found.responses
-    page, summary, csv, shapes, stress, budget, numbers = (folder / name for name in NAMES)
-    write_text(csv, table_csv(found.rows))
-    plot_shapes(scene, {run.label: responses[run.label] for run in DRAWN if run.label in responses}, shapes)
-    files, reached = [summary, csv, shapes], [len(one.load_parameter) for _, one in found.exported]
+def caption(reference: str) -> str:
+    """Return what the table shows."""
+    return (
+        f"Largest error over the load parameters reached, against the {reference}; forces and moments relative to their "
+        "largest, positions to the length, friction to the contact forces; Newton iterations and seconds for the whole path"
+    )
+
+
+def line(row: Row) -> dict[str, str]:
+    """Return a run for people; a dash stands where the run or the scene does not have a quantity."""
+    response = row.response
+    errors = {one.words: row.error("path", name) for name, one in table_columns().items()}
+    return {
+        "model": row.label if response.completed else f"{row.label} ({response.status})",
+        "unknowns": str(response.unknowns),
+        **{words: _error(value) for words, value in errors.items()},
+        "stable": row.stable,
+        "iterations": str(response.iterations),
+        "seconds": f"{response.wall_seconds:.3f}",
+    }
+
+
+def _error(value: float) -> str:
+    return "-" if np.isnan(value) else NO_VALUE if np.isinf(value) else f"{value:.1e}"
+
+
+def _found(
+    scene: Scene, rows: Sequence[Row], budget: Budget | None, left_out: Mapping[str, str], report: Report
+) -> Found:
+    """Return what the rows show, with the files and the page."""
+    by = {row.label: row for row in rows}
+    responses, shown = {label: row.response for label, row in by.items()}, [line(row) for row in rows]
+    beam, solid = by.get(MIXED.label), by.get(SOLID.label)
+    bodies = None if beam is None or solid is None else beam.against(solid.response, names(mesh=False))
+    exported = {run: responses[run.label] for run in EXPORTED if run.label in responses}
+    drawn = {run.label: responses[run.label] for run in DRAWN if run.label in responses}
+    pictures: dict[str, Callable[..., None]] = {"shapes.png": partial(plot_shapes, scene, drawn)}
+    reached = [len(one.load_parameter) for one in exported.values()]
     if len(reached) == 2 and all(reached):
-        (_, beams), (_, solid) = found.exported
+        beams, body = exported.values()
         t = float(beams.load_parameter[min(at_largest(beams), reached[1] - 1)])
-        write_stress(*mises_panels(beams, solid, scene, t), scene, t, stress)
-        files.append(stress)
+        pictures["stress.svg"] = partial(write_stress, *mises_panels(beams, body, scene, t), scene, t)
     else:
-        report(f"{stress.name}: left out, it takes beams and solid")
-    if found.budget is not None:
-        plot_budget(found.budget, budget)
-        write_budget(found.budget, numbers)
-        files += budget, numbers
-    for run, response in found.exported:
-        write_series(writable_folder(folder / run.model), response, scene)
-        files.append(folder / run.model / f"{run.model}.pvd")
-    _write_page(found, files, stress, budget)
-    files.insert(0, page)
-    told = {
+        report("stress.svg: left out, it takes beams and solid")
+    if budget is not None:
+        pictures["budget.svg"] = partial(plot_budget, budget)
+    files: dict[str, Any] = {
+        "table.csv": [
+            row.columns() | {"seconds": row.response.wall_seconds, "stable": row.stable} for row in rows
+        ],
+        **({} if budget is None else {"budget.json": budget_numbers(budget)}),
+        **{f"{run.model}/{run.model}.pvd": (one, scene) for run, one in exported.items()},
+    }
+    files["summary.json"] = {
         "scene": scene.name,
         "scene_file": to_toml(scene),
         "reference": ROD.label,
-        "versions": versions(),
-        "files": [str(path.relative_to(folder)) for path in files],
-        "runs": [{"label": row.label, **as_dict(row.response), "errors": row.errors} for row in found.rows],
+        "files": ["report.html", "summary.json", *files, *pictures],
+        "runs": [{"label": row.label, **as_dict(row.response), "errors": row.errors} for row in rows],
     }
-    write_text(summary, json_text(told))
-    return files
+
+    def sections(folder: Path) -> Iterator[Section]:
+        vtu = {run.label: f"{run.model}/{run.model}-{{}}.vtm" for run in exported}
+        acting, first = tracks(responses, ROD.label, scene), {MIXED.label, SOLID.label, ROD.label}
+        yield motion_section("Shapes", scene, responses, acting, focus=ROD.label, first=first, vtu=vtu)
+        yield Section("Errors", table(caption(ROD.label), shown))
+        yield from states_section(responses)
+        if budget is not None:
+            yield budget_section(budget, folder / "budget.svg")
+        if "stress.svg" in pictures:
+            yield Section("Stress", picture(folder / "stress.svg", MISES))
+
+    wrong = {row.label for row in rows if row.wrong or row.label == ROD.label}
+    stops = {
+        row.label: f"{row.label}: {row.response.stop(scene)}" for row in rows if not row.response.completed
+    }
+    return Found(
+        title=f"{scene.name}: beams, solid and exact answers",
+        brief=findings(scene, rows, ROD.label, bodies, budget, left_out),
+        files=files,
+        sections=sections,
+        pictures=pictures,
+        scenes=[scene],
+        text="\n".join([*filled(caption(ROD.label)), "", tabulated(shown), *_other_events(rows)]),
+        remarks=[stops[label] for label in stops if label not in wrong],
+        stopped=[*(stops[label] for label in stops if label in wrong), *_apart(rows)],
+    )
 
 
-def _write_page(found: Comparison, files: list[Path], stress: Path, budget: Path) -> None:
-    scene, responses = found.scene, found.responses
-    vtu = {run.label: f"{run.model}/{run.model}-{{}}.vtm" for run, _ in found.exported}
-    shown, states = tracks(responses, ROD.label, scene), states_section(responses)
-    first = {MIXED.label, SOLID.label, ROD.label}
-    sections = [
-        motion_section("Shapes", scene, responses, shown, focus=ROD.label, first=first, vtu=vtu),
-        Section("Errors", table(caption(ROD.label), [line(row) for row in found.rows])),
-        *([] if states is None else [states]),
-        *([] if found.budget is None else [budget_section(found.budget, budget)]),
-    ]
-    if stress in files:
-        sections.append(Section("Stress", picture(stress, MISES)))
-    title = f"{scene.name}: beams, solid and exact answers"
-    write_page(stress.parent, title, found.brief, sections, [scene], files)
+def _apart(rows: Sequence[Row]) -> Iterator[str]:
+    """Yield a line for each completed run on another branch than the reference, without the elastica, another rod."""
+    for row in rows:
+        judged = row.label != ELASTICA.label and row.response.completed
+        if judged and any(row.error("path", name) > APART for name in BRANCH):
+            yield f"{row.label}: OTHER_BRANCH: ends in another equilibrium than the {ROD.label}"
+
+
+def _other_events(rows: Sequence[Row]) -> Iterator[str]:
+    """Yield a line for each completed run about the first event that it or the reference does not have, and a blank one before."""
+    exact, head = next(row.response for row in rows if row.label == ROD.label), [""]
+    for row in rows:
+        events = event_differences(row.response, exact) if row.response.completed else []
+        for item in [item for item in events if item.apart == np.inf][:1]:
+            yield from (*head, item.line(row.label, ROD.label))
+            head = []

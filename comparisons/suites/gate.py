@@ -29,7 +29,7 @@ class Gate(Frozen):
     def stopped(self) -> str:
         """Which of the two solutions stopped, and why; empty if none did."""
         both = (self.response, self.reference)
-        return next((f"{one.model}: {one.status}: {one.message}" for one in both if not one.completed), "")
+        return next((f"{one.model}: {one.ended}" for one in both if not one.completed), "")
 
     @property
     def held(self) -> bool:
@@ -43,16 +43,9 @@ class Gate(Frozen):
     def junit(self) -> str:
         """Return the bounds as JUnit XML, one test case each."""
         group, against = f"{self.response.scene}.{self.response.model}", f", against {self.reference.model}"
-        checks = (
-            (
-                group,
-                one.name,
-                0.0,
-                None if one.holds else (self.stopped or one.failure) + against,
-                one.measured,
-            )
-            for one in self.bounds
-        )
+        whys = (None if one.holds else (self.stopped or one.failure) + against for one in self.bounds)
+        named = zip(self.bounds, whys, strict=True)
+        checks = ((group, one.name, 0.0, why, one.measured) for one, why in named)
         return junit_text(f"crossval compare {self.response.scene}", checks)
 
 

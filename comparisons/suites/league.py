@@ -16,10 +16,10 @@ from comparisons.models.outside.programs import used
 from comparisons.report import palette
 from comparisons.report.brief import Brief
 from comparisons.report.pages import Section, picture, table
+from comparisons.report.plot import draw
 from comparisons.scene import Scene
 from comparisons.suite import Case, Row, case
 from comparisons.suite.progress import Runner
-from comparisons.suites.drawing import draw
 from comparisons.suites.found import Found
 
 MOST, SCENES = 5, 6
@@ -134,9 +134,8 @@ def _brief(scenes: Sequence[Scene], rows: Sequence[Row], stopped: Mapping[str, s
     if others := [model.label for model in used()]:
         points.append(f"Programs of others: {', '.join(others)}.")
     about = "How the runs of each program ended; wrong: said success and was wrong."
-    return Brief(
-        f"{certified} of {len(rows)} runs are certified, {false}{cheap}.", points, _ends(rows), about
-    )
+    said = f"{certified} of {len(rows)} runs are certified, {false}{cheap}."
+    return Brief(said, points, _ends(rows), about)
 
 
 def _plot(scenes: Sequence[Scene], rows: Sequence[Row], *paths: Path) -> None:
@@ -153,8 +152,7 @@ def _plot(scenes: Sequence[Scene], rows: Sequence[Row], *paths: Path) -> None:
         words = {"title": scene.name, "xlabel": SECONDS, "ylabel": f"largest error of the {quantity}"}
         axes.set(xscale="log", yscale="log", **words)
 
-    panels = [partial(panel, scene=scene) for scene in scenes]
-    draw(panels, *paths, tall=2.6, sharex=True, sharey=True)
+    draw([partial(panel, scene=scene) for scene in scenes], *paths, tall=2.6, sharex=True, sharey=True)
 
 
 def _by_program(rows: Iterable[Row]) -> list[tuple[str, list[Row]]]:

@@ -85,8 +85,13 @@ def _tip(strip: "Strip", load: float) -> Row:
     result = solved(SolidProblem(strips=(strip,), loads=(dead,)), np.arange(1, 11) / 10)
     u, other = result.tips[strip.name][-1] - strip.end, tip_load(strip, force).tip[-1]
     own, peer, apart = (float(np.hypot(*one)) for one in (u, other, other - u))
-    found = {"fem_reference": own, "calculix": peer, "difference": apart / own}
-    return {"load_parameter": 1.0, "reached": 1.0, **found}
+    return {
+        "load_parameter": 1.0,
+        "reached": 1.0,
+        "fem_reference": own,
+        "calculix": peer,
+        "difference": apart / own,
+    }
 
 
 def _pin(problem: "SolidProblem", steps: int, penalty: float) -> Iterator[Row]:
@@ -165,11 +170,7 @@ def penalty() -> Iterator[Row]:
 
 
 STUDIES: dict[str, Callable[[], Iterator[Row]]] = {
-    "locking": locking,
-    "thin-beams": thin_beams,
-    "scatter": scatter,
-    "penalty": penalty,
-    "peers": peers,
+    study.__name__.replace("_", "-"): study for study in (locking, thin_beams, scatter, penalty, peers)
 }
 """The studies by name; `comparisons.suites.names` says what they answer."""
 

@@ -26,7 +26,7 @@ LENDER = Path(__file__).with_name("lender")
 ASKED = """
 from comparisons.suites.extremes.axes import matrix
 from comparisons.suites.compare import RUNS
-from comparisons.suites.trade.settings import sweep_cases
+from comparisons.suites.trade.cases import sweep_cases
 from comparisons.scene import load_scene
 from comparisons.report.palette import colour
 print(sum(run.model == "chain" for run in RUNS))

@@ -17,18 +17,12 @@ from comparisons.suite import case
 from comparisons.suites.extremes.cell import Against, Allowance, Cell, Check, circle, energy
 from tsm.elements import ELEMENTS, MIXED, TIMOSHENKO, ClosedForm, ElementType
 
-AXES: dict[str, dict[str, Any]] = tomllib.loads(
-    Path(__file__).with_suffix(".toml").read_text(encoding="utf-8")
-)
+AXES: dict[str, dict[str, Any]] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 SLENDERNESS = 50.0
 """Default slenderness L/h, taken from Konyukhov and Schweizerhof's cantilever."""
 MESH, COARSE = (50, 2), (25, 2)
 TARGET = Allowance(1e-6, "the target for 40 elements up to L/h = 1e5")
 UNITS = Allowance(1e-9, "units do not matter")
-CUT_BACK = 100
-"""Cycles of what cuts back several steps in each."""
-FINEST = 1000
-"""Number of elements, and of load steps, up to which everything is solved."""
 
 
 def cantilever(*, length: float = 1.0, slenderness: float = SLENDERNESS, **more: Any) -> BeamSpec:
@@ -84,10 +78,8 @@ def beam(column: str, scene: Scene, kind: ElementType, elements: int | None, row
     """Return the cell of TSM, against the rod of the same shear stiffness: that of an Euler-Bernoulli element is rigid in shear."""
     stiff = scene
     if not kind.sheared:
-        rigid = (
-            replace(one, poissons_ratio=None, shear_modulus=1e9 * one.youngs_modulus) for one in scene.beams
-        )
-        stiff = replace(scene, beams=tuple(rigid))
+        rigid: Any = {"poissons_ratio": None, "shear_modulus": 1e9 * scene.beams[0].youngs_modulus}
+        stiff = replace(scene, beams=(replace(scene.beams[0], **rigid),))
     return cell(TSM, column, scene, rod(stiff), row=row or kind.name, element=kind.name, elements=elements)
 
 
@@ -138,13 +130,13 @@ def _shear(powers: Sequence[int]) -> Iterator[Cell]:
     yield from everything("[P] 4.2", replace(load_scene("ks-printed-shear"), load_parameters=10), 20)
 
 
-def _elements(counts: Sequence[int]) -> Iterator[Cell]:
+def _elements(counts: Sequence[int], finest: int) -> Iterator[Cell]:
     scene = half_circle(cantilever())
     yield from everything("1", scene, None, only=())
     for count in counts:
-        mesh = (count, 2) if 2 <= count <= FINEST else None
+        mesh = (count, 2) if 2 <= count <= finest else None
         yield from everything(f"{count}", scene, count, mesh, only=kinds(meshed=True), exact=False)
-        for kind in kinds(meshed=False) if count <= FINEST else ():
+        for kind in kinds(meshed=False) if count <= finest else ():
             yield beam(f"{count}", scene, kind, count)
 
 
@@ -170,9 +162,8 @@ def _contact(parts: Sequence[float]) -> Iterator[Cell]:
     nodes = beside("node", 0.5)
     for size, (sign, away) in product(parts, (("+", 1), ("-", -1))):
         nodes[f"node {sign}{size:g} l"] = 0.5 + away * size * part
-    clamps = {"at clamp": (0.0, 0.02)} | {
-        f"clamp +{size:g} l": (size * part, 0.1 * size * part) for size in parts
-    }
+    clamps = {f"clamp +{size:g} l": (size * part, 0.1 * size * part) for size in parts}
+    clamps = {"at clamp": (0.0, 0.02)} | clamps
     tips = beside("tip", 1.0) | {f"tip -{size:g} l": 1 - size * part for size in parts}
     paths = {column: ((x, 0.0), (x, 0.02)) for column, x in nodes.items()}
     paths |= {column: ((x, 0.0), (x, lift)) for column, (x, lift) in clamps.items()}
@@ -181,11 +172,11 @@ def _contact(parts: Sequence[float]) -> Iterator[Cell]:
         yield from everything(column, pushed(cantilever(), *path), elements)
 
 
-def _load_step(counts: Sequence[int]) -> Iterator[Cell]:
+def _load_step(counts: Sequence[int], finest: int) -> Iterator[Cell]:
     for steps in counts:
         scene = half_circle(cantilever(), steps=steps)
         yield from everything(f"{steps}", scene, 20, COARSE)
-        for kind in (MIXED, TIMOSHENKO) if steps <= FINEST else ():
+        for kind in (MIXED, TIMOSHENKO) if steps <= finest else ():
             yield beam(f"{steps}", scene, kind, 200, f"{kind.name}, 200 elements")
 
 
@@ -220,29 +211,22 @@ def _depth() -> Iterator[Cell]:
         yield replace(one, checks=(circle,))
 
 
-def _time(counts: Sequence[int]) -> Iterator[Cell]:
+def _time(counts: Sequence[int], cut_back: int) -> Iterator[Cell]:
     """A pin under ``.9 L`` that touches, lifts the beam by ``.1 L`` and leaves it; two states a cycle."""
     low, high = (0.9, -0.1), (0.9, 0.1)
     for count in counts:
-        few = count <= CUT_BACK
+        few = count <= cut_back
         scene = pushed(cantilever(), low, *(high, low) * count, steps=2 * count)
         only = [kind for kind in kinds() if few or kind.contact_unknowns]
         yield from everything(f"{count}", scene, 15, COARSE if few else None, only=only)
 
 
 CELLS: dict[str, Callable[..., Iterator[Cell]]] = {
-    "units": _units,
-    "slenderness": _slenderness,
-    "shear": _shear,
-    "elements": _elements,
-    "ratio": _ratio,
-    "contact": _contact,
-    "load-step": _load_step,
-    "penalty": _penalty,
-    "poissons-ratio": _poissons_ratio,
-    "depth": _depth,
-    "time": _time,
-}
+    axis.__name__[1:].replace("_", "-"): axis
+    for axis in (
+        _units, _slenderness, _shear, _elements, _ratio, _contact, _load_step, _penalty, _poissons_ratio, _depth, _time,
+    )
+}  # fmt: skip
 
 
 def matrix(*, quick: bool = False) -> list[Cell]:

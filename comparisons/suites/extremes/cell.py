@@ -1,6 +1,6 @@
 """One cell of the matrix: what must hold of its answer, against other answers or by a law in closed form, and its verdict."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -52,16 +52,14 @@ def in_units_of(other: BeamSpec, beam: BeamSpec, response: Response) -> Response
     length = other.length / beam.length
     force = other.EI / beam.EI / length**2
 
-    def scaled(histories: Mapping[str, Any], **factors: float) -> dict[str, Any]:
-        return {
-            name: replace(one, **{key: factor * getattr(one, key) for key, factor in factors.items()})
-            for name, one in histories.items()
-        }
+    def scaled(one: Any, **factors: float) -> Any:
+        return replace(one, **{key: factor * getattr(one, key) for key, factor in factors.items()})
 
+    contacts, supports = response.contacts.items(), response.supports.items()
     return replace(
         response,
-        contacts=scaled(response.contacts, force=force, arc_position=length),
-        supports=scaled(response.supports, force=force, moment=force * length),
+        contacts={pair: scaled(one, force=force, arc_position=length) for pair, one in contacts},
+        supports={node: scaled(one, force=force, moment=force * length) for node, one in supports},
         tips={name: length * values for name, values in response.tips.items()},
     )
 
@@ -81,7 +79,7 @@ class Against(Value):
         if not rod and (allowed > LARGEST or not len(other.load_parameter)):
             return None
         if rod and len(own.load_parameter) > len(other.load_parameter):
-            why, error = f"it went on where the {self.name} stopped: {other.status}: {other.message}", np.inf
+            why, error = f"it went on where the {self.name} stopped: {other.ended}", np.inf
         else:
             answer = in_units_of(beam, case.scene.beams[0], own)
             found = [difference(answer, other, self.case.scene, quantity) for quantity in COMPARED]

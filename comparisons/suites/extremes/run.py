@@ -93,16 +93,12 @@ def _sections(judgements: Sequence[Judgement]) -> list[Section]:
 def _cell(item: Judgement) -> tuple[str, dict[str, Any]]:
     """Return the text and the attributes of a cell of the map."""
     findings, row = item
-    lines = (
-        f"{row['label']}, {row['value']}: {row['verdict']}",
-        f"{row['status']}: {row['message']}",
-        f"reached {row['reached']:.4g} of 1",
-        *(
-            f"against {one.name}: error {_number(one.error)}, allowed {_number(one.allowed)} ({one.why})"
-            for one in findings
-        ),
-        f"{row['iterations']} iterations, {row['cutbacks']} cut-backs",
-    )
+    head = "{label}, {value}: {verdict}\n{status}: {message}\nreached {reached:.4g} of 1".format_map(row)
+    held = [
+        f"against {one.name}: error {_number(one.error)}, allowed {_number(one.allowed)} ({one.why})"
+        for one in findings
+    ]
+    lines = (head, *held, f"{row['iterations']} iterations, {row['cutbacks']} cut-backs")
     verdict = row["verdict"]
     text = row["status"] if verdict == "stopped" or not findings else _number(row["error"])
     shade = _shade(row["error"]) if verdict == "right" and findings else None

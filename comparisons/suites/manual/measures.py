@@ -18,9 +18,9 @@ from comparisons.models import ROD, SOLID, solve
 from comparisons.models.model import Options
 from comparisons.models.solid import to_solid
 from comparisons.models.tsm import to_structure
+from comparisons.report.plot import Line
 from comparisons.scene import LoadSpec, Scene, read_scene
 from comparisons.suite.settings import changed
-from comparisons.suites.drawing import Line
 from comparisons.suites.formula import value_of
 from comparisons.suites.manual.problem import Problem, Quantity, Trial
 from comparisons.suites.solid_accuracy import solved
@@ -64,7 +64,7 @@ def answered(scene: Scene, model: str, options: Options | None = None) -> Respon
     """Return the response of a model to a scene; one that is not complete and checked is a `StoppedError`."""
     response = solve(scene, model, options)
     if not response.completed:
-        raise StoppedError(f"{response.status}: {response.message}")
+        raise StoppedError(response.ended)
     return response
 
 
@@ -250,10 +250,8 @@ def invariance(answers: Answers) -> Iterable[float]:
     other = read_scene(answers.problem.settings["other"], answers.problem.name)
     found = [table(answers.solved(draw=False), along=False), table(answers.solved(other), along=False)]
     answers.lines.extend(undeformed(other))
-    for name in ("force", "moment"):
-        a, b = (
-            np.abs(next(values for key, values in one.items() if key.endswith(f".{name}"))) for one in found
-        )
+    for name in (".force", ".moment"):
+        a, b = (np.abs(next(one[key] for key in one if key.endswith(name))) for one in found)
         yield float(np.abs(b - a).max() / np.abs(a).max())
 
 

@@ -34,15 +34,13 @@ class Quantity(Value):
     scale: float | None = None  #: What its error is divided by, the magnitude of the exact value if None.
     read: str = ""  #: The words of `comparisons.suites.manual.measures.value`.
     at: float = 1.0  #: A load parameter.
-    formula: str = (
-        "of(read, at)"  #: In such readings and the attributes of the scene's first beam, ``beam.EI``.
-    )
+    #: In such readings and the attributes of the scene's first beam, ``beam.EI``.
+    formula: str = "of(read, at)"
     changes: Changes = field(default_factory=dict)  #: What is changed in the scene.
 
-    @property
-    def size(self) -> float:
-        """What its error is divided by."""
-        return abs(self.exact) if self.scale is None else self.scale
+    def error(self, value: float) -> float:
+        """Return the error of a value over the scale."""
+        return abs(value - self.exact) / (abs(self.exact) if self.scale is None else self.scale)
 
 
 class Trial(Value):

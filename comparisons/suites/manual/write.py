@@ -1,6 +1,7 @@
 """The manual: judgements on the answers, a picture for each problem, and what is found as a page, Markdown, numbers and JUnit checks."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import chain
 from math import inf, nan
@@ -17,7 +18,7 @@ from comparisons.output import Report, Row, markdown
 from comparisons.report import palette
 from comparisons.report.brief import Brief
 from comparisons.report.pages import Section, picture, piece, table
-from comparisons.suites.drawing import Line, draw_lines
+from comparisons.report.plot import Line, draw_lines
 from comparisons.suites.finding import Finding, junit_text
 from comparisons.suites.formula import sentence
 from comparisons.suites.found import Found
@@ -30,7 +31,7 @@ from comparisons.suites.manual.measures import (
     deflected,
     undeformed,
 )
-from comparisons.suites.manual.problem import Problem, Trial, read_problem
+from comparisons.suites.manual.problem import Problem, Quantity, Trial, read_problem
 from comparisons.version import versions
 
 PAGE = Path(__file__).with_name("page.md.jinja")
@@ -93,17 +94,13 @@ def _judged(answers: Answers) -> Judgement:
     except StoppedError as error:
         stopped, values = str(error), [nan] * len(asked)
     seconds = perf_counter() - began
-    findings = tuple(
-        Finding(
-            name=one.name,
-            error=inf if stopped else abs(value - one.exact) / one.size,
-            allowed=trial.allowed,
-            why=trial.why,
-            value=value,
-            exact=one.exact,
-        )
-        for one, value in zip(asked, values, strict=True)
-    )
+
+    def found(one: Quantity, value: float) -> Finding:
+        error = inf if stopped else one.error(value)
+        bound = Finding(name=one.name, error=error, allowed=trial.allowed, why=trial.why)
+        return replace(bound, value=value, exact=one.exact)
+
+    findings = tuple(found(*one) for one in zip(asked, values, strict=True))
     return Judgement(**vars(answers), findings=findings, seconds=seconds, stopped=stopped)
 
 
@@ -160,12 +157,12 @@ def _answers(case: Sequence[Judgement]) -> list[Row]:
         labels = (item.trial.label for item in case)
         return {"quantity": name, "exact": exact, **dict(zip(labels, cells, strict=True))}
 
-    found = zip(*(item.findings for item in case), strict=True)
+    rows = [
+        row(of[0].name, f"{of[0].exact:.12g}", (f"{one.value:.9g} ({one.error:.1e})" for one in of))
+        for of in zip(*(item.findings for item in case), strict=True)
+    ]
     return [
-        *(
-            row(of[0].name, f"{of[0].exact:.12g}", (f"{one.value:.9g} ({one.error:.1e})" for one in of))
-            for of in found
-        ),
+        *rows,
         row("tolerance", "", (f"{item.trial.allowed:.2g}" for item in case)),
         row("verdict", "", (item.verdict for item in case)),
         row("seconds", "", (f"{item.seconds:.2f}" for item in case)),
@@ -208,12 +205,6 @@ def _numbers(case: Sequence[Judgement]) -> dict[str, Any]:
     }
 
 
-def _check(item: Judgement) -> tuple[str, str, float, str | None, str]:
-    """Return the check of `junit_text` for an answer."""
-    measured = "\n".join(one.measured for one in item.findings)
-    return f"manual.{item.problem.name}", item.trial.label, item.seconds, item.failure, measured
-
-
 def manual(files: Sequence[Path], report: Report) -> Found:
     """Solve problems, the files of `comparisons.suites.manual.problem.problems`, and judge the answers; `report` takes a line for each problem."""
     cases = []
@@ -221,38 +212,37 @@ def manual(files: Sequence[Path], report: Report) -> Found:
         case = judged(problem)
         cases.append(case)
         failed = [item for item in case if not item.passed]
-        report(
-            f"{problem.name}: {'FAILED' if failed else 'passed'}, {sum(item.seconds for item in case):.1f} s"
-        )
+        spent = sum(item.seconds for item in case)
+        report(f"{problem.name}: {'FAILED' if failed else 'passed'}, {spent:.1f} s")
         for item in failed:
             report(f"  {item.trial.label}: {item.failure}")
     judgements = list(chain.from_iterable(cases))
-    wrong = [
-        f"{item.problem.name}, {item.trial.label}: {item.failure}" for item in judgements if not item.passed
-    ]
+    failed = [item for item in judgements if not item.passed]
+    wrong = [f"{item.problem.name}, {item.trial.label}: {item.failure}" for item in failed]
     every = [_answer(item) for item in judgements]
-    linked = [
-        row | {"case": f"[{row['case']}](#{item.problem.name})"}
-        for row, item in zip(every, judgements, strict=True)
-    ]
+    links = (f"[{item.problem.title}](#{item.problem.name})" for item in judgements)
+    linked = [row | {"case": link} for row, link in zip(every, links, strict=True)]
+    held = ("\n".join(one.measured for one in item.findings) for item in judgements)
+    checks = (
+        (f"manual.{item.problem.name}", item.trial.label, item.seconds, item.failure, text)
+        for item, text in zip(judgements, held, strict=True)
+    )
     words: dict[str, Any] = {"cases": cases, "judgements": judgements, "versions": versions()}
     template = PAGE.read_text(encoding="utf-8")
     text = sentence(template, **words, every=markdown(linked), answers=lambda case: markdown(_answers(case)))
+    said = f"{len(cases)} cases, {len(judgements)} answers, {len(wrong)} beyond their tolerance."
     return Found(
         title="Verification manual",
-        brief=Brief(
-            f"{len(cases)} cases, {len(judgements)} answers, {len(wrong)} beyond their tolerance.", wrong
-        ),
+        brief=Brief(said, wrong),
         files={
             "index.md": text.replace(" FAILED ", " **FAILED** "),
             "manual.json": {"passed": not wrong, "cases": list(map(_numbers, cases))},
-            "junit.xml": junit_text("crossval run manual", map(_check, judgements)),
+            "junit.xml": junit_text("crossval run manual", checks),
         },
         sections=lambda folder: [
             Section("Answers", table("Of every answer the quantity with the largest error", every)),
             *(_section(case, folder) for case in cases),
         ],
-        pictures={case[0].problem.name: partial(draw_case, case) for case in cases},
-        kinds=(".svg",),
+        pictures={f"{case[0].problem.name}.svg": partial(draw_case, case) for case in cases},
         wrong=wrong,
     )

@@ -13,15 +13,16 @@ from comparisons.models import ROD, TSM, solve
 from comparisons.models.model import Options
 from comparisons.models.tsm import to_structure
 from comparisons.output import Report, Row
+from comparisons.report.plot import Line
 from comparisons.scene import Scene, load_scene
 from comparisons.suite.settings import changed
-from comparisons.suites.drawing import Line
 from comparisons.suites.paper.approach import NEAREST, approaches
 from comparisons.suites.paper.figure import (
     CANTILEVER,
     LABELS,
     MIXED,
     SIMPLE,
+    STATED,
     TIMOSHENKO,
     Numbers,
     Study,
@@ -32,17 +33,11 @@ from comparisons.suites.paper.figure import (
 )
 from comparisons.suites.paper.force_floor import TURNED, force_floor
 
-STARTS = (4.05, 4.1, 4.2, 4.3, 4.35, 4.4)
-"""The paper's starting positions of the pin [m]."""
+GIVEN = STATED["fig7"]
 PRINTED = {SIMPLE: (0.07749, 0.12952), CANTILEVER: (0.02164, 0.03865), TIMOSHENKO: (0.00067, 0.00501)}
 """The ranges of the critical area in [P] section 4.1."""
-TOLERANCES = (1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12)
 RATIOS = 10.0 ** -np.arange(1.0, 16.5, 0.5)
-FITTED = (1e-13, 1e-2)
-"""Ratios of the fitted slopes: below, a ratio has no digits left; above, it is no small one."""
 DOTTED = {"color": "0.6", "linestyle": ":"}
-MOVES = 0.5
-"""A median critical area beyond half the element means that the tolerance is below the round-off everywhere in it."""
 FLOORS: tuple[dict[str, Any], ...] = (
     *({"element": one, "end": end, "psi": 9.0} for one in (*LABELS, TURNED) for end in ("start", "end")),
     {"element": TIMOSHENKO, "end": "end", "psi": 4.5e-9},
@@ -57,11 +52,11 @@ def lifted(start: float) -> Scene:
 
 def critical_areas(*, quick: bool, report: Report) -> Study:
     """Measure both; `quick` takes fewer starting positions, tolerances and samples."""
-    tolerances, shown = (TOLERANCES[::3], 1e-9) if quick else (TOLERANCES, 1e-10)
+    tolerances, shown = GIVEN["tolerances"][:: 3 if quick else 1], 1e-9 if quick else 1e-10
     areas, curves, panels = list[Row](), list[Row](), dict[str, list[Line]]()
     for tolerance in tolerances:
         report(f"approach to the nodes at tolerance {tolerance:.0e}")
-        for element, start in product(LABELS, STARTS[::4] if quick else STARTS):
+        for element, start in product(LABELS, GIVEN["starts"][:: 4 if quick else 1]):
             scene = lifted(start)
             for way in approaches(to_structure(scene, element=element), tolerance):
                 place = {"element": element, "start": start, "node": way.node}
@@ -71,23 +66,18 @@ def critical_areas(*, quick: bool, report: Report) -> Study:
                     both = zip(raised, way.ratio, strict=True)
                     curves += ({**place, "displacement": d, "ratio": ratio} for d, ratio in both)
                     wide = {"markevery": [-1], "linewidth": 3.2 - 0.7 * list(LABELS).index(element)}
-                    curve = Line(
-                        LABELS[element], (raised, np.maximum(way.ratio, NEAREST)), wide | line(element)
-                    )
+                    seen = raised, np.maximum(way.ratio, NEAREST)
+                    curve = Line(LABELS[element], seen, wide | line(element))
                     title = f"pin at {start:g} m, tolerance {shown:.0e} EI/L$^2$"
                     panels.setdefault(title, []).append(curve)
     report("floor of the unbalanced force")
     samples = 8 if quick else 50
-    floors = np.array(
-        [[force_floor(**of, ratio=ratio, samples=samples) for ratio in RATIOS] for of in FLOORS]
-    )
-    numbers, cases = measured(areas, floors, shown), zip(product(FLOORS, RATIOS), floors.ravel(), strict=True)
+    cases = [{**of, "ratio": ratio} for of, ratio in product(FLOORS, RATIOS)]
+    rows = [{**of, "floor": force_floor(**of, samples=samples)} for of in cases]
+    floors = np.reshape([row["floor"] for row in rows], (len(FLOORS), -1))
+    numbers = measured(areas, floors, shown)
     return Study(
-        tables={
-            "fig7b": curves,
-            "fig7b-tolerance": areas,
-            "fig7b-floor": [{**of, "ratio": ratio, "floor": floor} for (of, ratio), floor in cases],
-        },
+        tables={"fig7b": curves, "fig7b-tolerance": areas, "fig7b-floor": rows},
         numbers=numbers,
         pictures=pictures(
             fig7b=panels, fig7b_tolerance={"": _areas(numbers)}, fig7b_floor={"": _floors(floors, numbers)}
@@ -120,13 +110,14 @@ def measured(areas: Sequence[Row], floors: Array, shown: float) -> Numbers:
         meeting = (area["smallest"] <= most) & (area["largest"] >= least)
         meets[name] = [*meeting, *[True] * (takes[name] > 0.0)]
     # the tolerances at which the Euler-Bernoulli contact still moves
-    usable = critical[SIMPLE]["median"] < MOVES
+    usable = critical[SIMPLE]["median"] < GIVEN["moves"]
     for above, below in pairwise(PRINTED):
         both = usable[:, None] & np.isfinite(ways[above] + ways[below])
         smaller[above] = _part((ways[above] > ways[below])[both])
         gain[above] = (critical[above]["median"] / np.maximum(critical[below]["median"], NEAREST))[usable]
     middle = {name: np.sqrt(np.prod(ends)) for name, ends in PRINTED.items()}
-    fitted = (FITTED[0] * 0.999 < RATIOS) & (FITTED[1] * 1.001 > RATIOS)
+    least, most = GIVEN["fitted"]
+    fitted = (least * 0.999 < RATIOS) & (most * 1.001 > RATIOS)
     slopes = np.polyfit(np.log(RATIOS[fitted]), np.log(floors[:, fitted]).T, 1)[0]
     near = np.argmin(np.abs(RATIOS - 1e-3))
     below_printed = critical[TIMOSHENKO]["largest"] <= PRINTED[TIMOSHENKO][0]
@@ -175,54 +166,38 @@ def _floors(floors: Array, numbers: Numbers) -> Iterator[Line]:
         yield Line(f"{LABELS[element]}: slope {slope:z.2f}", (RATIOS, floor), style)
     stiff = {**line(TIMOSHENKO), "marker": "v", "linestyle": "-."}
     yield Line(f"{LABELS[TIMOSHENKO]}, printed G of section 4.2", (RATIOS, floors[-1]), stiff)
-    yield from (Line("fitted between", ((edge, edge), (1e-16, 1.0)), DOTTED) for edge in FITTED)
-
-
-ELEMENTS = (18, 72)
-"""The paper's number of elements, and four times as many."""
-FOLLOWED = 5e-4
-"""Relative error of a slip-off displacement that counts as followed."""
-DEPTHS = (0.25, 0.5, 0.75, 1.0)
-"""Shapes shown, in parts of the displacement at slip-off: the last load parameter before."""
+    yield from (Line("fitted between", ((edge, edge), (1e-16, 1.0)), DOTTED) for edge in GIVEN["fitted"])
 
 
 def cantilever_shapes(*, quick: bool, report: Report) -> Study:
     """Solve the six; `quick` takes two of them with a quarter of the load parameters and without Euler-Bernoulli."""
     lifts, histories, panels = list[Row](), list[Row](), dict[str, list[Line]]()
     scenes, runs = list[Scene](), dict[str, Response]()
-    for start in STARTS[::4] if quick else STARTS:
+    coarse, fine = GIVEN["elements"]
+    for start in GIVEN["starts"][:: 4 if quick else 1]:
         place, scene = f"pin at {start:g} m", lifted(start)
         report(place)
         if quick:
             scene = replace(scene, load_parameters=scene.load_parameters // 4)
         scenes.append(scene)
         pair, travel = scene.contacts[0].pair, scene.pins[0].points[1][1]
-        tried = {
-            one: solve(scene, TSM.name, Options(element=one))
-            for one in ((TIMOSHENKO, MIXED) if quick else LABELS)
-        }
-        finer = solve(scene, TSM.name, Options(elements=ELEMENTS[1]))
+        asked = (TIMOSHENKO, MIXED) if quick else LABELS
+        tried = {one: solve(scene, TSM.name, Options(element=one)) for one in asked}
+        finer = solve(scene, TSM.name, Options(elements=fine))
         beams, rod = tried[MIXED], solve(scene, ROD.name)
         runs |= {f"{place}, {one.model}": one for one in (beams, rod)}
         own, exact = beams.contacts[pair], rod.contacts[pair]
         # forces [N] and arc positions [m] against the displacement of the pin [m], where both are in contact
-        columns = (
-            travel * beams.load_parameter,
-            own.force,
-            exact.force,
-            own.arc_position,
-            exact.arc_position,
-        )
+        way = travel * beams.load_parameter
+        columns = (way, own.force, exact.force, own.arc_position, exact.arc_position)
         history = np.array([row for row in zip(*columns, strict=False) if np.isfinite(row).all()])
         names = ("start", "displacement", "force", "rod_force", "arc", "rod_arc")
         histories += (dict(zip(names, (start, *row), strict=True)) for row in history)
         # up to the slip-off, or the end of the run before it
         off = {one: travel * one.contacts[pair].slip_off for one in (*tried.values(), finer, rod)}
-        ends = {
-            name: np.nanmin([off[one], travel * max(one.load_parameter, default=0.0)])
-            for name, one in tried.items()
-        }
-        slip_off = dict(zip(ELEMENTS, (off[beams], off[finer]), strict=True))
+        last = {name: travel * max(one.load_parameter, default=0.0) for name, one in tried.items()}
+        ends = {name: np.nanmin([off[one], last[name]]) for name, one in tried.items()}
+        slip_off = dict(zip((coarse, fine), (off[beams], off[finer]), strict=True))
         lifts.append({
             "start": start,
             "slip_off_rod": off[rod],
@@ -230,12 +205,12 @@ def cantilever_shapes(*, quick: bool, report: Report) -> Study:
             "slip_off_error": {n: abs(value / off[rod] - 1.0) for n, value in slip_off.items()},
             "force_error": np.abs(history[:, 2] - history[:, 1]).max() / history[:, 2].max(),
             "reached_in_contact": ends,
-            "paper_followed": bool(np.isclose(ends[TIMOSHENKO], off[rod], rtol=FOLLOWED)),
+            "paper_followed": bool(np.isclose(ends[TIMOSHENKO], off[rod], rtol=GIVEN["followed"])),
         })  # fmt: skip
-        last = int(np.flatnonzero(np.isfinite(own.arc_position))[-1])
-        shown = {"exact rod": rod, f"TSM mixed, {ELEMENTS[0]} elements": beams}
+        closed = int(np.flatnonzero(np.isfinite(own.arc_position))[-1])
+        shown = {"exact rod": rod, f"TSM mixed, {coarse} elements": beams}
         title = f"{place}: slips off at {off[beams]:.4f} m"
-        panels[title] = list(shapes(scene, shown, [round(part * last) for part in DEPTHS]))
+        panels[title] = list(shapes(scene, shown, [round(part * closed) for part in GIVEN["depths"]]))
     return Study(
         tables={"fig7a": histories},
         numbers={"starting_positions": lifts, "stopped": stops(runs)},

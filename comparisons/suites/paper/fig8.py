@@ -6,17 +6,14 @@ from functools import partial
 
 from comparisons.answer import Response
 from comparisons.answer.axis import STATIONS, axes_at_stations
-from comparisons.answer.errors import errors
-from comparisons.answer.quantities import KEPT, SCOPES
 from comparisons.models import find, solve
 from comparisons.models.model import Options
-from comparisons.models.shared import kept
 from comparisons.output import Report, Row
 from comparisons.report.motion import motion_section, tracks
 from comparisons.report.pages import Section
 from comparisons.report.plot import nearest_steps, plot_shapes
 from comparisons.scene import Scene, load_scene
-from comparisons.suites.compare import MIXED, PAPER, ROD, SOLID
+from comparisons.suites.compare import MIXED, PAPER, ROD, SOLID, Run, row_of
 from comparisons.suites.paper.figure import STATED, Study, stops
 
 KS = "ks-cantilever"
@@ -39,7 +36,7 @@ def ks_shapes(*, quick: bool, report: Report) -> Study:
         stated = scene.beams[0].poissons_ratio is not None and find(SOLID.model).refusal(scene) is None
         asked = (*((solid,) if stated else ()), *PAPER, MIXED, ROD)
         responses = {run.label: solve(scene, run.model, run.options) for run in asked}
-        rows = [_compared(scene, label, responses) for label in responses]
+        rows = [_compared(scene, run, responses) for run in asked]
         kept = {row["label"]: responses[row["label"]] for row in rows if row["follows_the_rod"]}
         runs += rows
         points += _shape_rows(scene, responses)
@@ -60,19 +57,17 @@ def ks_shapes(*, quick: bool, report: Report) -> Study:
     )
 
 
-def _compared(scene: Scene, label: str, responses: Mapping[str, Response]) -> Row:
-    """Status, cost and errors of a run: all of them against the exact rod, the shape also against the solid where there is one."""
-    response, solid = responses[label], responses.get(SOLID.label)
-    found = errors(response, responses[ROD.label], scene)
-    apart = errors(response, solid, scene, quantities=["shape"])["path"]["shape"] if solid else float("nan")
+def _compared(scene: Scene, run: Run, responses: Mapping[str, Response]) -> Row:
+    """Return the row of a run against the exact rod, and the distance of its shape from the solid's where there is one."""
+    row, solid = row_of(scene, run, responses[run.label], responses[ROD.label]), responses.get(SOLID.label)
+    apart = row.against(solid, ["shape"]).error("path", "shape") if solid else float("nan")
+    near = run is ROD or row.error("path", "shape") < OTHER_BRANCH
     return {
         "reading": scene.name,
-        "label": label,
-        **kept(response, "status unknowns iterations"),
-        "seconds": response.wall_seconds,
+        **row.columns(),
+        "seconds": row.response.wall_seconds,
         "shape_difference": apart,
-        "follows_the_rod": response.status == "COMPLETED" and found["path"]["shape"] < OTHER_BRANCH,
-        **{f"error_{scope}_{name}": found[scope][name] for scope in SCOPES for name in KEPT},
+        "follows_the_rod": row.response.completed and near,
     }
 
 
@@ -92,9 +87,12 @@ def of_shapes(rows: Sequence[Row]) -> Row:
     """Return the runs of the main reading by elements of the paper's element, and of the solid, and which runs leave the exact rod."""
     main = {row["label"]: row for row in rows if row["reading"] == KS}
     paper = [row for row in rows if row["label"] in {one.label for one in PAPER}]
-    named = ("reading", "label", "status")
     return {
         "run": {**{one.options.elements: main[one.label] for one in PAPER}, SOLID.label: main[SOLID.label]},
         "paper_runs": len(paper),
-        "failed": [{name: row[name] for name in named} for row in paper if not row["follows_the_rod"]],
+        "failed": [
+            {name: row[name] for name in ("reading", "label", "status")}
+            for row in paper
+            if not row["follows_the_rod"]
+        ],
     }

@@ -12,9 +12,9 @@ from comparisons.models.model import Options
 from comparisons.output import Report, Row
 from comparisons.report import palette
 from comparisons.report.motion import motion_section, tracks
+from comparisons.report.plot import Line
 from comparisons.scene import Scene, load_scene
 from comparisons.suite.settings import changed
-from comparisons.suites.drawing import Line
 from comparisons.suites.paper.figure import (
     CANTILEVER,
     SIMPLE,
@@ -81,16 +81,14 @@ def double_beam(*, quick: bool, report: Report) -> Study:
         "attempts": [_attempt(scene, element, place) for element, place in product(tried, HAND_OVER)],
         "stopped": stops({one.setting or one.model: one for one in (own, response, exact)}),
     }
+    rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+    title = "Double beam: shapes and histories"
     return Study(
-        tables={
-            "fig9": [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
-        },
+        tables={"fig9": rows},
         numbers=numbers,
         pictures=pictures(**({"fig9": drawn} if stages else {}), fig9_forces=forces),
         scenes=[finer],
-        moving=[
-            motion_section("Double beam: shapes and histories", finer, {BEAMS: response}, shown, focus=BEAMS)
-        ],
+        moving=[motion_section(title, finer, {BEAMS: response}, shown, focus=BEAMS)],
     )
 
 

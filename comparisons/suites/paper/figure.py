@@ -13,8 +13,8 @@ from comparisons.models import find
 from comparisons.output import Row
 from comparisons.report import palette
 from comparisons.report.pages import Section
+from comparisons.report.plot import Line, draw_lines
 from comparisons.scene import Scene
-from comparisons.suites.drawing import Line, draw_lines
 from tsm import elements
 
 STATED: dict[str, Any] = tomllib.loads(Path(__file__).with_name("claims.toml").read_text(encoding="utf-8"))
@@ -45,15 +45,16 @@ def pictures(**drawn: Mapping[str, Iterable[Line]]) -> dict[str, Callable[..., N
 
 def stops(runs: Mapping[str, Response]) -> list[str]:
     """Return the runs that did not complete, and why."""
-    return [f"{name}: {one.status}: {one.message}" for name, one in runs.items() if not one.completed]
+    return [f"{name}: {one.ended}" for name, one in runs.items() if not one.completed]
 
 
-SIMPLE, CANTILEVER, TIMOSHENKO, MIXED = (
-    kind.name
-    for kind in (
-        elements.EULER_BERNOULLI_SIMPLE, elements.EULER_BERNOULLI_CANTILEVER, elements.TIMOSHENKO, elements.MIXED,
-    )
-)  # fmt: skip
+_KINDS = (
+    elements.EULER_BERNOULLI_SIMPLE,
+    elements.EULER_BERNOULLI_CANTILEVER,
+    elements.TIMOSHENKO,
+    elements.MIXED,
+)
+SIMPLE, CANTILEVER, TIMOSHENKO, MIXED = (kind.name for kind in _KINDS)
 LABELS = {
     SIMPLE: "Euler-Bernoulli, simple",
     CANTILEVER: "Euler-Bernoulli, cantilever",

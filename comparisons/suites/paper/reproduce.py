@@ -1,6 +1,5 @@
 """The claims of [P], which ``claims.toml`` states, and its figures: verdicts, files and a page."""
 
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field
 from enum import StrEnum
@@ -107,10 +106,15 @@ def judged(found: Mapping[str, Numbers], *, quick: bool) -> Judgements:
     return judgements
 
 
+def numbered(judgements: Judgements) -> dict[str, list[str]]:
+    """Return the numbers of the claims by their verdict."""
+    by = {name: [row[""] for row in judgements.values() if row["verdict"] == name] for name in Verdict}
+    return {name: numbers for name, numbers in by.items() if numbers}
+
+
 def counted(judgements: Judgements) -> str:
     """Return how many claims are judged, and how many have each verdict."""
-    counts = Counter(row["verdict"] for row in judgements.values())
-    summary = "; ".join(f"{counts[name]} {name}" for name in Verdict if counts[name])
+    summary = "; ".join(f"{len(numbers)} {name}" for name, numbers in numbered(judgements).items())
     statements = sum(len(claim.stated) for claim in CLAIMS)
     return f"{len(judgements)} of {len(CLAIMS)} claims judged ({statements} statements): {summary}"
 
@@ -130,18 +134,12 @@ whose contact force is an unknown. EI/L^2 is the unit of the unbalanced force.
 
 def brief(judgements: Judgements, *, quick: bool) -> Brief:
     """Return how many claims have each verdict, and which are not reproduced, by their numbers."""
-    by = {name: [row[""] for row in judgements.values() if row["verdict"] == name] for name in Verdict}
-    coarse = " with coarse settings" if quick else ""
-    sentence = (
-        f"{len(by[Verdict.REPRODUCED])} of {len(judgements)} claims of the paper are reproduced{coarse}."
-    )
-    points = [f"{name[0].upper()}{name[1:]}: {len(numbers)}." for name, numbers in by.items() if numbers]
-    answer = [
-        {"": name, "claims": len(numbers), "numbers": ", ".join(numbers)}
-        for name, numbers in by.items()
-        if numbers
-    ]
-    return Brief(sentence, points[1:], answer, "The verdicts, and the numbers of the claims below:")
+    by, coarse = numbered(judgements), " with coarse settings" if quick else ""
+    reproduced = len(by.get(Verdict.REPRODUCED, ()))
+    said = f"{reproduced} of {len(judgements)} claims of the paper are reproduced{coarse}."
+    answer = [{"": name, "claims": len(by[name]), "numbers": ", ".join(by[name])} for name in by]
+    points = [f"{name.capitalize()}: {len(by[name])}." for name in by if name != Verdict.REPRODUCED]
+    return Brief(said, points, answer, "The verdicts, and the numbers of the claims below:")
 
 
 def reproduce(name: str, *, quick: bool, report: Report) -> Found:
@@ -151,9 +149,8 @@ def reproduce(name: str, *, quick: bool, report: Report) -> Found:
         report(f"[{number}/{len(names)}] {figure}: {FIGURES[figure]}")
         found[figure] = STUDIES[figure](quick=quick, report=lambda line: report(f"  {line}"))
     judgements = judged({figure: study.numbers for figure, study in found.items()}, quick=quick)
-    files: dict[str, Any] = {
-        "claims.md" if name == "all" else f"claims-{name}.md": claims_text(judgements, quick=quick)
-    }
+    text = "claims.md" if name == "all" else f"claims-{name}.md"
+    files: dict[str, Any] = {text: claims_text(judgements, quick=quick)}
     for figure, study in found.items():
         files |= {f"{stem}.csv": rows for stem, rows in study.tables.items()}
         files[f"{figure}.json"] = study.numbers
@@ -166,6 +163,7 @@ def reproduce(name: str, *, quick: bool, report: Report) -> Found:
             yield Section(f"{figure}: {title}", "\n".join(shown))
             yield from (*([claims] if figure == names[0] else ()), *study.moving)
 
+    stops = [f"{figure}: {one}" for figure, of in found.items() for one in of.numbers.get("stopped", ())]
     return Found(
         title="The paper's figures and claims",
         brief=brief(judgements, quick=quick),
@@ -173,7 +171,5 @@ def reproduce(name: str, *, quick: bool, report: Report) -> Found:
         sections=sections,
         pictures={stem: draw for study in found.values() for stem, draw in study.pictures.items()},
         scenes=dict.fromkeys(scene for study in found.values() for scene in study.scenes),
-        stopped=[
-            f"{figure}: {one}" for figure, study in found.items() for one in study.numbers.get("stopped", ())
-        ],
+        stopped=stops,
     )

@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from itertools import pairwise, product
-from math import isfinite
+from itertools import chain, pairwise, product
+from math import isfinite, log
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -15,10 +16,10 @@ from comparisons.output import tabulated
 from comparisons.report import palette
 from comparisons.report.brief import Brief
 from comparisons.report.pages import Section, picture, piece, table
+from comparisons.report.plot import draw, tag
 from comparisons.scene import Scene, to_toml
 from comparisons.suite.progress import Runner
 from comparisons.suite.study import result_rows
-from comparisons.suites.drawing import draw
 from comparisons.suites.found import Found
 from comparisons.suites.trade.trade import (
     COSTS,
@@ -54,17 +55,14 @@ def _draw(axes: Any, trade: Trade, *, own: bool) -> None:
     """Draw the completed settings in the order of the legend, and fronts; what is uncertain bounds errors from below."""
     order = [words for model in MODELS.values() for words in model.styles()]
     models = (model.name for model in MODELS.values() if model.meshed or not model.rod)
-    rows = (row for name in models for row in trade.of_model(name, SCOPE))
-    for row in sorted(
-        rows, key=lambda row: max(k for k, words in enumerate(order) if row.family.startswith(words))
-    ):
+    rows = [row for name in models for row in trade.of_model(name, SCOPE)]
+    ranks = [[k for k, words in enumerate(order) if row.family.startswith(words)] for row in rows]
+    for _, row in sorted(zip(ranks, rows, strict=True), key=lambda ranked: ranked[0][-1]):
         style, error = palette.style(row.family), row.error(SCOPE, SHOWN, own=own)
         floor = trade.uncertainty(row.case.model if own else ROD.name, SCOPE, SHOWN)
+        mark = {"color": style.colour, "marker": style.marker, "markersize": 9 if style.marker == "*" else 6}
         if np.isfinite(error):
-            axes.plot(
-                row.seconds, max(error, floor), color=style.colour, marker=style.marker, linestyle="none", label=row.family,
-                markersize=9 if style.marker == "*" else 6, alpha=0.85,
-            )  # fmt: skip
+            axes.plot(row.seconds, max(error, floor), ls="none", label=row.family, alpha=0.85, **mark)
     title = "against what each model converges to, Pareto fronts" if own else "against the exact rod"
     axes.set(xscale="log", yscale="log", ylabel=f"largest error of {SHOWN}", title=title)
     axes.margins(x=0.3, y=0.06)
@@ -83,14 +81,13 @@ def _draw_front(axes: Any, points: Sequence[Line], model: str) -> None:
     spent, errors = ([one[name] for one in points] for name in ("spent", "own_error"))
     axes.plot(spent, errors, color=MODELS[model].colour, linewidth=1.6, drawstyle="steps-post", zorder=1)
     low, high = np.log(axes.get_ylim())
-    words = {"va": "center", "ha": "right", "fontsize": "small", "textcoords": "offset points"}
-    ground = {"facecolor": "white", "alpha": 0.7, "linewidth": 0.0, "pad": 0.5}
+    style = {"va": "center", "ha": "right", "fontsize": "small"}
     last = np.inf
     for one in points:
         height = np.log(one["own_error"])
         if height < last - APART * (high - low):
             last = height
-            axes.annotate(one["setting"], (one["spent"], one["own_error"]), (-7, 0), bbox=ground, **words)
+            tag(axes, one["setting"], (one["spent"], one["own_error"]), (-7, 0), **style)
 
 
 SETTING = (
@@ -121,12 +118,10 @@ def trade(scene: Scene, run: Runner, *, quick: bool = False) -> Found:
         "orders": fitted,
         "pareto": [row for of in product(MESHED, SCOPES, KEPT, COSTS) for row in front(trade, *of)],
     }
-    shown, reasons = _tables(trade), _stopped(trade)
-    said = [
-        f"{title}\n\n{tabulated(rows) if rows else 'none'}"
-        for tables in shown.values()
-        for title, rows in tables
-    ]
+    every = [(f"{row.label} [{row.case.scene.load_parameters}]", row.response) for row in trade.rows]
+    shown, reasons = _tables(trade), {name: one.ended for name, one in every if not one.completed}
+    titled = chain.from_iterable(shown.values())
+    said = [f"{title}\n\n{tabulated(rows) if rows else 'none'}" for title, rows in titled]
     ends = ["settings without a solution:", *(f"  {name}: {why}" for name, why in reasons.items())]
     limit = trade.limit.sentence if trade.limit else "not known: a solid that it is extrapolated from stopped"
     sources = {"errors against": trade.reference.sentence, "the solid's own limit": limit}
@@ -176,12 +171,6 @@ def _tables(trade: Trade) -> dict[str, list[tuple[str, list[Line]]]]:
     return {"Cheapest settings": cheap, "Orders of convergence": orders_of}
 
 
-def _stopped(trade: Trade) -> dict[str, str]:
-    """Return the settings without a completed and checked solution, and why."""
-    ends = {f"{row.label} [{row.case.scene.load_parameters}]": row.response for row in trade.rows}
-    return {name: f"{one.status}: {one.message}" for name, one in ends.items() if not one.completed}
-
-
 def _brief(trade: Trade, sources: Mapping[str, str], stopped: int) -> Brief:
     """Return what is found: what the solid costs beside beams of equal error, and what more time buys."""
     rows = [cheapest(trade, SCOPE, SHOWN, target) for target in TARGETS]
@@ -191,20 +180,16 @@ def _brief(trade: Trade, sources: Mapping[str, str], stopped: int) -> Brief:
         between = " to ".join(dict.fromkeys(f"{ratio:.2g}" for ratio in (min(ratios), max(ratios))))
         said = f"At equal error the solid takes {between} times the seconds of beams"
     steps = pairwise(front(trade, TSM.name, SCOPE, SHOWN, COSTS[0]))
-    for a, b in sorted(steps, key=lambda ab: _gain(*ab))[-1:]:
+    # by how many decades the error falls over how many the seconds rise
+    gains = [(log(a["own_error"] / b["own_error"]) / log(b["spent"] / a["spent"]), a, b) for a, b in steps]
+    for _, a, b in sorted(gains, key=itemgetter(0))[-1:]:
         more = b["spent"] / a["spent"] - 1.0
         said += f"; {more:.0%} more time buys an error of {b['own_error']:.0e} instead of {a['own_error']:.0e} ({b['setting']})"
     points = [f"{name[0].upper()}{name[1:]}: {what}." for name, what in sources.items()]
-    points.append(
-        f"{len(trade.rows)} settings, {stopped} without a solution; [n]: n load steps; -: no setting does it."
-    )
-    columns = ("target", TSM.name, f"{TSM.name}_seconds", SOLID.name, f"{SOLID.name}_seconds", "ratio")
+    legend = "[n]: n load steps; -: no setting does it."
+    points.append(f"{len(trade.rows)} settings, {stopped} without a solution; {legend}")
     names = ("error", "beams", "seconds", SOLID.label, "seconds ", "ratio")
-    answer = [{name: row[column] for name, column in zip(names, columns, strict=True)} for row in rows]
+    columns = ("target", TSM.name, f"{TSM.name}_seconds", SOLID.name, f"{SOLID.name}_seconds", "ratio")
+    answer = [dict(zip(names, map(row.get, columns), strict=True)) for row in rows]
     about = f"The cheapest settings for an error of {SHOWN} over the path, and their seconds:"
     return Brief(f"{said}.", points, answer, about)
-
-
-def _gain(a: Line, b: Line) -> float:
-    """Return by how many decades the error falls over how many the seconds rise."""
-    return float(np.log(a["own_error"] / b["own_error"]) / np.log(b["spent"] / a["spent"]))

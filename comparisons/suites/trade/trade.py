@@ -13,8 +13,14 @@ from comparisons.models import MODELS, SOLID, TSM
 from comparisons.scene import Scene
 from comparisons.suite import Row
 from comparisons.suite.progress import Runner
-from comparisons.suites.trade.reference import Reference, best_reference, reference_cases, solid_limit
-from comparisons.suites.trade.settings import chains, sweep_cases
+from comparisons.suites.trade.cases import (
+    Reference,
+    best_reference,
+    chains,
+    reference_cases,
+    solid_limit,
+    sweep_cases,
+)
 
 FEWEST, MOST = 3, 4
 """Points of a fit."""
@@ -102,13 +108,9 @@ class Trade(Frozen):
 
     def of_model(self, model: str, scope: str) -> list[Row]:
         """Return the completed rows of a model; for the scope ``path`` those with every load parameter of the scene."""
-        return [
-            row
-            for row in self.rows
-            if row.response.completed
-            and row.case.model == model
-            and (scope == "end" or row.case.scene.load_parameters == self.scene.load_parameters)
-        ]
+        rows = [row for row in self.rows if row.response.completed and row.case.model == model]
+        every = self.scene.load_parameters
+        return [row for row in rows if scope == "end" or row.case.scene.load_parameters == every]
 
 
 def measure_trade(scene: Scene, run: Runner, *, quick: bool = False) -> Trade:

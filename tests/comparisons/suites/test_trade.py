@@ -18,14 +18,17 @@ from comparisons.suite import Case, Row, measure
 
 # not public: the least of known seconds and the order of known errors, which no measured time can show
 from comparisons.suite.measure import unmeasured
-from comparisons.suites.trade.reference import (
+from comparisons.suites.trade.cases import (
     NoReferenceError,
     Reference,
     best_reference,
+    chains,
     extrapolated,
+    limit_cases,
+    load_steps,
     reference_cases,
+    sweep_cases,
 )
-from comparisons.suites.trade.settings import chains, limit_cases, load_steps, sweep_cases
 from comparisons.suites.trade.trade import (
     TARGETS,
     Trade,
