@@ -91,8 +91,8 @@ def report(line: str) -> None:
     if sys.stderr.isatty():
         from shutil import get_terminal_size
 
-        width, whole = get_terminal_size().columns, {"break_long_words": False, "break_on_hyphens": False}
-        text = fill(text, width, subsequent_indent="  ", **whole)
+        width = get_terminal_size().columns
+        text = fill(text, width, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
     print(text, file=sys.stderr, flush=True)
 
 
