@@ -233,9 +233,12 @@ def cantilever_shapes(*, quick: bool, report: Report) -> Study:
             "paper_followed": bool(np.isclose(ends[TIMOSHENKO], off[rod], rtol=FOLLOWED)),
         })  # fmt: skip
         last = int(np.flatnonzero(np.isfinite(own.arc_position))[-1])
-        shown = {"exact rod": rod, f"TSM mixed, {ELEMENTS[0]} elements": beams}
-        title = f"{place}: slips off at {off[beams]:.4f} m"
-        panels[title] = list(shapes(scene, shown, [round(part * last) for part in DEPTHS]))
+        shown = {f"TSM {one}, {ELEMENTS[0]} elements": tried[one] for one in (TIMOSHENKO, MIXED)}
+        stop = f"timoshenko: {tried[TIMOSHENKO].status} after {ends[TIMOSHENKO]:.4f} m"
+        title = f"{place}: slips off at {off[beams]:.4f} m\n{stop}"
+        panels[title] = list(
+            shapes(scene, {"exact rod": rod, **shown}, [round(part * last) for part in DEPTHS])
+        )
     return Study(
         tables={"fig7a": histories},
         numbers={"starting_positions": lifts, "stopped": stops(runs)},
