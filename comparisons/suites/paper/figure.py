@@ -76,7 +76,8 @@ def shapes(scene: Scene, runs: Mapping[str, Response], steps: Sequence[int]) -> 
         if k < len(run.load_parameter):
             axis = run.axis_line(beam.name, k)[1]
             nodes = {"marker": ".", "markevery": max(1, (len(axis) - 1) // beam.divisions)}
-            style = {"color": palette.colour(label), "linewidth": 3.0 / (1 + above)}
+            wide = 3.6 / (1 + above)
+            style = {"color": palette.colour(label), "linewidth": wide, "markersize": 3 * wide}
             yield Line(label, axis.T, style | (nodes if find(run.model).meshed else {"alpha": 0.25}))
     x, y = zip(*(scene.pins[0].position(scene.times[k]) for k in steps), strict=True)
     yield Line("pin", (x, y), {"color": palette.PIN, "marker": "^", "linestyle": "none"})
