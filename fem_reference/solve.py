@@ -20,8 +20,7 @@ from fem_reference.system.state import Reaction, State, reactions
 
 EVENTS = (Status.LIMIT_POINT, Status.BIFURCATION, Status.LINE_CONTACT, Status.END_CONTACT)
 _SMALL_STRAIN = 0.8
-_MESHED = (Status.LIMIT_POINT, Status.CUTBACK_FLOOR, Status.STEP_LIMIT)
-"""Part of an element's area below which such ends of a path may be the mesh's."""
+"""Part of an element's area below which the end of a path may be the mesh's."""
 _TRY = {
     Status.TOO_DEEP: "raise its penalty, or state the penetration that it may have",
     Status.AUGMENTATION_LIMIT: "raise its penalty, or the penetration that it may have",
@@ -128,8 +127,8 @@ def _outcome(model: Model, last: Step) -> tuple[Status, str]:
     if last.cause not in (status, Status.CONVERGED):
         text += f" because {last.cause.value}"
     squeezed = min(float(determinant(F).min()) for F in last.state.gradients)
-    strained = ""
-    if status in _MESHED and squeezed < _SMALL_STRAIN:
+    strained, sought = "", (Status.LIMIT_POINT, Status.CUTBACK_FLOOR, Status.STEP_LIMIT)
+    if status in sought and squeezed < _SMALL_STRAIN:
         strained = f"an element is compressed to {squeezed:.2g} of its area: refine the mesh, or the strain is beyond the comparison"
     pair = None if last.pair is None else model.pairs[last.pair]
     if pair is None:

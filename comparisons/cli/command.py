@@ -11,6 +11,7 @@ from contextlib import ExitStack, contextmanager, redirect_stderr, suppress
 from functools import partial
 from importlib import import_module
 from pathlib import Path
+from shutil import get_terminal_size
 from textwrap import fill
 from typing import Any, NoReturn
 
@@ -89,8 +90,6 @@ def report(line: str) -> None:
     """Report a line on standard error, on a terminal in lines that fit it."""
     text = printable(line)
     if sys.stderr.isatty():
-        from shutil import get_terminal_size
-
         width = get_terminal_size().columns
         text = fill(text, width, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
     print(text, file=sys.stderr, flush=True)

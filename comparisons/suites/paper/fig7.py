@@ -197,22 +197,14 @@ def cantilever_shapes(*, quick: bool, report: Report) -> Study:
             scene = replace(scene, load_parameters=scene.load_parameters // 4)
         scenes.append(scene)
         pair, travel = scene.contacts[0].pair, scene.pins[0].points[1][1]
-        tried = {
-            one: solve(scene, TSM.name, Options(element=one))
-            for one in ((TIMOSHENKO, MIXED) if quick else LABELS)
-        }
+        chosen = (TIMOSHENKO, MIXED) if quick else LABELS
+        tried = {one: solve(scene, TSM.name, Options(element=one)) for one in chosen}
         finer = solve(scene, TSM.name, Options(elements=ELEMENTS[1]))
         beams, rod = tried[MIXED], solve(scene, ROD.name)
         runs |= {f"{place}, {one.model}": one for one in (beams, rod)}
         own, exact = beams.contacts[pair], rod.contacts[pair]
         # forces [N] and arc positions [m] against the displacement of the pin [m], where both are in contact
-        columns = (
-            travel * beams.load_parameter,
-            own.force,
-            exact.force,
-            own.arc_position,
-            exact.arc_position,
-        )
+        columns = travel * beams.load_parameter, own.force, exact.force, own.arc_position, exact.arc_position
         history = np.array([row for row in zip(*columns, strict=False) if np.isfinite(row).all()])
         names = ("start", "displacement", "force", "rod_force", "arc", "rod_arc")
         histories += (dict(zip(names, (start, *row), strict=True)) for row in history)

@@ -64,10 +64,8 @@ def double_beam(*, quick: bool, report: Report) -> Study:
     paper = solve(finer, TSM.name, Options(element=TIMOSHENKO, elements=scene.beams[0].divisions + 1))
     columns = {"depth": (travel := _travel(scene)) * response.load_parameter}
     stopped = travel * float(paper.load_parameter.max(initial=0.0))
-    label = (
-        f"TSM {paper.setting} elements a beam: {paper.status} after {stopped:.3f} m "
-        f"({scene.beams[0].divisions}: {attempts[0]['status']} after {attempts[0]['depth']:g} m)"
-    )
+    label = f"TSM {paper.setting} elements a beam: {paper.status} after {stopped:.3f} m"
+    label += f" ({scene.beams[0].divisions}: {attempts[0]['status']} after {attempts[0]['depth']:g} m)"
     for pair, (prefix, run) in product(NAMES, (("", response), ("exact_", exact), ("paper_", paper))):
         contact, missing = run.contacts[pair], len(columns["depth"]) - len(run.load_parameter)
         force = np.where(np.isnan(contact.arc_position), np.nan, contact.force)
@@ -92,10 +90,9 @@ def double_beam(*, quick: bool, report: Report) -> Study:
         "attempts": attempts,
         "stopped": stops({one.setting or one.model: one for one in (own, response, exact)}),
     }
+    rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
     return Study(
-        tables={
-            "fig9": [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
-        },
+        tables={"fig9": rows},
         numbers=numbers,
         pictures=pictures(**({"fig9": drawn} if stages else {}), fig9_forces=forces),
         scenes=[finer],

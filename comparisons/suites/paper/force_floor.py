@@ -101,8 +101,7 @@ def _sample(kind: ClosedForm | None, xi: Any, psi: float, rng: np.random.Generat
         stiffness = tangent[1, 1] if kind is None else n @ tangent[6:8, 6:8] @ n
         node = node + n * (contact_force - found[6:8] @ n) / stiffness
     state = x, node, xi, force
-    error = (
-        np.abs(forces(*(np.asarray(part).astype(float) for part in state)) - forces(*state)) / contact_force
-    )
+    rounded = (np.asarray(part).astype(float) for part in state)
+    error = np.abs(forces(*rounded) - forces(*state)) / contact_force
     error[[2, 5]] /= _ELEMENTS
     return float(error.max())

@@ -132,9 +132,8 @@ def brief(judgements: Judgements, *, quick: bool) -> Brief:
     """Return how many claims have each verdict, and which are not reproduced, by their numbers."""
     by = {name: [row[""] for row in judgements.values() if row["verdict"] == name] for name in Verdict}
     coarse = " with coarse settings" if quick else ""
-    sentence = (
-        f"{len(by[Verdict.REPRODUCED])} of {len(judgements)} claims of the paper are reproduced{coarse}."
-    )
+    done = len(by[Verdict.REPRODUCED])
+    sentence = f"{done} of {len(judgements)} claims of the paper are reproduced{coarse}."
     points = [f"{name[0].upper()}{name[1:]}: {len(numbers)}." for name, numbers in by.items() if numbers]
     answer = [
         {"": name, "claims": len(numbers), "numbers": ", ".join(numbers)}
@@ -151,9 +150,8 @@ def reproduce(name: str, *, quick: bool, report: Report) -> Found:
         report(f"[{number}/{len(names)}] {figure}: {FIGURES[figure]}")
         found[figure] = STUDIES[figure](quick=quick, report=lambda line: report(f"  {line}"))
     judgements = judged({figure: study.numbers for figure, study in found.items()}, quick=quick)
-    files: dict[str, Any] = {
-        "claims.md" if name == "all" else f"claims-{name}.md": claims_text(judgements, quick=quick)
-    }
+    page = "claims.md" if name == "all" else f"claims-{name}.md"
+    files: dict[str, Any] = {page: claims_text(judgements, quick=quick)}
     for figure, study in found.items():
         files |= {f"{stem}.csv": rows for stem, rows in study.tables.items()}
         files[f"{figure}.json"] = study.numbers
