@@ -20,7 +20,14 @@ from fem_reference.system.state import Reaction, State, reactions
 
 EVENTS = (Status.LIMIT_POINT, Status.BIFURCATION, Status.LINE_CONTACT, Status.END_CONTACT)
 _SMALL_STRAIN = 0.8
-"""Part of an element's area below which a limit point may be the mesh's."""
+"""Part of an element's area below which the end of a path may be the mesh's."""
+_TRY = {
+    Status.TOO_DEEP: "raise its penalty, or state the penetration that it may have",
+    Status.AUGMENTATION_LIMIT: "raise its penalty, or the penetration that it may have",
+    Status.CYCLING: "it may be jammed: try less friction, or a finer mesh",
+    Status.ANOTHER_BRANCH: "a critical point may be near: try smaller loads or motions, whose steps are finer",
+}
+"""What to try, by the reason why steps grew too short or too many."""
 CELL_TYPES = {"Q1": "quad", "Q2": "quad9", "Q2-full": "quad9"}
 
 
@@ -117,18 +124,20 @@ def _outcome(model: Model, last: Step) -> tuple[Status, str]:
     if status is Status.CONVERGED:
         return Status.COMPLETED, Status.COMPLETED.value
     where = f"{'at' if status in EVENTS else 'after'} load parameter {last.load_parameter:.9g}"
-    if last.cause is not status:
+    if last.cause not in (status, Status.CONVERGED):
         text += f" because {last.cause.value}"
     squeezed = min(float(determinant(F).min()) for F in last.state.gradients)
-    if status is Status.LIMIT_POINT and squeezed < _SMALL_STRAIN:
-        text += f"; an element is compressed to {squeezed:.2g} of its area: refine the mesh, or the strain is beyond the comparison"
-    if last.pair is None:
-        return status, f"{text}, {where}"
-    pair, contact = model.pairs[last.pair], model.pairs[last.pair].contact
-    if status is Status.END_CONTACT:
-        end = nearest_end(pair, last.state)
-        return status, f"{text}: {contact.node} meets the {end} of {contact.strip} {where}"
-    return status, f"{text} ({contact.name}), {where}"
+    strained, sought = "", (Status.LIMIT_POINT, Status.CUTBACK_FLOOR, Status.STEP_LIMIT)
+    if status in sought and squeezed < _SMALL_STRAIN:
+        strained = f"an element is compressed to {squeezed:.2g} of its area: refine the mesh, or the strain is beyond the comparison"
+    pair = None if last.pair is None else model.pairs[last.pair]
+    if pair is None:
+        text += ","
+    elif status is Status.END_CONTACT:
+        text += f": {pair.contact.node} meets the {nearest_end(pair, last.state)} of {pair.contact.strip}"
+    else:
+        text += f" ({pair.contact.name}),"
+    return status, "; ".join(filter(None, (f"{text} {where}", strained, _TRY.get(last.cause))))
 
 
 def _contact(states: tuple[State, ...], steps: list[Step], number: int) -> ContactHistory:

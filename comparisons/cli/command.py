@@ -11,6 +11,7 @@ from contextlib import ExitStack, contextmanager, redirect_stderr, suppress
 from functools import partial
 from importlib import import_module
 from pathlib import Path
+from shutil import get_terminal_size
 from textwrap import fill
 from typing import Any, NoReturn
 
@@ -86,8 +87,12 @@ def _refusals() -> tuple[type[Exception], ...]:
 
 
 def report(line: str) -> None:
-    """Report a line on standard error."""
-    print(printable(line), file=sys.stderr, flush=True)
+    """Report a line on standard error, on a terminal in lines that fit it."""
+    text = printable(line)
+    if sys.stderr.isatty():
+        width = get_terminal_size().columns
+        text = fill(text, width, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
+    print(text, file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -232,10 +237,12 @@ def add_command(commands: Any, name: str) -> None:
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser whose errors show arguments that a terminal would obey as escapes."""
+    """A parser whose errors are reported as all others, after the usage."""
 
     def error(self, message: str) -> NoReturn:
-        super().error(printable(message))
+        self.print_usage(sys.stderr)
+        report(f"{self.prog}: error: {message}")
+        raise SystemExit(BAD_INPUT)
 
 
 def command_parser() -> argparse.ArgumentParser:

@@ -4,6 +4,7 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from shutil import get_terminal_size
 from time import monotonic
 from typing import TYPE_CHECKING
 
@@ -40,11 +41,10 @@ def say(brief: "Brief") -> None:
 def ended(files: Iterable[object], reasons: Iterable[str] = (), status: int = STOPPED) -> int:
     """Name the files, and what is wrong; return the exit status."""
     files_named(*files)
-    found = DONE
-    for reason in reasons:
-        report(f"crossval: {reason}")
-        found = status
-    return found
+    wrong = [f"crossval: {reason}" for reason in reasons]
+    for line in wrong:
+        report(line)
+    return status if wrong else DONE
 
 
 def shown(found: "Found", folder: "Path") -> int:
@@ -74,8 +74,6 @@ def _line(*, quiet: bool) -> Iterator[Callable[[str], None]]:
     def draw(text: str) -> None:
         nonlocal drawn
         if shown and monotonic() - drawn >= REDRAW:
-            from shutil import get_terminal_size
-
             drawn = monotonic()
             print(f"\r{text[: get_terminal_size().columns - 1]}\x1b[K", end="", file=sys.stderr, flush=True)
 

@@ -33,11 +33,10 @@ def run(given: Namespace) -> int:
     more: dict[str, Any] = {}
     rule, lines = "", []
     if answer is None:
-        model = find(given.model or TSM.name)
-        options = chosen(given)
+        model, options = find(given.model or TSM.name), chosen(given)
         rule = model.rule(scene, options)
         with watching(model.name, quiet=given.quiet) as watch:
-            response = solve(scene, given.model or TSM.name, options, watch)
+            response = solve(scene, model.name, options, watch)
     else:
         scene, response = answer.scene, answer.response
         more, lines = {"accuracy": answer.as_dict()}, list(answer.lines())
@@ -85,9 +84,8 @@ def _found(response: Response, scene: Scene) -> list[tuple[str, str]]:
     for beam, found in frictions_found(response, scene).items():
         known = [value for value in found.tolist() if not isnan(value)]
         if known:
-            rows.append(
-                ("friction", f"{abs(known[-1]):.6g} by the reactions of {beam}, {given[beam]:g} in the scene")
-            )
+            said = f"{abs(known[-1]):.6g} by the reactions of {beam}, {given[beam]:g} in the scene"
+            rows.append(("friction", said))
     return rows
 
 

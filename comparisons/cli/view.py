@@ -34,9 +34,8 @@ def run(given: Namespace) -> int:
 
 def _target(out: Path | None, name: str) -> Path | None:
     """Return the folder to write to, tried out; None where a window is to be opened."""
-    if out is None and (
-        not sys.platform.startswith("linux") or "DISPLAY" in os.environ or "WAYLAND_DISPLAY" in os.environ
-    ):
+    windows = "DISPLAY" in os.environ or "WAYLAND_DISPLAY" in os.environ
+    if out is None and (windows or not sys.platform.startswith("linux")):
         return None
     return writable_folder(out or Path("out") / f"{name}-view", "view.png", "view.gif")
 

@@ -86,7 +86,7 @@ def in_units(scene: Scene, responses: Mapping[str, Response], t: float) -> list[
         row = {"": name, **dict(zip(columns, cells, strict=True))}
         if len(found) > 1:
             one, other = found[:2]
-            apart = (other - one) / abs(one) if one and other is not None else np.nan
+            apart = other / one - 1.0 if one and other is not None else np.nan
             row["apart"] = f"{100.0 * apart * (abs(apart) > LEAST):.2g} %" if np.isfinite(apart) else "-"
         rows.append(row)
     return rows

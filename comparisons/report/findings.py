@@ -193,7 +193,8 @@ def _stopped(rows: Sequence[Row]) -> Iterator[str]:
     # the message of the first run of a family stands for those that differ from it in numbers only
     for label, response in _together(stopped, lambda row: re.sub(r"[\d.]+", "", row.response.message)):
         reached = float(response.load_parameter.max(initial=0.0))
-        yield f"{label} did not complete ({response.ended}); errors are those up to load parameter {reached:.4g}."
+        told = f"; errors are those up to load parameter {reached:.4g}" if reached else ""
+        yield f"{label} did not complete ({response.ended}){told}."
 
 
 def _together(rows: Iterable[Row], key: Callable[[Row], str]) -> Iterator[tuple[str, Response]]:

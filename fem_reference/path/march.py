@@ -22,14 +22,7 @@ from fem_reference.path.critical import (
 )
 from fem_reference.path.ends import end_contact
 from fem_reference.path.events import SLIP_OFF, ContactEvent, changes, clearance, contact_event, first_event
-from fem_reference.path.track import (
-    LARGEST_DEPARTURE,
-    Accepted,
-    accept,
-    departure,
-    located,
-    predict,
-)
+from fem_reference.path.track import LARGEST_DEPARTURE, Accepted, accept, departure, located, predict
 from fem_reference.statement.arrays import Floats
 from fem_reference.statement.status import Status
 from fem_reference.system.model import Model

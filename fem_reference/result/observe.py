@@ -133,9 +133,8 @@ def section_forces(result: Result, strip: str, k: int, stations: Floats | None =
     X = gauss_stations(body) if stations is None else np.asarray(stations, dtype=float)
     own = body.strip
     points, shares, heights = section_points(own, body.mesh.places, body.mesh.edges, X)
-    weights = (own.width_at(X) * heights)[
-        :, None
-    ] * shares  # of the points ``(m, q)`` in integrals over the sections
+    # of the points ``(m, q)`` in integrals over the sections
+    weights = (own.width_at(X) * heights)[:, None] * shares
     u = result.states[k].u[body.part]
     F = gradient_at(body.mesh, u, points)
     W, P = body.law.energy(F), body.law.stress(F)

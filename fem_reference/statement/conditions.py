@@ -149,9 +149,8 @@ def require_known_ends(problem: Any) -> None:
             require(joint, "ends", fits, rule, end)
     require_distinct(problem, "joints", (end for joint in problem.joints for end in joint.ends))
     for field in ("supports", "springs"):
-        require_distinct(
-            problem, field, (first.get(item.node, item.node) for item in getattr(problem, field))
-        )
+        nodes = (first.get(item.node, item.node) for item in getattr(problem, field))
+        require_distinct(problem, field, nodes)
 
 
 def require_held(problem: Any, touching: Iterable[tuple[str, Point, Point]]) -> None:
@@ -181,8 +180,7 @@ def require_held(problem: Any, touching: Iterable[tuple[str, Point, Point]]) -> 
         for k in range(2 if joint.stiffness_of(end) == 0.0 else 3)
     ]
     free = np.abs(null_space(np.array(rows), rcond=1e-9)).max(axis=1, initial=0.0)
-    loose = ", ".join(
-        sorted(name for name, moves in zip(names, free.reshape(-1, 3), strict=True) if max(moves) > 1e-6)
-    )
-    rule = f"must hold {loose}, with the pins that touch at the start"
+    moved = zip(names, free.reshape(-1, 3), strict=True)
+    loose = sorted(name for name, moves in moved if max(moves) > 1e-6)
+    rule = f"must hold {', '.join(loose)}, with the pins that touch at the start"
     require(problem, "supports", not loose, rule, tuple(held for _, held in given))

@@ -15,13 +15,7 @@ from fem_reference.statement.checks import (
     require_finite,
     require_positive,
 )
-from fem_reference.statement.conditions import (
-    Joint,
-    Spring,
-    Support,
-    require_held,
-    require_known_ends,
-)
+from fem_reference.statement.conditions import Joint, Spring, Support, require_held, require_known_ends
 from fem_reference.statement.loads import Load, PointLoad, stage_of
 from fem_reference.statement.strip import Strip
 

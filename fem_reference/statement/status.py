@@ -18,6 +18,7 @@ class Status(Enum):
     )
     TOO_DEEP = "the penalty leaves a penetration above its limit"
     AUGMENTATION_LIMIT = "augmented Lagrangian steps did not reach the requested penetration"
+    INVERTED = "an element is turned inside out"
     UNBALANCED = "the clamps' reactions do not balance the contact forces"
     ILL_CONDITIONED = "the strip is too thin for this mesh in double precision: the round-off of nodal forces exceeds its bending forces"
     CUTBACK_FLOOR = "the load step fell below its floor"

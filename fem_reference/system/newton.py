@@ -7,7 +7,7 @@ import numpy as np
 from fem_reference.contact.contact import Touch
 from fem_reference.contact.end_section import ROTATION
 from fem_reference.contact.friction import mapped, slipping
-from fem_reference.statement.arrays import Floats
+from fem_reference.statement.arrays import Floats, determinant
 from fem_reference.statement.status import Status
 from fem_reference.system.state import State, imbalance
 from fem_reference.system.system import Correction, Tangent, linearise
@@ -195,8 +195,10 @@ def augmented(touch: Touch) -> Touch:
 
 
 def _verified(attempt: Attempt) -> Attempt:
-    """Check slip-off, penetration and balance of a converged state, and set which open contacts may close, see `Touch.armed`."""
+    """Check elements, slip-off, penetration and balance of a converged state, and set which open contacts may close, see `Touch.armed`."""
     state, model, touches = attempt.state, attempt.state.model, list[Touch]()
+    if any((determinant(F) <= 0).any() for F in state.gradients):
+        return replace(attempt, status=Status.INVERTED)
     for number, touch in enumerate(state.touches):
         behind, inside = touch.gap < -model.length_round_off, touch.at.inside
         # a node that goes round the end of an axis has left it; the ends of a thick strip are met

@@ -2,11 +2,12 @@
 
 import io
 import re
-from contextlib import redirect_stderr
+from contextlib import redirect_stderr, suppress
 from dataclasses import replace
 
 import pytest
 
+from comparisons.cli import main
 from comparisons.cli import screen as shown  # its clock: a command draws what its own speed lets it
 from comparisons.models import solve
 from comparisons.models.model import Options, Reached
@@ -53,6 +54,19 @@ def test_a_bar_on_a_terminal_fits_into_it(monkeypatch):
         watch(Reached(1.0, 5, ()))
     last = f"solid [{30 * '#'}] t = 1.0000, 12 iterations"[:39]
     assert stream.pictures == ["", whole[:39], last, ""]
+
+
+@pytest.mark.parametrize("mistake", ["--elements 0", "--model nothing", "--elements x"])
+def test_a_message_on_a_terminal_fits_into_it_and_is_one_line_elsewhere(monkeypatch, mistake):
+    monkeypatch.setenv("COLUMNS", "60")
+    folded, whole = Terminal(), io.StringIO()
+    for stream in (folded, whole):
+        with redirect_stderr(stream), suppress(SystemExit):
+            assert main(["solve", "ks-cantilever", *mistake.split()]) == 2
+    assert max(map(len, folded.getvalue().splitlines())) <= 60
+    message = whole.getvalue().splitlines()[-1]
+    assert len(message) > 60
+    assert " ".join(folded.getvalue().split()).endswith(message)
 
 
 @pytest.mark.parametrize("quiet", [False, True])

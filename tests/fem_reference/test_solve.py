@@ -6,7 +6,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import fem_reference as fr
-from tests.fem_reference.strips import CLAMP, PAIR, STRIP, B, H, loads, make_problem, rotation
+from tests.fem_reference.strips import CLAMP, PAIR, STRIP, B, E, H, held, load, loads, make_problem, rotation
 from tests.oracles.elastica import pinned, slip_off_height
 
 
@@ -60,25 +60,63 @@ def test_pin_that_jumps_past_the_clamp_is_not_taken_for_an_open_contact():
     assert np.all(result.contacts[PAIR].force > 0)
 
 
+def bent(path=None, **contact):
+    return make_problem(path, mesh=(10, 1), contact={"penalty": 1e4} | contact)
+
+
+def loaded(force=0.0, moment=0.0, **changes):
+    """Two or four elements that a load on the free end strains much; the load over E A, or over E I / L."""
+    EA, EI = E * B * 0.2, E * B * 0.2**3 / 12
+    end = load(at=1.0, force=(-force * EA, 0.0), moment=moment * EI)
+    return held(end, clamped=("start",), height=0.2, **changes)
+
+
+JAM = (0.681, -0.019), (0.291, 0.559), (0.735, 0.173)
+"""Path of a pin with which exact rods jam, see `tests/comparisons/exact/test_friction.py`."""
+SQUASHED = {"mesh": (2, 1), "material": "biot-linear"}
+TRIED = "a set of open, closed, sticking and slipping ones that was tried before (pin->cantilever), after load parameter 0.6928"
+CRUSHED = "turned inside out, after load parameter 0.99009"
+
+
 @pytest.mark.parametrize(
-    ("contact", "n", "settings", "status", "said"),
+    ("stops", "goes_on", "settings", "said"),
     [
-        ({}, 10, {"max_iterations": 2, "min_step": 0.02}, "CUTBACK_FLOOR", "because Newton's method did not converge"),
-        ({"penalty": 1e-3, "penetration": 1e-12}, 4, {"min_step": 0.1}, "CUTBACK_FLOOR", fr.Status.AUGMENTATION_LIMIT.value),
-        ({"penalty": 1.0}, 10, {}, "CUTBACK_FLOOR", fr.Status.TOO_DEEP.value),
-        ({}, 2, {"max_iterations": 3, "max_attempts": 3}, "STEP_LIMIT", ""),
+        (bent(penalty=1.0), bent(penalty=100.0), {}, (fr.Status.TOO_DEEP.value, "; raise its penalty")),
+        (bent(penalty=1.0), bent(penalty=1.0, penetration=1e-3), {}, ("or state the penetration",)),
+        (bent(penalty=1e-3, penetration=1e-12), bent(penetration=1e-12), {"min_step": 0.01}, (fr.Status.AUGMENTATION_LIMIT.value, "; raise its penalty")),
+        (bent(JAM, friction=1.086), bent(JAM, friction=0.5), {}, (TRIED, "; it may be jammed: try less friction")),
+        (loaded(1.01, **SQUASHED), loaded(0.9, **SQUASHED), {}, (CRUSHED, "; an element is compressed to")),
+    ],
+    ids=["soft", "without a penetration", "narrow", "jammed", "crushed"],
+)  # fmt: skip
+def test_a_step_that_grew_too_short_has_a_cause_and_what_is_to_try_helps(stops, goes_on, settings, said):
+    """Biot's stress -E is that of an element without length."""
+    settings = fr.Settings(branch="primary", **settings)
+    result = fr.solve(stops, loads(3), settings, throw=False)
+    assert result.status is fr.Status.CUTBACK_FLOOR
+    assert all(words in result.message for words in said), result.message
+    assert len(result.load_parameter) == len(result.states) < 3
+    assert fr.solve(goes_on, loads(3), settings).status is fr.Status.COMPLETED
+
+
+def test_a_smaller_load_tells_the_limit_point_that_steps_were_too_long_for():
+    far, near = (fr.solve(loaded(moment=m, mesh=(4, 1)), [1.0], throw=False) for m in (1000.0, 100.0))
+    assert "; a critical point may be near: try smaller loads" in far.message
+    assert near.status is fr.Status.LIMIT_POINT
+    assert near.reached == pytest.approx(10 * far.reached, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("n", "settings", "status", "said"),
+    [
+        (10, {"max_iterations": 2, "min_step": 0.02}, "CUTBACK_FLOOR", " because Newton's method did not converge within its iteration limit, after"),
+        (2, {"max_attempts": 3}, "STEP_LIMIT", " was reached, after load parameter 0."),
     ],
 )  # fmt: skip
-def test_a_path_that_ends_early_has_a_status_and_keeps_the_accepted_states(
-    contact, n, settings, status, said
-):
-    values = {"penalty": 1e4} | contact
-    result = fr.solve(
-        make_problem(mesh=(10, 1), contact=values), loads(n), fr.Settings(**settings), throw=False
-    )
+def test_a_path_that_ends_early_has_a_status_and_keeps_the_accepted_states(n, settings, status, said):
+    result = fr.solve(bent(), loads(n), fr.Settings(**settings), throw=False)
     assert result.status is fr.Status[status]
     assert said in result.message
-    assert "after load parameter" in result.message
     assert result.cutbacks > 0
     assert len(result.load_parameter) == len(result.states) < n
 

@@ -179,7 +179,7 @@ function drawChart(svg, data, track, kind) {
   };
 }
 
-// The names of lines behind their ends, from above, none over another.
+// The names of lines behind their ends, without the word that all have, from above, none over another.
 function nameLines(at, data, series, last) {
   const ends = series.map((values, number) => [at.y(values.findLast((value) => value != null) ?? NaN), number]);
   let free = 10;
@@ -187,7 +187,7 @@ function nameLines(at, data, series, last) {
     const place = Math.max(y + 4, free);
     free = place + 12;
     const name = element(at.plot, "text", { class: "name", "data-run": number, x: at.x(last) + 4, y: place });
-    name.textContent = data.runs[number].label;
+    name.textContent = data.runs[number].label.replace(/ elements?$/, "");
   }
 }
 

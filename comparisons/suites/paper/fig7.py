@@ -208,9 +208,11 @@ def cantilever_shapes(*, quick: bool, report: Report) -> Study:
             "paper_followed": bool(np.isclose(ends[TIMOSHENKO], off[rod], rtol=GIVEN["followed"])),
         })  # fmt: skip
         closed = int(np.flatnonzero(np.isfinite(own.arc_position))[-1])
-        shown = {"exact rod": rod, f"TSM mixed, {coarse} elements": beams}
-        title = f"{place}: slips off at {off[beams]:.4f} m"
-        panels[title] = list(shapes(scene, shown, [round(part * closed) for part in GIVEN["depths"]]))
+        shown = {f"TSM {one}, {coarse} elements": tried[one] for one in (TIMOSHENKO, MIXED)}
+        stop = f"timoshenko: {tried[TIMOSHENKO].status} after {ends[TIMOSHENKO]:.4f} m"
+        title, depths = f"{place}: slips off at {off[beams]:.4f} m\n{stop}", GIVEN["depths"]
+        drawn = shapes(scene, {"exact rod": rod, **shown}, [round(part * closed) for part in depths])
+        panels[title] = list(drawn)
     return Study(
         tables={"fig7a": histories},
         numbers={"starting_positions": lifts, "stopped": stops(runs)},

@@ -41,8 +41,7 @@ def ks_shapes(*, quick: bool, report: Report) -> Study:
         runs += rows
         points += _shape_rows(scene, responses)
         scenes.append(scene)
-        needed = {f"{name}, {run.label}": responses[run.label] for run in asked if run not in PAPER}
-        stopped += stops(needed)
+        stopped += stops({f"{name}, {run.label}": responses[run.label] for run in asked if run not in PAPER})
         if ROD.label in kept:
             histories = tracks(kept, ROD.label, scene)
             moving.append(motion_section(title, scene, kept, histories, focus=ROD.label))

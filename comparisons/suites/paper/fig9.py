@@ -9,6 +9,7 @@ import numpy as np
 from comparisons.answer import Array, Response
 from comparisons.models import ROD, TSM, solve
 from comparisons.models.model import Options
+from comparisons.models.shared import kept
 from comparisons.output import Report, Row
 from comparisons.report import palette
 from comparisons.report.motion import motion_section, tracks
@@ -44,7 +45,7 @@ COLOURS = {UPPER: palette.VERMILION, TIP: palette.PURPLE, LOWER: palette.BLUE}
 ARROW = 0.16
 """Length of the line of a force per force [m/N]."""
 Columns = Mapping[str, Array]
-"""The depth of the pin [m]; by pair, forces [N] and arc positions [m] of the beams and the exact rods, nan where the pair is open."""
+"""The depth of the pin [m]; by pair, forces [N] and arc positions [m] of the beams, the exact rods and the paper's element, nan where the pair is open."""
 
 
 def double_beam(*, quick: bool, report: Report) -> Study:
@@ -56,19 +57,26 @@ def double_beam(*, quick: bool, report: Report) -> Study:
     response = own if quick else solve(finer, TSM.name)
     report("exact rods")
     exact = solve(finer, ROD.name)
-    columns = {"depth": (travel := _travel(scene)) * response.load_parameter}
-    for pair, (prefix, run) in product(NAMES, (("", response), ("exact_", exact))):
-        contact = run.contacts[pair]
-        open_pair = np.isnan(contact.arc_position)
-        columns[f"{pair} {prefix}force"] = np.where(open_pair, np.nan, contact.force)
-        columns[f"{pair} {prefix}arc"] = contact.arc_position
-    events = [{**vars(one), "depth": travel * one.load_parameter} for one in response.events or ()]
     report("the paper's elements")
     tried = (TIMOSHENKO,) if quick else (TIMOSHENKO, SIMPLE, CANTILEVER)
+    attempts = [_attempt(scene, element, place) for element, place in product(tried, HAND_OVER)]
+    # with an element more than the scene has the pin starts on no node
+    paper = solve(finer, TSM.name, Options(element=TIMOSHENKO, elements=scene.beams[0].divisions + 1))
+    columns = {"depth": (travel := _travel(scene)) * response.load_parameter}
+    stopped = travel * float(paper.load_parameter.max(initial=0.0))
+    label = f"TSM {paper.setting} elements a beam: {paper.status} after {stopped:.3f} m"
+    label += f" ({scene.beams[0].divisions}: {attempts[0]['status']} after {attempts[0]['depth']:g} m)"
+    for pair, (prefix, run) in product(NAMES, (("", response), ("exact_", exact), ("paper_", paper))):
+        contact, missing = run.contacts[pair], len(columns["depth"]) - len(run.load_parameter)
+        force = np.where(np.isnan(contact.arc_position), np.nan, contact.force)
+        for name, values in (("force", force), ("arc", contact.arc_position)):
+            columns[f"{pair} {prefix}{name}"] = np.append(values, np.full(missing, np.nan))
+    events = [{**vars(one), "depth": travel * one.load_parameter} for one in response.events or ()]
     stages = _stages(columns["depth"])
-    drawn = {title: list(lines) for title, lines in (_stage(finer, response, stage) for stage in stages)}
+    runs = {label: paper, BEAMS: response}
+    drawn = {title: list(lines) for title, lines in (_stage(finer, runs, stage) for stage in stages)}
     quantities = {"force": "contact force [N]", "arc": "arc position [m]"}
-    forces = {title: _histories(columns, events, name) for name, title in quantities.items()}
+    forces = {title: _histories(columns, events, name, label) for name, title in quantities.items()}
     shown = tracks({BEAMS: response, RODS: exact}, RODS, finer)
     numbers = {
         "exact_events": EVENTS,
@@ -78,7 +86,8 @@ def double_beam(*, quick: bool, report: Report) -> Study:
         "stages": stages,
         "iterations": own.iterations,
         "seconds": own.wall_seconds,
-        "attempts": [_attempt(scene, element, place) for element, place in product(tried, HAND_OVER)],
+        "paper": {**kept(paper, "setting status"), "depth": stopped},
+        "attempts": attempts,
         "stopped": stops({one.setting or one.model: one for one in (own, response, exact)}),
     }
     rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
@@ -146,9 +155,9 @@ def _attempt(scene: Scene, element: str, place: float) -> Row:
     }
 
 
-def _stage(scene: Scene, response: Response, stage: Row) -> tuple[str, Iterator[Line]]:
+def _stage(scene: Scene, runs: Mapping[str, Response], stage: Row) -> tuple[str, Iterator[Line]]:
     """Title of a stage with the contact forces; both beams, the pin, and the forces as lines."""
-    k, forces, lines = stage["index"], list[str](), list[Line]()
+    k, forces, lines, response = stage["index"], list[str](), list[Line](), runs[BEAMS]
     for pair, name in NAMES.items():
         contact, vector = response.contacts[pair], response.contacts[pair].vector
         if np.isfinite(contact.arc_position[k]) and vector is not None:
@@ -158,10 +167,10 @@ def _stage(scene: Scene, response: Response, stage: Row) -> tuple[str, Iterator[
             lines.append(Line(f"force of {name}", ends.T, {"color": COLOURS[pair]}))
             forces.append(f"{name} {contact.force[k]:.3f} N")
     head = [f"({stage['key']}) {stage['title']},", f"depth {stage['depth']:.3f} m"]
-    return "\n".join([*head, *forces]), chain(shapes(scene, {BEAMS: response}, [k]), lines)
+    return "\n".join([*head, *forces]), chain(shapes(scene, runs, [k]), lines)
 
 
-def _histories(columns: Columns, events: Sequence[Row], quantity: str) -> Iterator[Line]:
+def _histories(columns: Columns, events: Sequence[Row], quantity: str, paper: str) -> Iterator[Line]:
     """A quantity of all contacts against the depth, with the exact rods and the events, those at one depth together."""
     at: dict[str, list[str]] = {}
     for one in (one for one in events if one["depth"] > 0.0):
@@ -170,6 +179,7 @@ def _histories(columns: Columns, events: Sequence[Row], quantity: str) -> Iterat
     for (pair, name), own in zip(NAMES.items(), values, strict=True):
         yield Line(RODS, (depth, columns[f"{pair} exact_{quantity}"]), {"color": "0.7", "linewidth": 5.0})
         yield Line(name, (depth, own), {"color": COLOURS[pair]})
+        yield Line(paper, (depth, columns[f"{pair} paper_{quantity}"]), {"color": "black", "linestyle": ":"})
     ends = np.nanmin(values), np.nanmax(values)
     for place, words in at.items():
         dotted = {"color": "0.4", "linestyle": ":"}

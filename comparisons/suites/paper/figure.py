@@ -72,13 +72,13 @@ def line(element: str) -> dict[str, Any]:
 
 
 def shapes(scene: Scene, runs: Mapping[str, Response], steps: Sequence[int]) -> Iterator[Line]:
-    """Yield the axes of all beams by runs over each other at some load parameters, below them the exact rods, and the pin."""
-    for (label, run), beam, k in product(runs.items(), scene.beams, steps):
-        axis = run.axis_line(beam.name, k)[1]
-        nodes = {"marker": ".", "markevery": max(1, (len(axis) - 1) // beam.divisions)}
-        exact = {"linewidth": 4.0, "alpha": 0.25}
-        style = nodes if find(run.model).meshed else exact
-        yield Line(label, axis.T, {"color": palette.colour(label), **style})
-    times = next(iter(runs.values())).load_parameter[steps]
-    x, y = zip(*(scene.pins[0].position(t) for t in times), strict=True)
+    """Yield the axes of all beams by runs over each other, the first one widest, at those load parameters that they reached, and the pin."""
+    for (above, (label, run)), beam, k in product(enumerate(runs.items()), scene.beams, steps):
+        if k < len(run.load_parameter):
+            axis = run.axis_line(beam.name, k)[1]
+            nodes = {"marker": ".", "markevery": max(1, (len(axis) - 1) // beam.divisions)}
+            wide = 3.6 / (1 + above)
+            style = {"color": palette.colour(label), "linewidth": wide, "markersize": 3 * wide}
+            yield Line(label, axis.T, style | (nodes if find(run.model).meshed else {"alpha": 0.25}))
+    x, y = zip(*(scene.pins[0].position(scene.times[k]) for k in steps), strict=True)
     yield Line("pin", (x, y), {"color": palette.PIN, "marker": "^", "linestyle": "none"})

@@ -121,6 +121,13 @@ def test_every_sentence_is_said_of_its_data_and_of_no_other(rows):
         (told(rows, law), ("softer", "solid Q2, ")),
     ):
         assert [word for word in words if word in found] == []
+    assert "(CUTBACK_FLOOR: no step). Not stated" in told(changed(rows, 1, **STOPPED | {"load_parameter": np.zeros(0)}), None, LEFT_OUT)  # fmt: skip
+    answer = findings(KS, rows, ROD.label, rows[2], None, {}).answer
+    moment = next(row for row in answer if row[""] == "support moment [N m]")
+    beam, solid, percent = float(moment["beam"]), float(moment["solid Q2"]), float(moment["apart"][:-2])
+    assert beam < solid < 0.0  # the smaller one is less, whatever its sign
+    assert percent == pytest.approx(100 * (solid / beam - 1), abs=0.05)
+    assert percent < 0.0
     for answers, cell in ((unstable, "no"), (partly, "in part")):
         assert [line(row)["stable"] for row in answers] == [
             cell if n == 2 else "yes" for n in range(len(answers))

@@ -32,6 +32,8 @@ const broken = () => {
 };
 const wide = () => [document.documentElement, ...all(".scroll, pre, figure")].filter((one) => one.scrollWidth > one.clientWidth + 1)
   .map((one) => `${one.localName} ${one.scrollWidth} in ${one.clientWidth}: ${one.textContent.trim().slice(0, 60)}`);
+const cut = () => all("text.name").filter((one) => one.getBoundingClientRect().right > one.closest("svg").getBoundingClientRect().right + 1)
+  .map((one) => one.textContent);
 for (const width of [390, 800, 1400]) {
   frame.style.width = `${width}px`;
   for (const one of all("details")) one.open = false;
@@ -39,7 +41,7 @@ for (const width of [390, 800, 1400]) {
   const first = { lead: bottom(".lead")[1], answer: bottom(".answer table")[1], picture: bottom(".picture svg.shapes, .first img, .picture table")[0] };
   for (const one of all("details")) one.open = true;
   dispatchEvent(new Event("resize"));
-  told[width] = { first, wide: wide(), broken: broken() };
+  told[width] = { first, wide: [...wide(), ...cut()], broken: broken() };
 }
 told.points = all(".points li").length;
 told.ground = getComputedStyle(document.body).backgroundColor;

@@ -90,6 +90,13 @@ def test_fig9(tmp_path, capsys, stated):
     assert [stage["key"] for stage in found["stages"]] == list("abcdef")
     depths = [stage["depth"] for stage in found["stages"]]
     assert depths == sorted(depths)
+    with (tmp_path / "fig9.csv").open() as file:
+        rows = [row for row in csv.DictReader(file) if row["pin->upper paper_force"]]
+    forces = np.array([[row[f"pin->upper {of}force"] for of in ("exact_", "paper_")] for row in rows], float)
+    assert forces[:, 1] == pytest.approx(forces[:, 0], rel=5e-3)
+    paper = {"setting": "timoshenko 11", "status": "TWO_CONTACTS", "depth": float(rows[-1]["depth"])}
+    assert found["paper"] == paper
+    assert 0.0 < exact["hand-over"] - paper["depth"] < 0.01
     beside = {one["place"]: (one["status"], one["at_hand_over"]) for one in found["attempts"]}
     assert beside == {0.8: ("CUTBACK_FLOOR", False), 0.81: ("TWO_CONTACTS", True)}
 
