@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tsm.elements.properties import Array, Properties, chord_rotation, unwind
+from tsm.elements.properties import Array, Properties, from_chord
 
 _PIECES, _ROUNDS = 8, 3
 """Pieces with a linear curvature each, and rounds of the iteration, each of which gains two powers of the length."""
@@ -33,10 +33,8 @@ def deflected_axes(
     the element, place xi and force on it. ``xi`` (m,): positions along the elements, as parts of the length. Returns
     (elements, m, 2).
     """
-    dx, dy = p.dx0 + x[3] - x[0], p.dy0 + x[4] - x[1]
-    turn = chord_rotation(p.dx0 * dy - p.dy0 * dx, p.dx0 * dx + p.dy0 * dy)
-    first, last = unwind(x[2] - turn)[:, None], unwind(x[5] - turn)[:, None]
-    chord = (dx + 1j * dy)[:, None]
+    dx, dy, first, last = (value[:, None] for value in from_chord(p, x))
+    chord = dx + 1j * dy
     stations = np.unique(
         np.concatenate([np.linspace(0, 1, _PIECES + 1), xi, [place for _, place, _ in contacts]])
     )

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from tsm.elements.properties import Properties, chord_rotation, tangent_of, unwind
+from tsm.elements.contact_law import Vector
+from tsm.elements.properties import Properties, chord_rotation, from_chord, tangent_of
+
+
+def _weights(xi: Any) -> tuple[Vector, Vector, Vector]:
+    """Deflections of an element by the tangents of both end slopes, and their first two derivatives."""
+    eta, turns = 1 - xi, 6 * xi
+    return (xi * eta * eta, -xi * xi * eta), (eta * (1 - 3 * xi), xi * (3 * xi - 2)), (turns - 4, turns - 2)
 
 
 class Curve:
@@ -16,9 +23,7 @@ class Curve:
     """
 
     def __init__(self, p: Properties, x: Any) -> None:
-        self.dx, self.dy = p.dx0 + (x[3] - x[0]), p.dy0 + (x[4] - x[1])
-        turn = chord_rotation(p.dx0 * self.dy - p.dy0 * self.dx, p.dx0 * self.dx + p.dy0 * self.dy)
-        theta_i, theta_j = unwind(x[2] - turn), unwind(x[5] - turn)
+        self.dx, self.dy, theta_i, theta_j = from_chord(p, x)
         square = self.dx * self.dx + self.dy * self.dy
         # derivatives of the chord's angle
         self.turn_x, self.turn_y = -self.dy / square, self.dx / square
@@ -29,27 +34,20 @@ class Curve:
 
     def deflection(self, xi: Any) -> tuple[Any, Any, Any]:
         """Return w and its first two derivatives in xi."""
-        a, b, eta = self.tan_i, self.tan_j, 1 - xi
-        return (
-            xi * eta * (eta * a - xi * b),
-            eta * (1 - 3 * xi) * a + xi * (3 * xi - 2) * b,
-            (6 * xi - 4) * a + (6 * xi - 2) * b,
-        )
+        w, slope, bend = (i * self.tan_i + j * self.tan_j for i, j in _weights(xi))
+        return w, slope, bend
 
     def deflection_slope(self, xi: Any) -> tuple[Any, tuple[Any, ...]]:
         """Return w and its derivatives in ``(dx, dy, theta_i, theta_j, xi)``."""
-        eta = 1 - xi
-        w, turn, *by = self._blend((xi * eta * eta, -xi * xi * eta), (eta * (1 - 3 * xi), xi * (3 * xi - 2)))
+        w, turn, *by = self._blend(*_weights(xi)[:2])
         return w, (turn * self.turn_x, turn * self.turn_y, *by)
 
     def deflection_bend(self, xi: Any) -> tuple[Any, ...]:
         """Second derivatives of w: the fifteen of the upper triangle, row by row."""
-        eta, near, far, a, b = 1 - xi, self.near, self.far, self.tan_i, self.tan_j
-        both = near + far
-        da, db = 1 + a * a, 1 + b * b
-        i, j = xi * eta * eta * da, -xi * xi * eta * db
+        near, far, a, b = self.near, self.far, self.tan_i, self.tan_j
+        both, da, db = near + far, 1 + a * a, 1 + b * b
+        (i, j), (si, sj) = ((i * da, j * db) for i, j in _weights(xi)[:2])
         ii, jj = 2 * a * i, 2 * b * j
-        si, sj = eta * (1 - 3 * xi) * da, xi * (3 * xi - 2) * db
         turn, slid = -both * (i + j), -both * (si + sj)
         with_i, with_j = -both * (near * ii + far * jj), -both * (far * ii + near * jj)
         twice = both * both * (ii + jj)
@@ -65,14 +63,13 @@ class Curve:
 
     def slope_angle(self, xi: Any) -> tuple[Any, tuple[Any, ...]]:
         """Angle of the tangent from the x axis, and its derivatives in ``(dx, dy, theta_i, theta_j, xi)``."""
-        inside = 6 * xi
-        slope, turn, *by = self._blend(((1 - xi) * (1 - 3 * xi), xi * (3 * xi - 2)), (inside - 4, inside - 2))
+        slope, turn, *by = self._blend(*_weights(xi)[1:])
         angle = chord_rotation(self.dy + slope * self.dx, self.dx - slope * self.dy)
         scale = 1 / (1 + slope * slope)
         turn = 1 + scale * turn
         return angle, (turn * self.turn_x, turn * self.turn_y, *(scale * part for part in by))
 
-    def _blend(self, h: tuple[Any, Any], dh: tuple[Any, Any]) -> tuple[Any, Any, Any, Any, Any]:
+    def _blend(self, h: Vector, dh: Vector) -> tuple[Any, Any, Any, Any, Any]:
         """``h_i(xi) tan s_i + h_j(xi) tan s_j`` and its derivatives by the chord's angle, both rotations, and xi."""
         near, far, a, b = self.near, self.far, self.tan_i, self.tan_j
         i, j = h[0] * (1 + a * a), h[1] * (1 + b * b)

@@ -46,6 +46,13 @@ def unwind(angle: Any) -> Any:
     return angle - math.tau * np.rint(np.real(angle) / math.tau)
 
 
+def from_chord(p: Properties, x: Any) -> tuple[Any, Any, Any, Any]:
+    """Chord (dx, dy) of elements with displacements x (6), and the rotations of both ends from it."""
+    dx, dy = p.dx0 + (x[3] - x[0]), p.dy0 + (x[4] - x[1])
+    turn = chord_rotation(p.dx0 * dy - p.dy0 * dx, p.dx0 * dx + p.dy0 * dy)
+    return dx, dy, unwind(x[2] - turn), unwind(x[5] - turn)
+
+
 def tangent_of(angle: Any) -> Any:
     """Tangent of an angle."""
     return math.tan(angle) if isinstance(angle, float) else np.tan(angle)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from itertools import islice, product
 
 import numpy as np
@@ -62,10 +63,8 @@ def least_push(point: Equilibrium, k: int) -> float:
 
 def leaves_cone(point: Equilibrium, k: int, drive: Drive) -> bool:
     """Whether the force of closed pair k, which sticks on the edge of its cone but for round-off, leaves it by its rate."""
-    by = point.rates(drive)
-    return by is not None and not _lasts(
-        point, by, k, grips(point.state)[k], traction(point, k), _flat(point.model)[1]
-    )
+    by, stick, flat = point.rates(drive), grips(point.state)[k], _flat(point.model)[1]
+    return by is not None and not _lasts(point, by, k, stick, traction(point, k), flat)
 
 
 def slip_rate(point: Equilibrium, rates: Rates, k: int) -> float:
@@ -94,16 +93,12 @@ def regripped(point: Equilibrium, drive: Drive, last: State) -> Equilibrium:
     every = [dict(zip(now, chosen, strict=True)) for chosen in islice(product(*choices), _MOST)]
     for least, still in zip(flat, (_STILL * model.length, 0.0), strict=True):
         leaving = {k: flat[1] if k in ended else least for k in here}
+        goes_on = partial(_going_on, point, drive, here, leaving, still)
         for chosen in every:
-            going = _going_on(point, chosen, drive, here, leaving, still)
-            if going is None:
-                continue
-            if any(
-                _going_on(point, other, drive, here, leaving, still)
-                for other in _reversed(point, chosen, here)
-            ):
-                raise StopError(Status.TWO_SLIPS)
-            return going
+            if going := goes_on(chosen):
+                if any(map(goes_on, _reversed(point, chosen, here))):
+                    raise StopError(Status.TWO_SLIPS)
+                return going
     raise StopError(Status.JAMMED)
 
 
@@ -171,16 +166,13 @@ def _reversed(point: Equilibrium, chosen: Grips, here: dict[int, Traction]) -> I
 
 def _going_on(
     point: Equilibrium,
-    chosen: Grips,
     drive: Drive,
     here: dict[int, Traction],
     leaving: dict[int, float],
     still: float,
+    chosen: Grips,
 ) -> Equilibrium | None:
-    """Equilibrium with contacts in the chosen states, if they can go on.
-
-    Forces may leave their cones at the rates `leaving`, and contacts slip faster than `still`.
-    """
+    """Equilibrium with contacts in the chosen states, if they go on: forces leave cones at most at these rates, slips are not still."""
     state = with_grips(point.state, chosen)
     going = point if state.touches == point.state.touches else point.with_state(state)
     by = going.rates(drive)

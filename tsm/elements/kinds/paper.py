@@ -37,7 +37,7 @@ import numpy as np
 from tsm.elements.beam import linear_coefficients
 from tsm.elements.contact_law import ContactLaw
 from tsm.elements.element_type import ClosedForm
-from tsm.elements.properties import Array, Properties, chord_rotation, unwind
+from tsm.elements.properties import Array, Properties, from_chord
 from tsm.elements.varied import STEP, derivatives, plain, varied
 
 Matrix = Callable[[Properties, Any], Array]
@@ -174,13 +174,13 @@ def response(
     """Forces (8,) on an element (6) and the node (2) that touches it, and their exact tangent, see `ContactLaw`."""
     moved = (-lever[0], -lever[1], x[3] - x[0], x[4] - x[1], x[2], x[5])
     rx, ry, du, dv, theta_i, theta_j = varied(moved)
-    dx, dy = p.dx0 + du, p.dy0 + dv
+    dx, dy, *turned = from_chord(p, (0.0, 0.0, theta_i, du, dv, theta_j))
     square = dx * dx + dy * dy
-    length, turn = np.sqrt(square), chord_rotation(p.dx0 * dy - p.dy0 * dx, p.dx0 * dx + p.dy0 * dy)
+    length = np.sqrt(square)
     tx, ty, xi = dx / length, dy / length, (dx * rx + dy * ry) / square
     if not INSIDE <= xi[-1].real <= 1 - INSIDE:
         xi = np.clip(xi.real, INSIDE, 1 - INSIDE) + 1j * xi.imag
-    v = np.array([unwind(theta_i - turn), unwind(theta_j - turn), tx * ry - ty * rx + side * offset])
+    v = np.array([*turned, tx * ry - ty * rx + side * offset])
     S, K, slope = element_force(p, plain(xi), plain(v))
     steps = S.real[:, None] + 1j * (K.real @ v.imag + np.outer(p.l0 * slope, xi.imag))
     steps[:, -1] = S
