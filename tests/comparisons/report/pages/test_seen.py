@@ -32,8 +32,9 @@ const broken = () => {
 };
 const wide = () => [document.documentElement, ...all(".scroll, pre, figure")].filter((one) => one.scrollWidth > one.clientWidth + 1)
   .map((one) => `${one.localName} ${one.scrollWidth} in ${one.clientWidth}: ${one.textContent.trim().slice(0, 60)}`);
-const cut = () => all("text.name").filter((one) => one.getBoundingClientRect().right > one.closest("svg").getBoundingClientRect().right + 1)
-  .map((one) => one.textContent);
+// a plot clips what is drawn in it
+const room = (plot) => plot.getScreenCTM().e + plot.width.baseVal.value;
+const cut = () => all("text.name").filter((one) => one.getBoundingClientRect().right > room(one.ownerSVGElement) + 1).map((one) => one.textContent);
 for (const width of [390, 800, 1400]) {
   frame.style.width = `${width}px`;
   for (const one of all("details")) one.open = false;
