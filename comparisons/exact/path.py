@@ -1,15 +1,22 @@
 """What an exact solution states along the path of a pin: states of contact, events, and the states of the rod in the units of the input."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from enum import StrEnum
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from comparisons.exact.contact import Cantilever, Real
 from comparisons.frozen import Value
+
+_RULES: dict[str, Callable[[float], bool]] = {
+    "positive": lambda x: x > 0.0,
+    "positive and finite": lambda x: 0.0 < x < inf,
+    "finite and not negative": lambda x: 0.0 <= x < inf,
+}
 
 
 class Outcome(StrEnum):
@@ -145,3 +152,19 @@ def _axis(rod: Cantilever, outcome: Outcome, z: Real, arcs: Real) -> Real:
     part, tail = rod.sections(z, np.minimum(arcs, z[3]) / z[3]), np.maximum(arcs - z[3], 0.0)
     x, y = part.x + tail * np.cos(part.theta), part.y + tail * np.sin(part.theta)
     return np.column_stack([x, y, part.theta])
+
+
+def require(rule: str, **values: float) -> None:
+    """Raise `ValueError` naming the first value that breaks a rule."""
+    for name, value in values.items():
+        if not _RULES[rule](value):
+            raise ValueError(f"{name} = {value}: must be {rule}")
+
+
+def vertices(points: ArrayLike) -> tuple[Real, Real]:
+    """Return the vertices (s, 2) of a path, and the fractions of its length there."""
+    pins = np.asarray(points, dtype=np.float64)
+    if pins.ndim != 2 or pins.shape[1] != 2 or not len(pins) or not np.all(np.isfinite(pins)):
+        raise ValueError(f"points, shape {pins.shape}: must be finite and of shape (s, 2), s >= 1")
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(pins, axis=0).T))])
+    return pins, np.asarray(way / (way[-1] or 1.0))

@@ -5,7 +5,7 @@ depends on history only through the place at which a stick began, so that it doe
 the path of the pin turns and where a phase ends, the state that follows is the one whose forces and slip have admissible rates.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from enum import IntEnum
 from itertools import pairwise
 from typing import NamedTuple
@@ -17,7 +17,7 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 
 from comparisons.exact.contact import Cantilever, Held, Linear, Phase, Real
-from comparisons.exact.path import Event, Outcome, RodPath, Row, collected
+from comparisons.exact.path import Event, Outcome, RodPath, Row, collected, require, vertices
 from comparisons.exact.section import Flexibility, rule
 
 _GAUSS, _WEIGHTS = rule(8)
@@ -305,13 +305,6 @@ class Follower:
         return max((item for item in roots if item[0] <= first + _TOGETHER), key=lambda item: item[1])
 
 
-def _require(rule: str, obeyed: Callable[[float], bool], **values: float) -> None:
-    """Raise `ValueError` naming the first value that breaks a rule."""
-    for name, value in values.items():
-        if not obeyed(value):
-            raise ValueError(f"{name} = {value}: must be {rule}")
-
-
 def rod_under_pin(
     points: ArrayLike,
     *,
@@ -362,17 +355,13 @@ def rod_under_pin(
     >>> [event.after.value for event in path.events]
     ['slip to clamp', 'stick', 'slip to tip']
     """
-    _require("positive and finite", lambda x: 0.0 < x < np.inf, EI=EI, length=length)
-    _require("positive", lambda x: x > 0.0, EA=EA, GA=GA)
-    sizes = {"friction": friction, "offset": offset, "radius": radius}
-    _require("finite and not negative", lambda x: 0.0 <= x < np.inf, **sizes)
-    pins = np.asarray(points, dtype=np.float64)
-    if pins.ndim != 2 or pins.shape[1] != 2 or not len(pins) or not np.all(np.isfinite(pins)):
-        raise ValueError(f"points, shape {pins.shape}: must be finite and of shape (s, 2), s >= 1")
-    way = np.append(0.0, np.cumsum(np.hypot(*np.diff(pins, axis=0).T)))
+    require("positive and finite", EI=EI, length=length)
+    require("positive", EA=EA, GA=GA)
+    require("finite and not negative", friction=friction, offset=offset, radius=radius)
+    pins, t = vertices(points)
     unit = EI / length**2
     flexibility = Flexibility(stretch=unit / EA, shear=unit / GA)
     rod = Cantilever(flexibility=flexibility, face=offset / length, radius=radius / length, friction=friction)
     follower = Follower(rod, pins[0] / length)
-    rows = list(follower.follow(pins / length, way / (way[-1] or 1.0)))
+    rows = list(follower.follow(pins / length, t))
     return collected(rod, rows, follower.events, EI, length)
