@@ -115,6 +115,12 @@ class Row(NamedTuple):
     iterations: int = 0
 
 
+def changed(t: float, before: Outcome, after: Outcome, z: Real) -> Event:
+    """Return a change of state at unknowns (4,)."""
+    arc, force = float(z[3]), float(np.hypot(*z[:2]))
+    return Event(load_parameter=float(t), before=before, after=after, arc_position=arc, magnitude=force)
+
+
 def collected(rod: Cantilever, rows: list[Row], events: Sequence[Event], EI: float, length: float) -> RodPath:
     """Return the states in the units of the input."""
     unit, energy = EI / length**2, EI / length

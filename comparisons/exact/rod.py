@@ -17,7 +17,7 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 
 from comparisons.exact.contact import Cantilever, Held, Linear, Phase, Real
-from comparisons.exact.path import Event, Outcome, RodPath, Row, collected, require, vertices
+from comparisons.exact.path import Event, Outcome, RodPath, Row, changed, collected, require, vertices
 from comparisons.exact.section import Flexibility, rule
 
 _GAUSS, _WEIGHTS = rule(8)
@@ -195,8 +195,7 @@ class Follower:
 
     def _change(self, state: Outcome) -> None:
         """Change the state, with the event."""
-        own = {"arc_position": float(self.z[3]), "magnitude": float(np.hypot(*self.z[:2]))}
-        self.events.append(Event(load_parameter=float(self.t), before=self.state, after=state, **own))
+        self.events.append(changed(self.t, self.state, state, self.z))
         self.state = state
 
     def _taken(self, end: float) -> bool:

@@ -17,7 +17,7 @@ from comparisons.answer import (
     Response,
     SupportHistory,
 )
-from comparisons.exact import Outcome, RodPath, rod_under_pin
+from comparisons.exact import Outcome, RodPath
 from comparisons.frozen import Value
 from comparisons.models.model import ModelError
 from comparisons.models.shared import POINTS
@@ -123,14 +123,9 @@ def _events(path: RodPath, local: RodScene) -> Iterator[ContactEvent]:
         )
 
 
-def local_response(local: RodScene, EA: float, GA: float) -> Response:
+def local_response(local: RodScene, path: RodPath, *, unknowns: int) -> Response:
     """Return the response in the scene's frame, up to the last load parameter at which an equilibrium was found."""
     scene, name, sense = local.scene, local.beam.name, local.sense
-    radius = scene.radius(local.contact)
-    path = rod_under_pin(
-        local.path, EA=EA, GA=GA, EI=local.beam.EI, length=local.beam.length,
-        friction=local.contact.friction, offset=local.offset - radius, radius=radius,
-    )  # fmt: skip
     times = np.array(scene.times)
     stop, reached = _end(path, local, times)
     met = _end_contact(local, path)
@@ -178,7 +173,7 @@ def local_response(local: RodScene, EA: float, GA: float) -> Response:
         supports={f"{name}.{local.clamp}": SupportHistory(force=-force, moment=moment)},
         tips={name: local.position(path.tip[at])},
         newton_iterations=np.diff(np.cumsum(path.iterations)[at], prepend=0),
-        unknowns=path.unknowns.shape[1],
+        unknowns=unknowns,
         axis_line=axis_line,
         **more,
     )

@@ -3,14 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import takewhile
-from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from comparisons.answer import Array, ContactHistory, FrictionHistory, Response, Sections, SupportHistory
 from comparisons.models.model import Model, ModelError, Options, Style, Watch, refused
-from comparisons.models.shared import POINTS, Axis, rows
+from comparisons.models.shared import POINTS, Axis, kept, rows
 from comparisons.models.theory import CHANGE, ROUND_OFF, Bending
 from comparisons.models.tsm import TSM, beams_refusal
 from comparisons.referee import Equilibrium, Verdict, certify
@@ -50,14 +49,17 @@ class Rod(Model):
         """Return the response to `scene`, not yet checked."""
         if self.by_referee(scene):
             return solve_rods(scene, watch)
+        from comparisons.exact import rod_under_pin
         from comparisons.models.cantilever import local_response, to_rod
 
         local = to_rod(scene)
-        return local_response(local, local.beam.EA, local.beam.GA)
+        section, radius = kept(local.beam, "EA GA EI length"), scene.radius(local.contact)
+        pin = {"friction": local.contact.friction, "offset": local.offset - radius, "radius": radius}
+        return local_response(local, rod_under_pin(local.path, **section, **pin), unknowns=4)
 
 
 class Elastica(Model):
-    """The elastica, which neither stretches nor shears, under one pin on its axis."""
+    """The elastica, which neither stretches nor shears, under one pin on its axis, in closed form."""
 
     name = "elastica"
     label = "elastica"
@@ -76,9 +78,12 @@ class Elastica(Model):
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:  # noqa: ARG002 - the elastica has no options
         """Return the response to `scene`, not yet checked."""
+        from comparisons.exact import elastica_under_pin
         from comparisons.models.cantilever import local_response
 
-        return local_response(_on_axis(scene), inf, inf)
+        local = _on_axis(scene)
+        sizes = kept(local.beam, "EI length")
+        return local_response(local, elastica_under_pin(local.path, **sizes), unknowns=1)
 
     def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:  # noqa: ARG002 - as above
         """Return the errors from missing stretch and shear."""

@@ -16,43 +16,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
-from scipy.special import beta, betainc, ellipeinc, ellipkinc, elliprd, elliprf
+from scipy.special import ellipeinc, ellipkinc, elliprd, elliprf
 
 Array = NDArray[np.float64]
 
 COMPLEX_STEP = 1e-60
 GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(40)
 GAUSS, WEIGHTS = (GAUSS + 1.0) / 2.0, WEIGHTS / 2.0
-
-
-def integrals(u: float) -> tuple[float, float, float]:
-    """Return the integrals of `1/sqrt(sin a)`, `cos a/sqrt(sin a)` and `sqrt(sin a)` from 0 to u by incomplete beta functions."""
-    first, second = (float(beta(a, a) * betainc(a, a, np.sin(u / 2.0) ** 2)) for a in (0.25, 0.75))
-    return first / np.sqrt(2.0), 2.0 * np.sqrt(np.sin(u)), second * np.sqrt(2.0)
-
-
-def direction(tc: float) -> float:
-    """Polar angle of a pin without friction, seen from the clamp, where the tangent has the angle tc."""
-    _, I1, I2 = integrals(tc)
-    return tc - float(np.arctan2(I2, I1))
-
-
-def fold() -> float:
-    """Tangent angle of the largest polar angle, the root of `1 + 2 k^2 + k cot tc = 0` with `k = I2/I1`."""
-
-    def slope(tc: float) -> float:
-        _, I1, I2 = integrals(tc)
-        return 1.0 + 2.0 * (I2 / I1) ** 2 + I2 / I1 / float(np.tan(tc))
-
-    return float(brentq(slope, 2.0, 3.1, xtol=1e-15))
-
-
-def pinned(x: float, y: float) -> tuple[float, float, float]:
-    """Force of a pin without friction at a place, its arc position and the tangent's angle there, on the branch of the straight beam."""
-    tc = brentq(lambda tc: direction(tc) - np.arctan2(y, x), 1e-6, fold(), xtol=1e-15, rtol=1e-15)
-    I0, I1, I2 = integrals(tc)
-    lam = np.hypot(x, y) / np.hypot(I1, I2)
-    return 1.0 / (2.0 * lam**2), lam * I0, tc
 
 
 class Loaded(NamedTuple):

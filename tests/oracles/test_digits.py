@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.special import ellipe, ellipk
 
-from comparisons.exact import rod_under_pin
+from comparisons.exact import elastica_under_pin, rod_under_pin
 from comparisons.models import solve
 from comparisons.models.model import Options
 from comparisons.scene import load_scene
@@ -83,8 +83,8 @@ def by_the_rod(name):
 
 
 def elastica_of_ks():
-    states = [elastica.pinned(1.0 - t, t * 2.0 / np.pi) for t in (0.25, 0.5, 0.75, 1.0)]
-    return [*(force for force, *_ in states), *(arc for _, arc, _ in states), -np.pi]
+    path = elastica_under_pin([(1.0 - t, t * 2.0 / np.pi) for t in (0.25, 0.5, 0.75, 1.0)])
+    return [*path.magnitude, *path.arc_position, -np.pi]
 
 
 def haringx():

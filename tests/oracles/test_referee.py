@@ -7,14 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from comparisons.exact import rod_under_pin
+from comparisons.exact import elastica_under_pin, rod_under_pin
 from comparisons.models import solve
 from comparisons.referee import Equilibrium, certify
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
 from tests.oracles.coupled import pair_of
 from tests.oracles.elastica import tip_under_dead_load
 from tests.oracles.frames import lee
-from tests.oracles.shooting import RIGID
 
 KS_PATH = ((1.0, 0.0), (0.0, 2.0 / np.pi))
 BEAM = BeamSpec(
@@ -70,7 +69,7 @@ def on_two_beams(exact: Equilibrium) -> list[Any]:
 
 
 SCENES: dict[str, tuple[Scene, Callable[[Equilibrium], list[Any]], Callable[[Scene], list[Any]]]] = {
-    "elastica": (PINNED, on_a_beam, lambda _: last(rod_under_pin(KS_PATH, length=1.0, **RIGID))),
+    "elastica": (PINNED, on_a_beam, lambda _: last(elastica_under_pin(KS_PATH))),
     "dead-load": (
         LOADED,
         lambda found: [found.ends["cantilever.end"]],

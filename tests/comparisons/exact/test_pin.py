@@ -3,25 +3,27 @@
 import numpy as np
 import pytest
 
-from comparisons.exact import Outcome, rod_under_pin
-from tests.oracles.elastica import direction, fold, pinned
+from comparisons.exact import Outcome, elastica_under_pin, rod_under_pin
 from tests.oracles.shooting import KS as SECTION
-from tests.oracles.shooting import RIGID, ks_pins
+from tests.oracles.shooting import ks_pins
 
 KS = {**SECTION, "length": 1.0}
 OPEN, CONTACT, SLIPPED, LOST = Outcome.OPEN, Outcome.CONTACT, Outcome.SLIPPED, Outcome.LOST
 
 
-def test_the_rod_without_stretch_and_shear_is_the_elastica_up_to_its_fold():
+def test_the_branch_of_the_straight_beam_ends_at_the_fold():
     """The tangent's angle grows with the direction of the pin up to 2.983418; beyond that direction the pin is lost."""
-    assert fold() == pytest.approx(2.983418, abs=5e-7)
-    turns = np.array([0.0, 0.3, 0.6, 0.9, 0.999, 1.001]) * direction(fold())
-    pins = np.column_stack([np.cos(turns), np.sin(turns)]) / 5.0
-    path = rod_under_pin(pins, length=1.0, **RIGID)
-    assert path.outcome == (*[CONTACT] * 5, LOST)
-    for k in range(1, 5):
-        found = path.magnitude[k], path.arc_position[k], path.shape(k, 2)[-1, 2]
-        assert found == pytest.approx(pinned(*pins[k]), rel=1e-11)
+
+    def at(direction):
+        return elastica_under_pin([(np.cos(direction) / 5.0, np.sin(direction) / 5.0)])
+
+    found, lost = 1.5, 2.5
+    while lost - found > 1e-13:
+        middle = (found + lost) / 2.0
+        found, lost = (found, middle) if at(middle).outcome[0] is LOST else (middle, lost)
+    angles = [at(direction).shape(0, 2)[-1, 2] for direction in np.linspace(0.1, found, 50)]
+    assert np.all(np.diff(angles) > 0.0)
+    assert angles[-1] == pytest.approx(2.983418, abs=2e-6)
 
 
 UP = [(0.8, -0.1), (0.8, 0.7), (0.8, 0.6), (0.8, -0.1), (0.8, 0.1), (0.8, 0.7)]
@@ -75,19 +77,22 @@ def test_a_pin_that_all_but_slides_into_the_clamp_is_lost_within_bounds():
 
 
 @pytest.mark.parametrize(
-    ("change", "message"),
+    ("call", "change", "message"),
     [
-        ({"EA": 0.0}, "EA = 0.0: must be positive"),
-        ({"GA": np.nan}, "GA = nan: must be positive"),
-        ({"EI": np.inf}, "EI = inf: must be positive and finite"),
-        ({"offset": -0.1}, "offset = -0.1: must be finite and not negative"),
-        ({"points": [[0.8, np.nan]]}, "points"),
-        ({"points": [[0.8, 0.1]]}, "must start below the rod"),
-        ({"friction": -0.1}, "friction = -0.1: must be finite and not negative"),
-        ({"offset": 0.1}, "must start below the rod"),
-        ({"radius": -1.0}, "radius = -1.0: must be finite and not negative"),
+        (rod_under_pin, {"EA": 0.0}, "EA = 0.0: must be positive"),
+        (rod_under_pin, {"GA": np.nan}, "GA = nan: must be positive"),
+        (rod_under_pin, {"EI": np.inf}, "EI = inf: must be positive and finite"),
+        (rod_under_pin, {"offset": -0.1}, "offset = -0.1: must be finite and not negative"),
+        (rod_under_pin, {"points": [[0.8, np.nan]]}, "points"),
+        (rod_under_pin, {"points": [[0.8, 0.1]]}, "must start below the rod"),
+        (rod_under_pin, {"friction": -0.1}, "friction = -0.1: must be finite and not negative"),
+        (rod_under_pin, {"offset": 0.1}, "must start below the rod"),
+        (rod_under_pin, {"radius": -1.0}, "radius = -1.0: must be finite and not negative"),
+        (elastica_under_pin, {"points": [[0.5, np.nan]]}, "points"),
+        (elastica_under_pin, {"EI": -1.0}, "EI = -1.0: must be positive"),
     ],
 )
-def test_bad_input(change, message):
+def test_bad_input(call, change, message):
+    given = {rod_under_pin: {"points": [[0.8, 0.0]], **KS}, elastica_under_pin: {"points": [[0.5, 0.1]]}}
     with pytest.raises(ValueError, match=message):
-        rod_under_pin(**{"points": [[0.8, 0.0]], **KS, **change})
+        call(**{**given[call], **change})
