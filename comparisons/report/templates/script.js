@@ -187,7 +187,7 @@ function nameLines(at, data, series, last) {
     const place = Math.max(y + 4, free);
     free = place + 12;
     const name = element(at.plot, "text", { class: "name", "data-run": number, x: at.x(last) + 4, y: place });
-    name.textContent = data.runs[number].label.replace(/ elements?$/, "");
+    name.textContent = data.runs[number].label.replace(/ elements?( a beam)?$/, "");
   }
 }
 

@@ -125,5 +125,6 @@ def test_all_with_full_settings(tmp_path, stated):
     simple, clamped = (np.array(areas[element]["median"]) for element in (SIMPLE, CANTILEVER))
     assert (simple / clamped).max() > 2.0
     stated("paper.gain", (simple / clamped).max(), relative=0.2)
-    assert (simple / clamped)[-2:] == pytest.approx(1.0, abs=0.1)
+    # at 1e-11 this ratio is one of round-off, too: 1.00 and 1.13 on two processors
+    assert (simple / clamped)[-2:] == pytest.approx(1.0, abs=0.2)
     assert max(areas["mixed"]["largest"]) <= 2e-8
