@@ -84,8 +84,9 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
     try:
         try:
             client = Client(address, timeout=CLUSTER_PATIENCE)
-        except (OSError, ValueError) as error:
-            raise WorkersError(f"cluster {address}", str(error)) from None
+        except (OSError, ValueError, AssertionError) as error:
+            # a busy machine does not start the client's loop within the ten seconds that distributed asserts
+            raise WorkersError(f"cluster {address}", str(error) or "the client did not start") from None
         with client:
             executor: Executor = client.get_executor(retries=1, pure=False)
             try:
