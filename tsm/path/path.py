@@ -41,7 +41,8 @@ _PROMISED, _FIRST, _SHORT = 0.8, 0.4, 0.3
 a state before which none is known; longest that is tried without a look at its prediction. Most longer ones would be refused."""
 _LEAST, _MOST, _NEAR, _VALUES = 6, 9, 2, 5
 """Data of the prediction, a polynomial through values of the last states, and slopes by their own tangents: at least
-and at most so many, two more after every prediction from which no more than two iterations led to equilibrium; where no tangent is usable, the last."""
+and at most so many, two more after every prediction from which no more than two iterations led to equilibrium. The last
+number is that of the values where no tangent is usable."""
 SHORTEST = 1e-6
 """Step of the load parameter below which the tangent alone predicts: the others would be round-off."""
 FOLD = 100.0
