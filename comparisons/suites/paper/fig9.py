@@ -61,11 +61,12 @@ def double_beam(*, quick: bool, report: Report) -> Study:
     tried = (TIMOSHENKO,) if quick else (TIMOSHENKO, SIMPLE, CANTILEVER)
     attempts = [_attempt(scene, element, place) for element, place in product(tried, HAND_OVER)]
     # with an element more than the scene has the pin starts on no node
-    paper = solve(finer, TSM.name, Options(element=TIMOSHENKO, elements=scene.beams[0].divisions + 1))
+    given = scene.beams[0].divisions
+    paper = solve(finer, TSM.name, Options(element=TIMOSHENKO, elements=given + 1))
     columns = {"depth": (travel := _travel(scene)) * response.load_parameter}
     stopped = travel * float(paper.load_parameter.max(initial=0.0))
-    label = f"TSM {paper.setting} elements a beam: {paper.status} after {stopped:.3f} m"
-    label += f" ({scene.beams[0].divisions}: {attempts[0]['status']} after {attempts[0]['depth']:g} m)"
+    label = f"TSM {TIMOSHENKO}, {given + 1} elements a beam:\n{paper.status} after {stopped:.3f} m,\n"
+    label += f"with {given} {attempts[0]['status']} after {attempts[0]['depth']:g} m"
     for pair, (prefix, run) in product(NAMES, (("", response), ("exact_", exact), ("paper_", paper))):
         contact, missing = run.contacts[pair], len(columns["depth"]) - len(run.load_parameter)
         force = np.where(np.isnan(contact.arc_position), np.nan, contact.force)
