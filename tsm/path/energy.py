@@ -192,14 +192,16 @@ def spent(track: Track, end: Equilibrium, drive: Drive) -> tuple[Array, list[Equ
         between.append(reached)
         return power(between[-1], drive)
 
-    def over(start: float, stop: float, first: Array | None, last: Array | None) -> Array:
-        length = stop - start
-        inner = [at(start + part * length) for part in LOBATTO]
-        powers = np.array([value for value in (first, *inner, last) if value is not None])
-        if first is None or last is None or (len(powers) < 5 and length > _SHORT):
-            raise RefusedError
-        if len(powers) < 5:
-            return length * (first + last) / 2
+    def over(start: float, stop: float, first: Array, last: Array) -> Array:
+        length, inner = stop - start, []
+        for part in LOBATTO:
+            value = at(start + part * length)
+            if value is None and length > _SHORT:
+                raise RefusedError
+            if value is None:
+                return length * (first + last) / 2
+            inner.append(value)
+        powers = np.array([first, *inner, last])
         apart = np.abs((_FIVE - _THREE) @ powers).max() * length
         if apart <= _APART * newton.model.force_scale * newton.model.length or length <= least:
             return length * (_FIVE @ powers)
@@ -208,5 +210,7 @@ def spent(track: Track, end: Equilibrium, drive: Drive) -> tuple[Array, list[Equ
         return late + over(start, middle, first, powers[2])
 
     least = (end.t - begin.t) / 2**_DEPTH
-    total = over(begin.t, end.t, power(begin, drive), power(end, drive))
-    return total, sorted(between, key=lambda point: point.t)
+    first, last = power(begin, drive), power(end, drive)
+    if first is None or last is None:
+        raise RefusedError
+    return over(begin.t, end.t, first, last), sorted(between, key=lambda point: point.t)

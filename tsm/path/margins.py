@@ -173,9 +173,12 @@ class Search(NamedTuple):
 
         ``after``: margins at the goal. If a force or position jumps, the step is too long.
         """
-        located = [(n, self._located(n, after[n].value)) for n in numbers]
+        # the smallest first: one that is zero needs no search, and may refuse the step
+        by_value = sorted(numbers, key=lambda n: self.margins[n].value)
+        located = {n: self._located(n, after[n].value) for n in by_value}
         # at one load parameter a release comes last: another contact that opens may take its pull away
-        n, event = min(located, key=lambda item: (item[1].t, self.margins[item[0]].kind is EventKind.RELEASE))
+        n = min(numbers, key=lambda n: (located[n].t, self.margins[n].kind is EventKind.RELEASE))
+        event = located[n]
         measured = self.margins if event is self.last else self.measure(event)
         first = measured[n]
         past = (other for other in measured if other.value < -_COINCIDENT)
