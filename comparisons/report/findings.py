@@ -245,12 +245,12 @@ def _judged(response: Response) -> str:
 
 
 def _size(value: float) -> str:
-    """Return a relative error in percent, or as a power of ten where it is small.
+    """Return a relative error in percent, by one digit where it is small.
 
     >>> _size(0.0041), _size(-3e-12)
-    ('0.41 %', '-3e-12')
+    ('0.41 %', '-3e-10 %')
     """
-    return f"{100.0 * value:.2g} %" if abs(value) >= 1e-6 else f"{value:.0e}"
+    return f"{100.0 * value:{'.2g' if abs(value) >= 1e-6 else '.0e'}} %"
 
 
 def _listed(names: Iterable[str]) -> str:

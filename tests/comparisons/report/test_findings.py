@@ -102,7 +102,7 @@ def test_every_sentence_is_said_of_its_data_and_of_no_other(rows):
         (told(with_error(rows, 2, force=1e-3)), "; TSM exact, accuracy"),
         (plain, "; elastica, stretch and shear."),
         (told(rows, law), f"{DIFFER}contact force a->b, at load parameter 0.75: by 0.25 % of its value there, made of 0.3 % material law and -0.05 % solid mesh (the solid's elements)."),
-        (told(rows, budget(solid_mesh=1e-11)), "In the error budget, beams and solid agree to 1e-11."),
+        (told(rows, budget(solid_mesh=1e-11)), "In the error budget, beams and solid agree to 1e-09 %."),
         (told(with_error(rows, 3, arc=inf)), APART),
         (told(changed(rows, 1, **STOPPED)), "TSM timoshenko, 20 elements did not complete (CUTBACK_FLOOR: no step); errors are those up to load parameter 0.4."),
         (told(changed(changed(rows, 0, **STOPPED | {"message": "no step 1"}), 1, **STOPPED | {"message": "no step 2.5"})), "timoshenko (2 runs) did not complete (CUTBACK_FLOOR: no step 1); "),
