@@ -18,7 +18,7 @@ import tsm
 from comparisons.cli import main
 
 LIMIT = 180.0
-"""Processor seconds from which a run hangs, ten times that by the clock; the slowest takes some 5 on a quiet machine, and up to six times
+"""Processor seconds from which a run hangs, ten times that by the clock; the slowest takes 14 on a quiet machine, and up to six times
 as long on a busy one."""
 OWN_STDERR = os.dup(2)
 """Where the stack of a process goes that is deaf to the limit."""
