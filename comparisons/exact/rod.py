@@ -291,8 +291,9 @@ class Follower:
         for ending in Ending:
             if after.margins[ending] >= -self.edge:
                 continue
-            goes_on = start.t - phase.since > _TOGETHER or ending is Ending.SLIP_OFF or not self.rod.friction
-            if before is start and start.margins[ending] <= self.edge and goes_on:
+            goes_on = before is start and (start.t - phase.since > _TOGETHER or not self.rod.friction)
+            at_edge = max(start.margins[ending], before.margins[ending]) <= self.edge
+            if at_edge and (goes_on or ending is Ending.SLIP_OFF):
                 return start.t, ending
             if before.margins[ending] <= self.edge:
                 return None
