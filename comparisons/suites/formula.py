@@ -13,13 +13,23 @@ def _language() -> Any:
     return language
 
 
+@cache
+def _compiled_formula(text: str) -> Any:
+    return _language().compile_expression(text, undefined_to_none=False)
+
+
+@cache
+def _compiled_template(text: str) -> Any:
+    return _language().from_string(text)
+
+
 def value_of(formula: str, **names: Any) -> Any:
     """Return the value of a formula in what its names stand for.
 
     >>> value_of("a ** 2 - b.c | abs", a=3.0, b={"c": -1.0})
     8.0
     """
-    return _language().compile_expression(formula, undefined_to_none=False)(**names)
+    return _compiled_formula(formula)(**names)
 
 
 def sentence(template: str, **names: Any) -> str:
@@ -28,4 +38,4 @@ def sentence(template: str, **names: Any) -> str:
     >>> sentence("{{ '%.2f' % a }} m", a=1.0)
     '1.00 m'
     """
-    return str(_language().from_string(template).render(names))
+    return str(_compiled_template(template).render(names))

@@ -130,6 +130,7 @@ def test_no_file_of_a_user_is_replaced(line, scene, capsys):
 
 
 @pytest.mark.usefixtures("scene")
+@pytest.mark.slow_at("run bench --quiet --out")
 @pytest.mark.parametrize("line", INTO_A_FOLDER)
 def test_a_folder_of_a_user_is_left_alone(line, capsys):
     """Before anything is computed, but for a few files whose names are not known by then."""
