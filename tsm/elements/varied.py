@@ -25,7 +25,7 @@ def varied(values: Any) -> Array:
 def plain(values: Any) -> Any:
     """Values (..., n + 1) without a step; they are complex only where the numbers are."""
     last = np.asarray(values)[..., -1]
-    return last if np.any(last.imag) else last.real
+    return last if np.any(np.abs(last.imag) > 0.0) else last.real  # nan has no step
 
 
 def derivatives(values: Any) -> Array:

@@ -107,6 +107,7 @@ class Newton:
         inside = max(forces.inside for forces in system.groups)
         return max(largest(system.residual, self.scale), inside / SHARP)
 
+    @np.errstate(all="ignore")  # an iterate may be anywhere; what is not finite has a status
     def solve(self, start: State, drag: Drag | None = None, *, across: Array | None = None) -> Equilibrium:
         """Iterate from a start to equilibrium, or to the last iterate with its status.
 
