@@ -129,7 +129,7 @@ def comparison(bench):
         spent.clear()
         began = time.perf_counter()
         with tempfile.TemporaryDirectory() as folder:
-            compare.compare(KS, Path(folder), lambda _: None)
+            compare.compare(KS, Path(folder), lambda _: None).write(Path(folder))
         return (time.perf_counter() - began) / sum(spent)
 
     with ExitStack() as patches:
