@@ -174,8 +174,7 @@ def power(point: Equilibrium, drive: Drive) -> Array | None:
 def spent(track: Track, end: Equilibrium, drive: Drive) -> tuple[Array, list[Equilibrium]]:
     """Work and dissipation from the last point of a path to the next one, and points in between, in order.
 
-    Refuses a step with a singular tangent at an end, or without an equilibrium in between. A short part without
-    one counts by the mean of its ends.
+    Refuses a step with a singular tangent at an end, or a part without an equilibrium inside, unless it is short.
     """
     newton, begin = track.newton, track.last
     near, trail = _NEAR * (end.t - begin.t), [begin.state, end.state]
@@ -206,8 +205,7 @@ def spent(track: Track, end: Equilibrium, drive: Drive) -> tuple[Array, list[Equ
         if apart <= _APART * newton.model.force_scale * newton.model.length or length <= least:
             return length * (_FIVE @ powers)
         middle = start + length / 2
-        late = over(middle, stop, powers[2], last)
-        return late + over(start, middle, first, powers[2])
+        return over(middle, stop, powers[2], last) + over(start, middle, first, powers[2])
 
     least = (end.t - begin.t) / 2**_DEPTH
     first, last = power(begin, drive), power(end, drive)
