@@ -47,7 +47,7 @@ APART = 0.045
 def plot_work(trade: Trade, *paths: Path) -> None:
     """Draw the errors of all settings over their seconds, against the reference and against each model's limit."""
     panels = [partial(_draw, trade=trade, own=own) for own in (False, True)]
-    title = f"{trade.scene.name}: what accuracy costs\n[n]: load steps"
+    title = f"{trade.scene.name}: what accuracy costs over {trade.scene.load_parameters} load steps"
     draw(panels, *paths, tall=3.95, title=title, columns=1, sharex=True, sharey=True)
 
 
@@ -77,17 +77,25 @@ def _draw(axes: Any, trade: Trade, *, own: bool) -> None:
 
 
 def _draw_front(axes: Any, points: Sequence[Line], model: str) -> None:
-    """Draw a front, and name its points to their left where they lie apart."""
+    """Draw a front, and name its points where they lie apart: beams, which are cheaper, to the left, solids above to the right."""
     spent, errors = ([one[name] for one in points] for name in ("spent", "own_error"))
     axes.plot(spent, errors, color=MODELS[model].colour, linewidth=1.6, drawstyle="steps-post", zorder=1)
     low, high = np.log(axes.get_ylim())
-    style = {"va": "center", "ha": "right", "fontsize": "small"}
+    style: dict[str, Any] = {"va": "center", "ha": "right", "offset": (-7, 0)}
+    if model == SOLID.name:
+        style = {"va": "bottom", "ha": "left", "offset": (3, 3)}
     last = np.inf
     for one in points:
         height = np.log(one["own_error"])
         if height < last - APART * (high - low):
             last = height
-            tag(axes, one["setting"], (one["spent"], one["own_error"]), (-7, 0), **style)
+            tag(
+                axes,
+                one["setting"].partition(" [")[0],
+                (one["spent"], one["own_error"]),
+                fontsize="small",
+                **style,
+            )
 
 
 SETTING = (
