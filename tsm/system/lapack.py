@@ -11,7 +11,6 @@ import sys
 from functools import cache
 from importlib.machinery import PathFinder
 from importlib.util import module_from_spec
-from pathlib import Path
 from typing import Any
 
 _NAME = "scipy.linalg._flapack"
@@ -23,7 +22,7 @@ def lapack() -> Any:
     if "scipy.linalg" not in sys.modules:
         import scipy
 
-        spec = PathFinder.find_spec(_NAME, [str(Path(scipy.__file__).parent / "linalg")])
+        spec = PathFinder.find_spec(_NAME, [f"{folder}/linalg" for folder in scipy.__path__])
         if spec is not None and spec.loader is not None:
             module = module_from_spec(spec)
             spec.loader.exec_module(module)
