@@ -291,9 +291,9 @@ class Follower:
         for ending in Ending:
             if after.margins[ending] >= -self.edge:
                 continue
-            goes_on = before is start and (start.t - phase.since > _TOGETHER or not self.rod.friction)
             at_edge = max(start.margins[ending], before.margins[ending]) <= self.edge
-            if at_edge and (goes_on or ending is Ending.SLIP_OFF):
+            has_lasted = start.t - phase.since > _TOGETHER or not self.rod.friction
+            if at_edge and (ending is Ending.SLIP_OFF or (before is start and has_lasted)):
                 return start.t, ending
             if before.margins[ending] <= self.edge:
                 return None

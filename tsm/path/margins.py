@@ -174,8 +174,8 @@ class Search(NamedTuple):
         ``after``: margins at the goal. If a force or position jumps, the step is too long.
         """
         # a margin that is zero needs no search, and may refuse the step
-        inward = sorted(numbers, key=lambda n: self.margins[n].value)
-        located = {n: self._located(n, after[n].value) for n in inward}
+        smallest_first = sorted(numbers, key=lambda n: self.margins[n].value)
+        located = {n: self._located(n, after[n].value) for n in smallest_first}
         # at one load parameter a release comes last: another contact that opens may take its pull away
         n = min(numbers, key=lambda n: (located[n].t, self.margins[n].kind is EventKind.RELEASE))
         event = located[n]

@@ -89,13 +89,8 @@ def _draw_front(axes: Any, points: Sequence[Line], model: str) -> None:
         height = np.log(one["own_error"])
         if height < last - APART * (high - low):
             last = height
-            tag(
-                axes,
-                one["setting"].partition(" [")[0],
-                (one["spent"], one["own_error"]),
-                fontsize="small",
-                **style,
-            )
+            words, place = one["setting"].partition(" [")[0], (one["spent"], one["own_error"])
+            tag(axes, words, place, fontsize="small", **style)
 
 
 SETTING = (
