@@ -3,11 +3,19 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import takewhile
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from comparisons.answer import Array, ContactHistory, FrictionHistory, Response, Sections, SupportHistory
+from comparisons.answer import (
+    Array,
+    ContactHistory,
+    FrictionHistory,
+    Response,
+    Sections,
+    SupportHistory,
+)
+from comparisons.models.cantilever import RodScene, to_rod
 from comparisons.models.model import Model, ModelError, Options, Style, Watch, refused
 from comparisons.models.shared import POINTS, Axis, kept, rows
 from comparisons.models.theory import CHANGE, ROUND_OFF, Bending
@@ -16,16 +24,13 @@ from comparisons.referee import Equilibrium, Verdict, certify
 from comparisons.scene import Scene
 from comparisons.scene.keys import SPECIAL
 
-if TYPE_CHECKING:
-    from comparisons.models.cantilever import RodScene
-
 
 class Rod(Model):
     """Exact rods."""
 
     name = "rod"
     label = "exact rod"
-    libraries = ("comparisons.models.cantilever",)
+    libraries = ("comparisons.models.rod_response",)
     meshed = False
     keys = SPECIAL.keys()
     reference = Options()
@@ -33,8 +38,6 @@ class Rod(Model):
 
     def by_referee(self, scene: Scene) -> bool:
         """Whether the scene is not one rod under one pin."""
-        from comparisons.models.cantilever import to_rod
-
         return refused(to_rod, scene) is not None
 
     def setting(self, scene: Scene, options: Options) -> str:  # noqa: ARG002 - the rod has no options
@@ -50,7 +53,7 @@ class Rod(Model):
         if self.by_referee(scene):
             return solve_rods(scene, watch)
         from comparisons.exact import rod_under_pin
-        from comparisons.models.cantilever import local_response, to_rod
+        from comparisons.models.rod_response import local_response
 
         local = to_rod(scene)
         section, radius = kept(local.beam, "EA GA EI length"), scene.radius(local.contact)
@@ -63,7 +66,7 @@ class Elastica(Model):
 
     name = "elastica"
     label = "elastica"
-    libraries = ("comparisons.models.cantilever",)
+    libraries = ("comparisons.models.rod_response",)
     meshed = False
     rod = False
     style = Style(colour="#444444", width=1.2)
@@ -79,7 +82,7 @@ class Elastica(Model):
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:  # noqa: ARG002 - the elastica has no options
         """Return the response to `scene`, not yet checked."""
         from comparisons.exact import elastica_under_pin
-        from comparisons.models.cantilever import local_response
+        from comparisons.models.rod_response import local_response
 
         local = _on_axis(scene)
         sizes = kept(local.beam, "EI length")
@@ -95,10 +98,8 @@ class Elastica(Model):
         }
 
 
-def _on_axis(scene: Scene) -> "RodScene":
+def _on_axis(scene: Scene) -> RodScene:
     """Return `scene` in the frame of the one cantilever that a pin on its axis pushes."""
-    from comparisons.models.cantilever import to_rod
-
     local = to_rod(scene, "the elastica")
     if local.contact.friction:
         raise ModelError("the elastica has no friction here, the scene has some")

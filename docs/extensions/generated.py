@@ -13,8 +13,8 @@ import tsm
 from comparisons.answer.file import SCHEMA
 from comparisons.answer.quantities import QUANTITIES
 from comparisons.models import MODELS
-from comparisons.models.cantilever import STOPS
 from comparisons.models.outside.child import ProgramStatus
+from comparisons.models.rod_response import STOPS
 from comparisons.output import markdown
 from comparisons.referee import Verdict
 from comparisons.scene import Scene, load_scene, read_scene
