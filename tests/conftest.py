@@ -12,6 +12,8 @@ import pytest
 from tests.stated import MEASURED, check, left, record
 
 CI = os.environ.get("CI") == "true"
+LEFT: list[str] = []
+"""What a whole run says of the pages' numbers; it stands last, where a log is read first."""
 
 
 def pytest_configure() -> None:
@@ -75,6 +77,7 @@ def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestR
     return report
 
 
+@pytest.hookimpl(trylast=True)
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     """Print what tests have recorded to be listed, whether they pass or not."""
     for reports in terminalreporter.stats.values():
@@ -82,6 +85,8 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
             for name, line in getattr(report, "user_properties", ()):
                 if name == "listed" and report.when == "call":
                     terminalreporter.write_line(str(line))
+    for line in LEFT:
+        terminalreporter.write_line(line)
 
 
 @pytest.hookimpl(optionalhook=True)
@@ -99,7 +104,6 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
     elif config.args_source is pytest.Config.ArgsSource.TESTPATHS and not (
         config.option.markexpr or config.option.keyword or config.option.collectonly or session.exitstatus
     ):
-        lines = list(left(write=config.getoption("write_results")))
-        print("", *lines, sep="\n")
-        if any("measured it" not in line or CI for line in lines):
+        LEFT.extend(left(write=config.getoption("write_results")))
+        if any("measured it" not in line or CI for line in LEFT):
             session.exitstatus = pytest.ExitCode.TESTS_FAILED
