@@ -195,7 +195,7 @@ def test_closed_streams(closed, end, tmp_path):
 NO_CLUSTER = ["run", "s.toml", "--out", "out", "--workers", "tcp://127.0.0.1:1"]
 
 
-@pytest.mark.slow_at("skfem")
+@pytest.mark.slow_at("skfem", "distributed")
 @pytest.mark.parametrize("library", ["numpy", "skfem", "distributed"])
 def test_a_missing_library(library, in_folder):
     Path("s.toml").write_text('[study]\nname = "s"\nscene = "ks-cantilever"\n[[run]]\nmodel = "rod"\n')

@@ -79,6 +79,7 @@ TRIED = "a set of open, closed, sticking and slipping ones that was tried before
 CRUSHED = "turned inside out, after load parameter 0.99009"
 
 
+@pytest.mark.slow_at("jammed", "without a penetration")
 @pytest.mark.parametrize(
     ("stops", "goes_on", "settings", "said"),
     [
@@ -100,6 +101,7 @@ def test_a_step_that_grew_too_short_has_a_cause_and_what_is_to_try_helps(stops, 
     assert fr.solve(goes_on, loads(3), settings).status is fr.Status.COMPLETED
 
 
+@pytest.mark.slow
 def test_a_smaller_load_tells_the_limit_point_that_steps_were_too_long_for():
     far, near = (fr.solve(loaded(moment=m, mesh=(4, 1)), [1.0], throw=False) for m in (1000.0, 100.0))
     assert "; a critical point may be near: try smaller loads" in far.message

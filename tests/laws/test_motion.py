@@ -16,6 +16,7 @@ MOTIONS = (
 )
 
 
+@pytest.mark.slow_at("referee-special-58", "mixed-friction-10")
 @pytest.mark.parametrize(("model", "name"), cases())
 def test_an_answer_moves_with_its_scene(model: str, name: str) -> None:
     own = scene(name)
@@ -26,6 +27,7 @@ def test_an_answer_moves_with_its_scene(model: str, name: str) -> None:
         assert off[0] <= within(model), (change, off)
 
 
+@pytest.mark.slow_at("referee-special-58")
 @pytest.mark.parametrize(("model", "name"), cases())
 def test_start_and_end_of_a_beam_are_names(model: str, name: str) -> None:
     """All beams are stated from the other end, and one of them."""

@@ -8,6 +8,7 @@ from tests.laws.transform import Change, apart
 from tests.stated import ROOT
 
 
+@pytest.mark.slow_at("mixed-friction-12")
 @pytest.mark.parametrize(("model", "name"), [*cases(), ("mixed", "friction-12")])
 def test_an_answer_does_not_depend_on_the_units(model: str, name: str) -> None:
     """In ``friction-12`` a contact turns a beam without bending it, and the rate of its force is round-off."""
@@ -25,6 +26,7 @@ def test_the_round_off_of_a_stiff_hinge_has_a_unit() -> None:
         assert answer(Change(length=length).scene(own), "exact").completed
 
 
+@pytest.mark.slow_at("solid-special-58")
 @pytest.mark.parametrize(
     ("model", "name"), [("mixed", "ks-cantilever"), ("mixed", "special-37"), ("solid", "special-58")]
 )

@@ -149,7 +149,9 @@ BY_DEFINITION = {
 """Identities and orders, which no program computes."""
 
 
-@pytest.mark.slow_at("hysteresis", "ks-friction", "ks-tied-tip", "crossed-beams", "ks-friction-elastica")
+@pytest.mark.slow_at(
+    "hysteresis", "ks-friction", "ks-tied-tip", "crossed-beams", "ks-friction-elastica", "two-pins"
+)
 @pytest.mark.parametrize("name", ORACLES)
 def test_an_oracle_has_the_values_of_the_manual(name: str) -> None:
     problem = PROBLEMS[name]

@@ -48,6 +48,7 @@ CASES = [
 ]
 
 
+@pytest.mark.slow_at("mixed-just past the clamp", "exact-past the clamp", "exact-over the clamp")
 @pytest.mark.parametrize(("element", "name"), CASES)
 def test_events_are_located_however_long_the_step(element, name):
     """A step ends where the path turns: what lies between its ends may be a slip-off, or the whole of a contact."""

@@ -88,6 +88,7 @@ def test_a_stick_that_ends_within_round_off_of_its_force_is_a_slip(EA):
     assert result.contacts[PAIR].force[-1] == pytest.approx(0.554506, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_arc_length_control_follows_a_slip_and_ends_where_it_sticks():
     traced = tsm.trace(rubbed(0.3), arc_length=0.02, steps=400, throw=False)
     assert traced.status is tsm.Status.CONTACT_CHANGED

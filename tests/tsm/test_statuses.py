@@ -71,6 +71,7 @@ CASES = {  # structure, how many load parameters are reached, what the message s
 }  # fmt: skip
 
 
+@pytest.mark.slow_at("falling")
 @pytest.mark.parametrize("name", CASES)
 def test_a_failure_has_its_name_and_keeps_what_was_reached(name):
     problem, reached, said = CASES[name]

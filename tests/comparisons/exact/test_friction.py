@@ -54,6 +54,7 @@ def checked(points, friction, lost=1e-13, **given):
     return path
 
 
+@pytest.mark.slow_at("0.5")
 @pytest.mark.parametrize("friction", [0.1, 0.5])
 def test_elastica_on_the_ks_path(friction):
     """A rod without stretch and shear has the values of the first integral; `H = m^2/2 EI + N = F_t` at the clamp gives the friction alone."""

@@ -276,6 +276,7 @@ TEXTS: dict[str, tuple[Callable[[str], str], str]] = {
 NEAR = ("--allowance", "0.01")
 
 
+@pytest.mark.slow_at("slip is stated too late", "stick is not stated", "stick is stated too early")
 @pytest.mark.parametrize("forgery", FORGED)
 def test_a_forged_file_is_refused(forgery, judged):
     name, forge, words = FORGED[forgery]
@@ -296,6 +297,7 @@ def test_a_damaged_file_is_one_line(damage, judged):
     assert words in line
 
 
+@pytest.mark.slow_at("rubbed")
 @pytest.mark.parametrize(
     "name", ["ks", "mixed", "solid", "again", "portal", "steel", "steel solid", "rubbed"]
 )

@@ -123,6 +123,7 @@ def of_another_history(response: Response, scene: Scene, other: Callable[[int, A
     )
 
 
+@pytest.mark.slow
 def test_equilibria_of_another_history_are_refused():
     """They obey every equation of their own: a stick from another place, and a force that leans the wrong way."""
     scene = rough("ks-cantilever")

@@ -82,6 +82,7 @@ def test_two_contacts_at_one_place_are_no_equilibrium(apart, to, words):
     assert words in found.message
 
 
+@pytest.mark.slow
 def test_both_branches_of_a_symmetric_bifurcation_are_right():
     """The straight path ends there, and the bent branches lead back to it."""
     whole = scene_of("column", load_parameters=3, pins=(), contacts=())

@@ -171,7 +171,7 @@ CASES: dict[str, tuple[float, Callable[[float], str], str]] = {
 """Value, what is said of an answer at a size, and a part of the sentence."""
 
 
-@pytest.mark.slow_at("rubbing.FALL", "rubbing.ENERGY")
+@pytest.mark.slow_at("rubbing.FALL", "rubbing.ENERGY", "rubbing.LAW")
 @pytest.mark.parametrize("name", CASES)
 def test_a_threshold_lies_where_it_is_stated(name, stated):
     value, said, words = CASES[name]

@@ -12,6 +12,7 @@ from tests.comparisons.suite.conftest import MANY, crossval, rows
 HEAD = '[study]\nname = "mine"\nscene = "ks-cantilever"\nrepeats = 1\n'
 
 
+@pytest.mark.slow
 def test_cases_are_all_combinations_in_the_order_of_the_file(many):
     found = rows(many)
     assert [

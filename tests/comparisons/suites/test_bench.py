@@ -101,6 +101,7 @@ def test_the_set_is_what_its_page_says():
     )
 
 
+@pytest.mark.slow
 def test_scenes_are_made_anew_byte_for_byte(make, monkeypatch):
     """A part of the set; `test_the_set_is_made_anew_byte_for_byte` has all."""
     names = few(monkeypatch, "touch-again", "tapered-spring", "straightened-arc")
@@ -206,6 +207,7 @@ def test_a_client_is_right_on_what_it_answers(name, tmp_path):
     assert re.search(rf"^all +961 +{least} +{961 - least} +0 ", out, re.M)
 
 
+@pytest.mark.slow
 def test_the_command_answers_for_models(in_folder, monkeypatch, capsys):
     """With their settings; what a model cannot state is refused, what it does not reach has the reason, and one that states nothing ends it."""
     few(monkeypatch, "straightened-arc", "clamped-column", "ks-friction")

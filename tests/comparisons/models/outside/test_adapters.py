@@ -63,6 +63,7 @@ def answered(name: str, scene: Scene, elements: int) -> Response:
     return certified(solve(scene, name, Options(elements=elements)), scene)
 
 
+@pytest.mark.slow
 @needs("opensees")
 def test_opensees_loses_the_contact_in_long_steps_and_reports_success(tmp_path):
     response = certified(solve(KS, in_steps("opensees", 50, tmp_path), Options(elements=20)), KS)
@@ -80,7 +81,7 @@ KNOWN = {
 tenth; else a bound. In the portal it is the displacement, by .022, from the shear that OpenSees's elements leave out."""
 
 
-@pytest.mark.slow_at(*(KNOWN.keys() - {"opensees-tip", "opensees-roll", "exudyn-tip", "exudyn-pin"}))
+@pytest.mark.slow_at(*(KNOWN.keys() - {"opensees-tip", "opensees-roll", "exudyn-tip"}))
 @pytest.mark.parametrize("case", [row(case.partition("-")[0], case) for case in KNOWN])
 def test_a_program_has_its_known_error(case, tmp_path):
     (given, elements, error), (name, _, what) = KNOWN[case], case.partition("-")
