@@ -88,7 +88,7 @@ def test_where_there_is_no_material_force(kind):
     assert set(few.material_force) == ({"lower"} if kind == "own end touches" else set())
 
 
-@pytest.mark.slow_at("axis-0.1", "axis-0.5", "face-0.1", "face-0.5")
+@pytest.mark.slow_at("axis-0.1", "axis-0.5", "face-0.1", "face-0.3", "face-0.5")
 @pytest.mark.parametrize("friction", [0.1, 0.3, 0.5])
 @pytest.mark.parametrize("surface", ["axis", "face"])
 def test_the_clamp_shows_the_friction_of_the_contact(friction, surface):

@@ -73,7 +73,7 @@ def gradient(X, Y):
     return np.array([[1 + 0.2 * np.cos(a), 0.1 * np.cos(a)], [-0.12 * np.sin(b), 1 + 0.24 * np.sin(b)]])
 
 
-@pytest.mark.slow_at("Q2-full-biot-linear")
+@pytest.mark.slow_at("Q2-full-biot-linear", "Q2-st-venant-kirchhoff")
 @pytest.mark.parametrize(
     ("element", "material"),
     [

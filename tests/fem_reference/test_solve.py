@@ -79,7 +79,7 @@ TRIED = "a set of open, closed, sticking and slipping ones that was tried before
 CRUSHED = "turned inside out, after load parameter 0.99009"
 
 
-@pytest.mark.slow_at("jammed", "without a penetration")
+@pytest.mark.slow_at("jammed", "without a penetration", "crushed")
 @pytest.mark.parametrize(
     ("stops", "goes_on", "settings", "said"),
     [

@@ -150,7 +150,14 @@ BY_DEFINITION = {
 
 
 @pytest.mark.slow_at(
-    "hysteresis", "ks-friction", "ks-tied-tip", "crossed-beams", "ks-friction-elastica", "two-pins"
+    "hysteresis",
+    "ks-friction",
+    "ks-tied-tip",
+    "crossed-beams",
+    "ks-friction-elastica",
+    "two-pins",
+    "slip-off-in-shear",
+    "williams-toggle",
 )
 @pytest.mark.parametrize("name", ORACLES)
 def test_an_oracle_has_the_values_of_the_manual(name: str) -> None:

@@ -35,6 +35,7 @@ def test_a_pin_that_is_led_behind_the_clamp_meets_a_limit_point(part, end):
     assert tsm.solve(structure, [1.0], throw=False).status is tsm.Status.LIMIT_POINT
 
 
+@pytest.mark.slow
 def test_what_a_snap_releases_counts_the_work_of_loads_along_a_beam():
     """A bar pushed down through its support by a free mast: the load on the mast does the same work as one on the bar."""
     section, load, high = tsm.Section(EA=100.0, GA=40.0, EI=30.0), 5.0, 0.4

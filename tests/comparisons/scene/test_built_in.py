@@ -22,7 +22,7 @@ ELEMENTS = ("exact", "mixed")
 DEAR = [
     name
     for name in NAMES
-    if name in ("double-beam", "crossed-beams", "ks-tied-tip", "pinned-column")
+    if name in ("double-beam", "crossed-beams", "ks-tied-tip", "pinned-column", "two-pins")
     or any(spec.friction for spec in load_scene(name).contacts)
 ]
 

@@ -126,7 +126,17 @@ def test_a_tail_without_load_takes_few_elements():
     assert error < difference(equal, exact, scene, "force") / 10
 
 
-@pytest.mark.slow_at("density-mixed", "turn-mixed", "hinge-mixed", "taper-mixed", "force_per_length-mixed")
+@pytest.mark.slow_at(
+    "density-free",
+    "turn-free",
+    "force_per_length-free",
+    "stage-free",
+    "density-mixed",
+    "turn-mixed",
+    "hinge-mixed",
+    "taper-mixed",
+    "force_per_length-mixed",
+)
 @pytest.mark.parametrize("element", ["free", "mixed"])
 @pytest.mark.parametrize("key", SPECIAL)
 def test_the_promise_is_kept_with_every_special_key(key, element):

@@ -49,6 +49,7 @@ def test_bounds(scene, bounds, status, tmp_path, capsys):
     assert all("allowed" in case.findtext("system-out") for case in suite)
 
 
+@pytest.mark.slow_at("nodes = [0.3, 0.5]-options2-mixed 3", "elements = 7-options4-exact 1")
 @pytest.mark.parametrize(
     ("line", "options", "said"),
     [
