@@ -17,11 +17,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legint, legvander
-from numpy.polynomial.polynomial import polyder, polyval
+from numpy.polynomial.polynomial import polyder
 
 from comparisons.answer import Array, Ints
 from comparisons.referee.layout import Layout
-from comparisons.referee.rod import Piece
+from comparisons.referee.rod import Piece, value
 
 DEGREE = 16
 """Degree p of the rotation on an element."""
@@ -122,7 +122,7 @@ def _at_points(pieces: Piece, given: Any) -> Any:
     """Gradient of the energy in theta, theta_xi, c_x, c_y, half and s, and the strain energy, at complex values (6, ...) of these."""
     theta, bent, *c, half, s = given
     EI, a, b, N, Q, n, way = pieces.strained(np.array(c), s, theta)
-    EI_s, EA_s, GA_s, *load = polyval(s, polyder(pieces.coefficients), tensor=False)
+    EI_s, EA_s, GA_s, *load = value(polyder(pieces.coefficients), s)
     stored, moment = (a * N**2 + b * Q**2) / 2.0, EI * bent / half
     f = (n * way).sum(axis=0) - stored
     f_s = pieces.curvature * (way[0] * n[1] - way[1] * n[0]) - load[0] * way[0] - load[1] * way[1]

@@ -33,6 +33,14 @@ def units_of(scene: Scene) -> Units:
     return length, max(beam.EI for beam in scene.beams) / length**2
 
 
+def value(table: Array, s: Any) -> Any:
+    """Polynomials (k, ...) at arc positions by Horner's rule; constants stay as they are, so that a uniform rod costs nothing."""
+    found = table[-1]
+    for row in table[-2::-1]:
+        found = row + found * s
+    return found
+
+
 class Strained(NamedTuple):
     """EI, 1/EA, 1/GA, N, Q, force vector n (2, ...) and `way`, ``r'`` minus the undeformed tangent (2, ...), at points of a rod."""
 
@@ -62,7 +70,7 @@ class Piece(NamedTuple):
 
     def EI(self, s: Any) -> Any:
         """Return the bending stiffness."""
-        return polyval(s, self.coefficients[:, 0], tensor=False)
+        return value(self.coefficients[:, 0], s)
 
     def between(self, a: Any, b: Any) -> Array:
         """Vector (2, ...) between two points of the undeformed axis."""
@@ -72,11 +80,11 @@ class Piece(NamedTuple):
 
     def force(self, c: Any, s: Any) -> Any:
         """Force ``c - W`` (2, ...)."""
-        return c - polyval(s, self.coefficients[:, 3:], tensor=False)
+        return c - value(self.coefficients[:, 3:], s)
 
     def strained(self, c: Any, s: Any, theta: Any) -> Strained:
         """Return the forces, and ``r' = (1 + N/EA) d1 + (Q/GA) d2`` minus the undeformed tangent, without cancellation."""
-        EI, EA, GA, *W = polyval(s, self.coefficients, tensor=False)
+        EI, EA, GA, *W = value(self.coefficients, s)
         stretch, shear, n, half = 1.0 / EA, 1.0 / GA, c - W, theta / 2.0
         angle, chord = theta + self.angle(s), 2.0 * np.sin(half)
         x, y = np.cos(angle), np.sin(angle)
