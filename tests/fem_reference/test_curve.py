@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline
 
 # Orders and derivatives of the curve: answers hold it to about 1e-4 only.
 from fem_reference.contact.curve import ContactCurve, averaging, cardinal_slopes, closest
@@ -23,15 +22,6 @@ def test_curve_is_twice_continuously_differentiable():
         before, after = (curve.at(np.nextafter(station, side), *splines) for side in (0, 1))
         np.testing.assert_allclose(curve.basis(station), curve.at(station, *splines)[:2], rtol=0, atol=1e-12)
         np.testing.assert_allclose(before / scale, after / scale, rtol=0, atol=1e-11)
-
-
-@pytest.mark.parametrize("m", [3, 46, 700])
-def test_slopes_in_windows_equal_the_slopes_of_the_whole_spline(m):
-    rng = np.random.default_rng(m)
-    s = np.cumsum(rng.uniform(0.5, 2, m))
-    values = rng.standard_normal(m)
-    slopes = cardinal_slopes(s) @ values
-    np.testing.assert_allclose(slopes, CubicSpline(s, values)(s, 1), rtol=0, atol=2e-14)
 
 
 def test_average_leaves_cubics_and_reaches_no_further():

@@ -9,7 +9,6 @@ import pytest
 from scipy.linalg import block_diag, null_space
 
 import fem_reference as fr
-from fem_reference.contact.friction import force_before_slip  # a turn within a step is rare
 from fem_reference.path.march import slipped_off  # no path is known on which Newton's method diverges so
 from fem_reference.solid.assembly import deformation_gradient
 from fem_reference.solid.factor import full
@@ -227,22 +226,6 @@ def test_a_step_of_displacement_control_that_is_not_finite_ends_without_a_state(
     rate = linearise(start).rate(0.0, 1e-6).u
     control = Control(origin=start.u, c=rate / np.linalg.norm(rate), delta=np.inf)
     assert iterate(start, control).status is Status.SINGULAR
-
-
-def test_slip_begins_with_the_force_before_it_unless_the_contact_has_turned():
-    assert [force_before_slip(1, 0.5, last) for last in (0.3, 0.0, -0.4)] == [0.3, 0.0, 0.5]
-
-
-def test_a_correction_that_grows_is_halved_and_still_converges(monkeypatch):
-    """A pin far away in one step, with full corrections and with corrections that must not double."""
-    attempts = []
-    for growth in (1e9, 2.0):
-        monkeypatch.setattr(newton, "_LARGEST_GROWTH", growth)
-        attempts.append(solved(pin_at(0.7, 0.3)))
-    full, damped = attempts
-    assert full.status is damped.status is Status.CONVERGED
-    assert damped.iterations > full.iterations
-    assert damped.state.touches[0].force == pytest.approx(full.state.touches[0].force, rel=1e-8)
 
 
 def dense_index(state):

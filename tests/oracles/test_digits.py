@@ -149,16 +149,10 @@ BY_DEFINITION = {
 """Identities and orders, which no program computes."""
 
 
-@pytest.mark.slow_at(
-    "hysteresis",
-    "ks-friction",
-    "ks-tied-tip",
-    "crossed-beams",
-    "ks-friction-elastica",
-    "two-pins",
-    "slip-off-in-shear",
-    "williams-toggle",
-)
+DEAR = "hysteresis ks-friction ks-tied-tip crossed-beams ks-friction-elastica two-pins slip-off-in-shear williams-toggle"
+
+
+@pytest.mark.slow_at(*DEAR.split())
 @pytest.mark.parametrize("name", ORACLES)
 def test_an_oracle_has_the_values_of_the_manual(name: str) -> None:
     problem = PROBLEMS[name]
