@@ -33,7 +33,7 @@ def units_of(scene: Scene) -> Units:
     return length, max(beam.EI for beam in scene.beams) / length**2
 
 
-def value(table: Array, s: Any) -> Any:
+def value(table: Any, s: Any) -> Any:
     """Polynomials (k, ...) at arc positions by Horner's rule; constants stay as they are, so that a uniform rod costs nothing."""
     found = table[-1]
     for row in table[-2::-1]:

@@ -84,13 +84,11 @@ def _record(header: str, kind: type[Record], leave: Collection[str] = ()) -> str
 
 def messages() -> str:
     """Return one section for every group of messages: an example of each line, then its cure."""
-    parts = []
-    for title, group in groups().items():
-        parts.append(f"## {title}")
-        parts += [
-            f"```{{code-block}} text\n:class: message\n\n{one.example}\n```\n\n{one.cure}" for one in group
-        ]
-    return "\n\n".join(parts)
+    shown = "```{{code-block}} text\n:class: message\n\n{}\n```\n\n{}"
+    return "\n\n".join(
+        "\n\n".join([f"## {title}", *(shown.format(one.example, one.cure) for one in group)])
+        for title, group in groups().items()
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,11 +149,8 @@ def _keys(schema: dict[str, Any], inside: dict[str, Any], prefix: str) -> Iterat
     """Yield the rows of the keys of a table, and below each those of what it holds: tables by name, a list of tables, a table."""
     for key, item in inside.get("properties", {}).items():
         yield f"`{prefix}{key}`", _sort(_resolved(schema, item)), line(item["description"])
-        for held, between in (
-            (item.get("additionalProperties"), ".NAME."),
-            (item.get("items"), "[]."),
-            (item, "."),
-        ):
+        tables = {".NAME.": item.get("additionalProperties"), "[].": item.get("items"), ".": item}
+        for between, held in tables.items():
             if isinstance(held, dict):
                 yield from _keys(schema, _resolved(schema, held), f"{prefix}{key}{between}")
 
