@@ -157,18 +157,21 @@ def start_up(bench):
                 [sys.executable, "-c", code], check=True, capture_output=True, env=environment
             )
 
-        numpy, tsm_import, help_command, whole = bench.seconds(
+        numpy, tsm_import, help_command, check, usual, whole = bench.seconds(
             9,
             clock=children,
             import_numpy=started("import numpy"),
             import_tsm=started("import tsm"),
             crossval_help=started(CROSSVAL.format(["--help"])),
+            crossval_check=started(CROSSVAL.format(["check", "ks-cantilever"])),
+            crossval_solve_as_it_is=started(CROSSVAL.format(["solve", "ks-cantilever"])),
             crossval_solve=started(CROSSVAL.format(SOLVE)),
         )
     with redirect_stdout(io.StringIO()):
         (solution,) = bench.seconds(clock=time.process_time, in_place=lambda: main(SOLVE))
     bench.add(Gate("import tsm over import numpy, processes", tsm_import / numpy, 2.5))
     bench.add(Gate("crossval --help over import numpy, processes", help_command / numpy, 1.5))
+    bench.add(Gate("crossval check over crossval solve, processes", check / usual, 1.0))
     rest = (whole - solution) / numpy
     bench.add(Gate("crossval solve without its solution over import numpy", rest, 3))
 
