@@ -115,14 +115,14 @@ class _Pair:
     def passed_through(self) -> Passage | None:
         """The first passage of the open node that is certain, or one that is not; None without one, and after a slip-off."""
         # axes and ends move in straight lines; where a node gets behind the beam, along the path that is followed
-        contact, unsure, now = self.response.contacts[self.spec.pair], None, self.moment(-1)
+        contact, unsure, moment = self.response.contacts[self.spec.pair], None, cache(self.moment)
         closed, stated = np.append(False, contact.force > 0.0), self.response.events is not None
         for k, t in enumerate(map(float, self.response.load_parameter)):
             if t >= contact.slip_off:
                 break
-            last, now, held = now, self.moment(k), bool(closed[k])
             if closed[k + 1]:
                 continue
+            last, now, held = moment(k - 1), moment(k), bool(closed[k])
             depth = self.depth(last, now, held)
             if depth < -_UNSURE or (held and not stated and self.place(now)[1] < 0.0):
                 continue
