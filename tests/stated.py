@@ -21,7 +21,7 @@ MARK = re.compile(r"<!--([a-z][\w.-]*)(?: x\d+)?-->")
 NUMBER = re.compile(r"(?<![\w.`-])(-?(?:\d{1,3}(?:,\d{3})+|\d*\.?\d+(?:e-?\d+)?))(?![\w`])( %)?")
 
 EPS = sys.float_info.epsilon
-LOOSE, LOOSE_ROUND_OFF, ROUND_OFF = 3.0, 100.0, 1e-10
+LOOSE, LOOSE_ROUND_OFF, ROUND_OFF = 3.0, 30.0, 1e-10
 """Largest factors of a stated bound over what is measured: of an error, and of one below the third number, which is round-off and differs
 between processors."""
 MEASURED: dict[str, tuple[bool, list[float]]] = {}
