@@ -48,6 +48,7 @@ QUICK = {
     "exact": tuple(FAST),
     "mixed": ("world-8", "world-20", "friction-10", "special-46"),
     "timoshenko": ("world-20", "special-58"),
+    "elastica": ("ks-cantilever",),
     REFEREE: ("special-58",),
 }
 """The scenes of the fast tier, by model."""
