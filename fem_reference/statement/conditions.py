@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.linalg import null_space
 
 from fem_reference.statement.arrays import Floats
 from fem_reference.statement.checks import Point, require, require_choice, require_distinct, require_finite
@@ -179,7 +178,9 @@ def require_held(problem: Any, touching: Iterable[tuple[str, Point, Point]]) -> 
         for end in joint.ends[1:]
         for k in range(2 if joint.stiffness_of(end) == 0.0 else 3)
     ]
-    free = np.abs(null_space(np.array(rows), rcond=1e-9)).max(axis=1, initial=0.0)
+    _, sizes, ways = np.linalg.svd(np.array(rows))
+    # the null space of the conditions
+    free = np.abs(ways[np.count_nonzero(sizes > 1e-9 * sizes.max()) :]).max(axis=0, initial=0.0)
     moved = zip(names, free.reshape(-1, 3), strict=True)
     loose = sorted(name for name, moves in moved if max(moves) > 1e-6)
     rule = f"must hold {', '.join(loose)}, with the pins that touch at the start"

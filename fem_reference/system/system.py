@@ -15,6 +15,7 @@ section, whose stiffness in A cancels it.
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,11 +23,13 @@ from numpy.typing import NDArray
 from fem_reference.contact.contact import Touch
 from fem_reference.contact.end_section import COLUMNS, ROTATION
 from fem_reference.contact.friction import slip_gradient, stiffness
-from fem_reference.solid.factor import Factor, factorise
 from fem_reference.statement.arrays import Floats
 from fem_reference.statement.loads import increment
 from fem_reference.statement.problem import Pin
 from fem_reference.system.state import State
+
+if TYPE_CHECKING:
+    from fem_reference.solid.factor import Factor
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -88,7 +91,7 @@ class Tangent:
     """Factorised stiffness of the bodies at a state, with the columns of closed contacts and end sections."""
 
     state: State  # the state of linearisation
-    factor: Factor  # factorised stiffness of the bodies
+    factor: "Factor"  # factorised stiffness of the bodies
     V: Floats  # first half ``(m, k)`` of ``K^-1 U`` for the columns over the unknowns, see `Factor`
     border: Border  # curvatures and constraints over the columns
 
@@ -195,6 +198,10 @@ def linearise(state: State) -> Tangent | None:
     for body, F in zip(model.bodies, state.gradients, strict=True):
         band = body.band(F)
         K[: len(band), body.unknowns] = band
+    from fem_reference.solid.factor import (
+        factorise,
+    )  # a statement alone does without LAPACK, whose import takes long
+
     factor = factorise(K)
     if factor is None:
         return None
