@@ -7,14 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.answer import (
-    Array,
-    ContactHistory,
-    FrictionHistory,
-    Response,
-    Sections,
-    SupportHistory,
-)
+from comparisons.answer import Array, ContactHistory, FrictionHistory, Response, Sections, SupportHistory
 from comparisons.models.cantilever import RodScene, to_rod
 from comparisons.models.model import Model, ModelError, Options, Style, Watch, refused
 from comparisons.models.shared import POINTS, Axis, kept, rows

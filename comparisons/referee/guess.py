@@ -5,12 +5,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval
 
 from comparisons.answer import Array, ContactHistory, Response
 from comparisons.frozen import Frozen
 from comparisons.referee.grip import Grip
 from comparisons.referee.layout import NONE, Layout, Part
+from comparisons.referee.rod import value
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 
 Rotations = tuple[Array, Array]
@@ -139,7 +139,7 @@ def _rotation(layout: Layout, answer: AnswerState, own: list[tuple[Part, Array]]
     way, back = chords[long] / extents[long], np.exp(-1.0j * part.piece.angle(s))
     theta = np.angle(way * back)
     for part, (first, last) in own:
-        _, EA, GA, *_ = polyval(s, part.piece.coefficients, tensor=False)
+        _, EA, GA, *_ = value(part.piece.coefficients, s)
         force = np.array([1.0, 1.0j]) @ part.piece.force(part.constant(z), s)
         along = way - force / GA
         size = np.abs(along)

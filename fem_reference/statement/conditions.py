@@ -178,8 +178,8 @@ def require_held(problem: Any, touching: Iterable[tuple[str, Point, Point]]) -> 
         for end in joint.ends[1:]
         for k in range(2 if joint.stiffness_of(end) == 0.0 else 3)
     ]
+    # the null space of the conditions; SciPy's function would import all of its linear algebra
     _, sizes, ways = np.linalg.svd(np.array(rows))
-    # the null space of the conditions
     free = np.abs(ways[np.count_nonzero(sizes > 1e-9 * sizes.max()) :]).max(axis=0, initial=0.0)
     moved = zip(names, free.reshape(-1, 3), strict=True)
     loose = sorted(name for name, moves in moved if max(moves) > 1e-6)

@@ -198,9 +198,8 @@ def linearise(state: State) -> Tangent | None:
     for body, F in zip(model.bodies, state.gradients, strict=True):
         band = body.band(F)
         K[: len(band), body.unknowns] = band
-    from fem_reference.solid.factor import (
-        factorise,
-    )  # a statement alone does without LAPACK, whose import takes long
+    # a statement alone does without LAPACK, whose import takes long
+    from fem_reference.solid.factor import factorise
 
     factor = factorise(K)
     if factor is None:
