@@ -1,11 +1,12 @@
 """``crossval certify``: what an answer is worth, by the exact equilibrium next to it."""
 
+import sys
 from argparse import Namespace
 from pathlib import Path
 
 from comparisons.answer import Response
 from comparisons.answer.file import read_response
-from comparisons.cli.command import DONE, STOPPED, WRONG
+from comparisons.cli.command import DONE, STOPPED, WRONG, report
 from comparisons.cli.options import STANDARD, outputs, write
 from comparisons.cli.screen import watching
 from comparisons.files import OutputError
@@ -40,8 +41,8 @@ def run(given: Namespace) -> int:
         body = ", a two-dimensional body" if response.outside and response.continuum else ""
         print(f"{scene.name}, model {response.named}{body}, {status}")
         for line in (found.line(), *map(_row, found.judged), *found.path):
-            print(f"  {line}")
-        print(f"  not judged: {', '.join(_unjudged(response))}")
+            report(f"  {line}", sys.stdout, indent=4)
+        report(f"  not judged: {', '.join(_unjudged(response))}", sys.stdout, indent=4)
     if found.verdict is Verdict.NOT_JUDGED:
         return STOPPED
     return DONE if found.certified else WRONG

@@ -13,7 +13,7 @@ from importlib import import_module
 from pathlib import Path
 from shutil import get_terminal_size
 from textwrap import fill
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TextIO
 
 from comparisons.extras import EXTRAS, install
 from comparisons.files import OutputError, printable
@@ -86,13 +86,13 @@ def _refusals() -> tuple[type[Exception], ...]:
     return OutputError, ModelError, ProgramError
 
 
-def report(line: str) -> None:
-    """Report a line on standard error, on a terminal in lines that fit it."""
-    text = printable(line)
-    if sys.stderr.isatty():
-        width = get_terminal_size().columns
-        text = fill(text, width, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
-    print(text, file=sys.stderr, flush=True)
+def report(line: str, stream: TextIO | None = None, indent: int = 2) -> None:
+    """Print a line to standard error or another stream, on a terminal in lines that fit it, with all but the first one indented."""
+    stream, text = stream or sys.stderr, printable(line)
+    if stream.isatty():
+        whole: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
+        text = fill(text, get_terminal_size().columns, subsequent_indent=" " * indent, **whole)
+    print(text, file=stream, flush=True)
 
 
 @contextmanager

@@ -2,9 +2,10 @@
 
 import json
 import re
+import sys
 from argparse import Namespace
 
-from comparisons.cli.command import DONE
+from comparisons.cli.command import DONE, report
 from comparisons.scene import built_in_scenes
 from comparisons.scene.read import json_schema
 
@@ -16,5 +17,5 @@ def run(given: Namespace) -> int:
         return DONE
     for scene, text in built_in_scenes().items():
         said = re.split(r"(?<!al)[:.]\s", text)[0].replace("\n# ", " ").removeprefix("# ")
-        print(f"{scene:26s} {said}")
+        report(f"{scene:26s} {said}", sys.stdout, indent=27)
     return DONE

@@ -2,7 +2,7 @@
 
 import io
 import re
-from contextlib import redirect_stderr, suppress
+from contextlib import redirect_stderr, redirect_stdout, suppress
 from dataclasses import replace
 
 import pytest
@@ -67,6 +67,30 @@ def test_a_message_on_a_terminal_fits_into_it_and_is_one_line_elsewhere(monkeypa
     message = whole.getvalue().splitlines()[-1]
     assert len(message) > 60
     assert " ".join(folded.getvalue().split()).endswith(message)
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        *("scenes", "check hysteresis", "solve ks-cantilever", "certify tip-load"),
+        pytest.param("compare tip-load --quiet --out page", marks=pytest.mark.slow),
+    ],
+)
+def test_what_is_printed_fits_the_terminal_and_no_word_is_broken(command, in_folder, monkeypatch):
+    """Only what is found is bold, and only on a terminal that may have it."""
+    said: list[set[str]] = []
+    for columns, refused in ((80, ""), (100, "1"), (130, "1"), (130, "piped")):
+        stream = io.StringIO() if refused == "piped" else Terminal()
+        monkeypatch.setenv("COLUMNS", str(columns))
+        monkeypatch.setenv("NO_COLOR", refused.removeprefix("piped"))
+        with redirect_stdout(stream):
+            assert main(command.split()) == 0
+        lines = re.sub(r"\x1b\[[01]m", "", stream.getvalue()).splitlines()
+        bold = not said and command.startswith("compare")
+        assert bold == stream.getvalue().startswith("\x1b[1m") == ("\x1b" in stream.getvalue())
+        assert max(map(len, lines)) <= columns or not stream.isatty()
+        said.append({*re.sub(r"\b\d+\.\d{3}\b", "", " ".join(lines)).split()})  # without seconds
+        assert said[-1] == said[0]
 
 
 @pytest.mark.parametrize("quiet", [False, True])

@@ -113,6 +113,10 @@ def test_the_menu_has_three_doors_of_at_most_twelve_entries():
     assert all(len(entries.splitlines()) <= 12 for _, entries in doors)
 
 
+def test_no_page_is_long():
+    assert {page: len(text.split()) for page, text in TEXTS.items() if len(text.split()) > 1200} == {}
+
+
 def test_make_targets_links_and_pictures_are_there():
     whole = "".join(TEXTS.values())
     assert (
