@@ -22,10 +22,10 @@ def joints(scene: Scene) -> list[list[str]]:
 
 
 def occupied(scene: Scene) -> set[str]:
-    """Return the ends of beams at which more than a support may act: those with loads, springs or joints."""
-    loads, springs = scene.numbered_loads(), scene.springs
+    """Return the ends of beams at which more than a support may act: those with loads, springs, joints or hinges."""
     joined = {end for ends in joints(scene) for end in ends}
-    return joined | {load.node for _, load in loads} | {spring.node for spring in springs}
+    acting = {one.node for one in (*scene.hinges, *scene.springs)}
+    return joined | acting | {load.node for _, load in scene.numbered_loads()}
 
 
 def line_loads(scene: Scene) -> Iterator[tuple[BeamSpec, int, tuple[Force, ...], Force]]:

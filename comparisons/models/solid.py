@@ -188,7 +188,7 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
     import fem_reference as fem
 
     joints = _Joints(scene)
-    clamps = {spec.node for spec in scene.all_supports if _is_clamp(scene, spec, joints)}
+    clamps = {spec.node for spec in scene.all_supports if _is_clamp(scene, spec)}
     return fem.SolidProblem(
         strips=tuple(_strip(beam, clamps, mesh) for beam in scene.beams),
         supports=tuple(
@@ -283,14 +283,14 @@ class _Joints:
         return beam, float(end == "end")
 
 
-def _is_clamp(scene: Scene, spec: SupportSpec, joints: _Joints) -> bool:
+def _is_clamp(scene: Scene, spec: SupportSpec) -> bool:
     """Whether a support clamps the edge itself: it holds a single end at rest that bears no load and no spring.
 
     Any other support holds the mean displacement and rotation of the end's section.
     """
     if len(spec.held) < len(COMPONENTS):
         return False
-    if not (scene.prescribed_motions[spec.node].moves or spec.node in {*joints.hinges, *occupied(scene)}):
+    if not (scene.prescribed_motions[spec.node].moves or spec.node in occupied(scene)):
         return True
     if scene.beam(spec.beam).solid_clamp == "full":
         raise ModelError(

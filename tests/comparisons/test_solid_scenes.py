@@ -1,7 +1,9 @@
 """The solid by its end sections, with the rod's law, against exact elements: the difference is of the order of the height squared."""
 
 import tomllib
+from collections.abc import Iterator
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from string import Template
 
@@ -42,15 +44,27 @@ def values(response: Response) -> tuple[np.ndarray, np.ndarray]:
     return np.hstack(forces), np.stack([item.moment for item in held], axis=1)
 
 
-def distance(case: Scene, mesh: tuple[int, int] | None = None) -> float:
-    """Largest difference of a force or moment, over the largest of the path, and of the tips over the length; certified and stable."""
+def cut(case: Scene, solid: Response, exact: Response) -> Iterator[np.ndarray]:
+    """Yield section forces, then moments, of both at the ends of the solid's stations, (2, ...)."""
+    steps = range(len(exact.load_parameter))
+    for letters in ("NV", "M"):
+        found = []
+        for beam, k, letter in product(case.beams, steps, letters):
+            own, rods = solid.sections(beam.name, k), exact.sections(beam.name, k)
+            there = np.interp(own.arc[[0, -1]], rods.arc, getattr(rods, letter))
+            found.append((getattr(own, letter)[[0, -1]], there))
+        yield np.swapaxes(found, 0, 1)
+
+
+def distance(case: Scene, mesh: tuple[int, int] | None = None, *, inside: bool = True) -> float:
+    """Largest difference of a force or moment, also inside the beams, over the largest of the path, and of the tips over the length; certified and stable."""
     exact, solid = solve(case, "tsm", EXACT), solve(case, "solid", Options(mesh=mesh))
     assert exact.completed, exact.message
     assert certified(solid, case).completed, solid.message
     assert list(solid.index) == list(exact.index)
     found = [np.abs(solid.tips[beam.name] - exact.tips[beam.name]).max() / beam.length for beam in case.beams]
-    for a, b in zip(values(solid), values(exact), strict=True):
-        found.append(np.abs(a - b).max() / (np.abs(b).max() or 1.0))
+    pairs = [*zip(values(solid), values(exact), strict=True)] + inside * [*cut(case, solid, exact)]
+    found += [np.abs(a - b).max() / (np.abs(b).max() or 1.0) for a, b in pairs]
     return float(max(found))
 
 
@@ -65,7 +79,9 @@ def test_forces_and_reactions_are_the_rods(case):
 @pytest.mark.slow
 @pytest.mark.parametrize("case", ["moved clamp", "driven tip", "frame"])
 def test_the_difference_falls_as_the_height_squared(case):
-    thick, thin = distance(scene(case, 0.02)), distance(scene(case, 0.01), (100, 2))
+    thick, thin = (
+        distance(scene(case, h), mesh, inside=False) for h, mesh in ((0.02, None), (0.01, (100, 2)))
+    )
     assert np.log2(thick / thin) == pytest.approx(2.0, abs=0.25)
 
 
