@@ -171,11 +171,19 @@ def _changed(now: Equilibrium, event: ContactEvent, grips: Mapping[str, Grip], a
     arcs = {pair: arc for pair, arc in now.closed.items() if pair != event.pair or event.kind in STAYS}
     if event.kind != "touch":
         return switched(now, arcs, grips, now.load_parameter)
-    # where there is no force yet, the direction of a face is not stationary at one place only
     loose = {**grips, event.pair: LOOSE}
     now = switched(now, {**arcs, event.pair: event.arc_position}, loose, now.load_parameter)
-    now = reach(now, after, loose) if now.found else now
+    now = reach(_pushed(now), after, loose) if now.found else now
     return correct(moved(now, after, grips), _ITERATIONS) if now.found else now
+
+
+def _pushed(now: Equilibrium) -> Equilibrium:
+    """Return a guess with a little more force at the contacts; without any the direction of a face is stationary at every place."""
+    z = now.z.copy()
+    for touch in (touch for touch in now.layout.touches if touch.angle >= 0):
+        force, phi = now.layout.beside(touch)[0].force, z[touch.angle]
+        z[force : force + 2] += _LITTLE * touch.face.left * np.array([np.sin(phi), -np.cos(phi)])
+    return replace(now, z=z)
 
 
 def _alike(one: Equilibrium, other: Equilibrium) -> bool:

@@ -17,8 +17,6 @@ from comparisons.scene import Scene, load_scene, read_scene
 
 FINDINGS = Path(__file__).parent / "findings"
 EXACT = Options(element="exact")
-
-
 SCENES = tomllib.loads(Path(__file__).with_name("solid_scenes.toml").read_text(encoding="utf-8"))
 SECTION = "youngs_modulus = 1.0\npoissons_ratio = 0.3\nmesh = [50, 2]\nmaterial = 'biot-linear'\n"
 

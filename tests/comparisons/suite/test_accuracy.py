@@ -126,17 +126,8 @@ def test_a_tail_without_load_takes_few_elements():
     assert error < difference(equal, exact, scene, "force") / 10
 
 
-@pytest.mark.slow_at(
-    "density-free",
-    "turn-free",
-    "force_per_length-free",
-    "stage-free",
-    "density-mixed",
-    "turn-mixed",
-    "hinge-mixed",
-    "taper-mixed",
-    "force_per_length-mixed",
-)
+@pytest.mark.slow_at(*(f"{key}-free" for key in ("density", "turn", "force_per_length", "stage")))
+@pytest.mark.slow_at(*(f"{key}-mixed" for key in ("density", "turn", "force_per_length", "hinge", "taper")))
 @pytest.mark.parametrize("element", ["free", "mixed"])
 @pytest.mark.parametrize("key", SPECIAL)
 def test_the_promise_is_kept_with_every_special_key(key, element):

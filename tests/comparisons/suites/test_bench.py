@@ -102,21 +102,6 @@ def test_the_set_is_what_its_page_says():
 
 
 @pytest.mark.slow
-def test_scenes_are_made_anew_byte_for_byte(make, monkeypatch):
-    """A part of the set; `test_the_set_is_made_anew_byte_for_byte` has all."""
-    names = few(monkeypatch, "touch-again", "tapered-spring", "straightened-arc")
-    made = make.texts(BENCH)
-    for file, text in made.items():
-        rows = [line.rstrip(",") for line in text.splitlines() if line.startswith("  {")]
-        old = [
-            line.rstrip(",")
-            for line in (BENCH / file).read_text().splitlines()
-            if re.search(rf'^  .*"({"|".join(names)})"', line)
-        ]
-        assert rows == old
-
-
-@pytest.mark.slow
 def test_the_set_is_made_anew_byte_for_byte(make, tmp_path):
     """And from nothing to the digits that are stated."""
     made = make.texts(BENCH)
