@@ -39,10 +39,10 @@ def run(given: Namespace) -> int:
         write(path, json_text({"scene": scene.name, "model": response.model, **found.as_dict()}))
     if (".json", STANDARD) not in files:
         body = ", a two-dimensional body" if response.outside and response.continuum else ""
-        print(f"{scene.name}, model {response.named}{body}, {status}")
-        for line in (found.line(), *map(_row, found.judged), *found.path):
+        report(f"{scene.name}, model {response.named}{body}, {status}", sys.stdout)
+        unjudged = f"not judged: {', '.join(_unjudged(response))}"
+        for line in (found.line(), *map(_row, found.judged), *found.path, unjudged):
             report(f"  {line}", sys.stdout, indent=4)
-        report(f"  not judged: {', '.join(_unjudged(response))}", sys.stdout, indent=4)
     if found.verdict is Verdict.NOT_JUDGED:
         return STOPPED
     return DONE if found.certified else WRONG

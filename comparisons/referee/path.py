@@ -35,7 +35,7 @@ _AIM = 0.1
 _ROUND_OFF = 1e-9
 """Changes of rotations [rad] and lengths below this are round-off."""
 _LITTLE = 1e-7
-"""Fraction of the remaining path over which the tangent is a difference."""
+"""Fraction of the remaining path over which the tangent is a difference, and force [EI/L^2] of a guess at a contact without force."""
 _SMALLEST = 1e-10
 """Smallest step of the load parameter, over the distance from the start; an imperfect column needs steps this small."""
 _STEPS = 300
@@ -180,9 +180,10 @@ def _changed(now: Equilibrium, event: ContactEvent, grips: Mapping[str, Grip], a
 def _pushed(now: Equilibrium) -> Equilibrium:
     """Return a guess with a little more force at the contacts; without any the direction of a face is stationary at every place."""
     z = now.z.copy()
-    for touch in (touch for touch in now.layout.touches if touch.angle >= 0):
-        force, phi = now.layout.beside(touch)[0].force, z[touch.angle]
-        z[force : force + 2] += _LITTLE * touch.face.left * np.array([np.sin(phi), -np.cos(phi)])
+    for touch in now.layout.touches:
+        if touch.angle >= 0:
+            force, phi = now.layout.beside(touch)[0].force, z[touch.angle]
+            z[force : force + 2] += _LITTLE * touch.face.left * np.array([np.sin(phi), -np.cos(phi)])
     return replace(now, z=z)
 
 
