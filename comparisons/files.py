@@ -156,6 +156,15 @@ def interrupts_held() -> Iterator[None]:
 
 
 @contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Raise OutputError, which names `path`, if the disk is full or the system refuses to write it."""
+    try:
+        yield
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written: {error.strerror or error}") from error
+
+
+@contextmanager
 def staging(folder: Path, named: Path | None = None) -> Iterator[Path]:
     """Yield a new hidden folder in `folder`, for files that are moved out when they are finished; it is removed at the end.
 
@@ -163,20 +172,18 @@ def staging(folder: Path, named: Path | None = None) -> Iterator[Path]:
     """
     import tempfile  # 4 ms that only a command which writes needs
 
-    try:
+    with writing(named or folder):
         # an interrupt within its making or its removal would leave it; at any other point its finalizer removes it
         with interrupts_held():
             aside = tempfile.TemporaryDirectory(dir=folder, prefix=".crossval-")
         try:
             yield Path(aside.name)
+        except OutputError as error:
+            # the message names the final path of a file, not its temporary one
+            raise OutputError(str(error).replace(f"{aside.name}{os.sep}", f"{folder}{os.sep}")) from error
         finally:
             with interrupts_held():
                 aside.cleanup()
-    except OutputError as error:
-        # the message names the final path of a file, not its temporary one
-        raise OutputError(str(error).replace(f"{aside.name}{os.sep}", f"{folder}{os.sep}")) from error
-    except OSError as error:
-        raise OutputError(f"{named or folder}: cannot be written: {error.strerror or error}") from error
 
 
 @contextmanager

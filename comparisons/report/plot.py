@@ -53,7 +53,7 @@ def save(fig: Any, *paths: Path) -> None:
     """Write the figure to `paths`, in the formats of their suffixes; it is laid out once. The letters of an SVG file are those of its page."""
     from matplotlib import rc_context
 
-    fig.draw_without_rendering()
+    fig.get_layout_engine().execute(fig)
     fig.set_layout_engine(None)  # with "none", each file would be drawn twice
     for path in paths:
         with replacing(path) as temporary, rc_context({"svg.fonttype": "none"}):

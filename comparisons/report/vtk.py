@@ -2,7 +2,7 @@
 
 Every field has its unit as VTK's information key ``UNITS_LABEL``, and a set of blocks has the list of all
 units as the field data `units`. The names of fields have no unit, so that one script reads the files of
-scenes in other units.
+scenes in other units. Files are written in place: the series that has them is written to a folder aside.
 """
 
 import re
@@ -15,7 +15,7 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 
 from comparisons.answer import Grid
-from comparisons.files import OutputError, replacing, write_text
+from comparisons.files import OutputError, writing
 
 LABEL = '<InformationKey name="UNITS_LABEL" location="vtkDataArray">{}</InformationKey>\n</DataArray>'
 ARRAY = re.compile(r'(<DataArray [^>]*Name="(\w+)"[^>]*>[^<]*)</DataArray>')
@@ -33,9 +33,9 @@ def write_grid(path: Path, grid: Grid, units: Mapping[str, str]) -> None:
         return array[0] if unit is None else array[1] + LABEL.format(escape(unit))
 
     data = {name: in_space(values) for name, values in grid.point_data.items()}
-    with replacing(path) as temporary:
-        vtu.write(temporary, Mesh(in_space(grid.points), grid.cells, point_data=data))
-        temporary.write_text(ARRAY.sub(labelled, temporary.read_text("utf-8")), encoding="utf-8")
+    with writing(path):
+        vtu.write(path, Mesh(in_space(grid.points), grid.cells, point_data=data))
+        path.write_text(ARRAY.sub(labelled, path.read_text("utf-8")), encoding="utf-8")
 
 
 def read_grid(path: Path) -> Grid:
@@ -73,7 +73,8 @@ def write_list(path: Path, entries: Iterable[tuple[float, str]]) -> None:
 def _write(path: Path, kind: str, sets: Iterable[str], more: str = "") -> None:
     inner = "".join(f"<DataSet {attributes}/>\n" for attributes in sets)
     head = f'<?xml version="1.0"?>\n<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian">\n'
-    write_text(path, f"{head}<{kind}>\n{inner}</{kind}>\n{more}</VTKFile>\n")
+    with writing(path):
+        path.write_text(f"{head}<{kind}>\n{inner}</{kind}>\n{more}</VTKFile>\n", encoding="utf-8")
 
 
 def read_entries(path: Path, attribute: str) -> list[tuple[str, Path]]:
