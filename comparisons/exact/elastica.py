@@ -20,7 +20,7 @@ from scipy.optimize import brentq
 from scipy.special import beta, betainc
 
 from comparisons.exact.contact import Cantilever, Real
-from comparisons.exact.path import Event, Outcome, RodPath, Row, changed, collected, require, vertices
+from comparisons.exact.path import Change, Outcome, RodPath, Row, collected, require, vertices
 from comparisons.exact.section import Flexibility
 
 
@@ -106,13 +106,13 @@ def elastica_under_pin(points: ArrayLike, *, EI: float = 1.0, length: float = 1.
     """
     require("positive and finite", EI=EI, length=length)
     pins, times = vertices(points)
-    rows, events, before = list[Row](), list[Event](), Outcome.OPEN
+    rows, changes, before = list[Row](), list[Change](), Outcome.OPEN
     for t, (x, y) in zip(times.tolist(), (pins / length).tolist(), strict=True):
         state, z = _state(x, y)
         if before is Outcome.SLIPPED and y > 0.0:
             state = before
         if state is not before:
-            events.append(changed(t, before, state, z))
+            changes.append((t, before, state, z))
         rows.append(Row(t, state, z))
         before = state
-    return collected(Cantilever(flexibility=Flexibility(0.0, 0.0)), rows, events, EI, length)
+    return collected(Cantilever(flexibility=Flexibility(0.0, 0.0)), rows, changes, EI, length)
