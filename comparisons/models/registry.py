@@ -35,10 +35,7 @@ def find(name: str) -> Model:
         return MODELS[name]
     from comparisons.models.outside.programs import outside
 
-    found = outside(name, taken=MODELS)
-    if found is None:
-        raise ModelError(f"model = {name}: must be one of {', '.join(MODELS)}, or a program file NAME.toml")
-    return found
+    return outside(name, MODELS)
 
 
 def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch = unwatched) -> Response:
@@ -66,25 +63,25 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
             more["grid"] = partial(axis_grid, scene, found.axis_line)
         if not chosen.continuum:
             more["material_force"] = material_forces(found, scene, strains=chosen.rod)
-        more |= {"setting": chosen.setting(scene, given), **_kind(found, chosen.name, chosen)}
+        more |= {"setting": chosen.setting(scene, given), **_kind(found, chosen)}
         success = found.completed or found.reported_success
         return verified(replace(found, **more, reported_success=success), scene)
     except ValueError as error:
         raise ModelError(f"{chosen.name}: {error}") from error
 
 
-def _kind(response: Response, name: str, model: Model | None) -> dict[str, Any]:
+def _kind(response: Response, model: Model | None) -> dict[str, Any]:
     """Return of what kind an answer is by its model, whatever it says of itself; without a model it is a program's, which says its kind."""
     continuum = response.continuum if model is None else model.continuum
     round_off = response.round_off if continuum and model is not None else 0.0
-    return {"continuum": continuum, "outside": name not in MODELS, "round_off": round_off}
+    return {"continuum": continuum, "outside": model not in MODELS.values(), "round_off": round_off}
 
 
 def restored(response: Response, scene: Scene) -> Response:
     """Return a response from a file with the kind that its model is registered with, and checked as when it was solved."""
     from comparisons.models.outside.programs import known
 
-    kind = _kind(response, response.model, MODELS.get(response.model) or known(response.model))
+    kind = _kind(response, MODELS.get(response.model) or known(response.model))
     if response.completed and not response.reported_success:
         contradiction = f"the status is {response.status}, and reported_success is false"
         return replace(response, **kind, status=CHECK_FAILED, message=contradiction)

@@ -6,7 +6,7 @@ A program gets the resolved scene as JSON text and returns a response as JSON te
 import json
 import sys
 from abc import abstractmethod
-from collections.abc import Container
+from collections.abc import Collection
 from contextlib import redirect_stdout
 from functools import cache, lru_cache
 from importlib import import_module
@@ -181,17 +181,17 @@ _USED: dict[str, Model] = {}
 """The models from outside that this process has used, by name."""
 
 
-def outside(name: str, taken: Container[str] = ()) -> Model | None:
-    """Return a model that is none of this package; None if there is no such model.
+def outside(name: str, taken: Collection[str]) -> Model:
+    """Return a model that is none of this package.
 
     The name is that of a program file ``NAME.toml``, of one read before, of an adapter, or of an entry point. An `InputError` is
-    raised if the file cannot be read or states a name in `taken`, a `ModelError` if an entry point yields no model.
+    raised if the file cannot be read or states a name in `taken`, a `ModelError` if an entry point yields no model or there is no such model.
     """
     model = read_program(Path(name)) if name.endswith(SUFFIX) else known(name)
     if model is None and name in offered():
         model = loaded(offered()[name], Model)
     if model is None:
-        return None
+        raise ModelError(f"model = {name}: must be one of {', '.join(taken)}, or a program file NAME.toml")
     if model.name in taken or model is not ADAPTERS.get(model.name, model):
         raise InputError(name, f'program.name = "{model.name}": must not be the name of a model')
     _USED[model.name] = model
