@@ -6,7 +6,6 @@ the path of the pin turns and where a phase ends, the state that follows is the 
 """
 
 from collections.abc import Iterable, Iterator
-from enum import IntEnum
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -41,14 +40,8 @@ _SAME_DIRECTION = 1e-9
 _NO_RATE, _SHORT_STEP = 1e-9, 1e-5
 """A rate below the first is zero; the next order shows after the second, in load parameters."""
 _STATES = {1: Outcome.SLIP_TO_TIP, -1: Outcome.SLIP_TO_CLAMP, 0: Outcome.STICK}
-
-
-class Ending(IntEnum):
-    """Why a phase ends, in the order of the margins; of two at one load parameter the later one counts."""
-
-    FRICTION = 0
-    RELEASE = 1
-    SLIP_OFF = 2
+_ENDINGS = (None, Outcome.OPEN, Outcome.SLIPPED)
+"""States after a phase by the margin that ends it, None where friction decides; of two at one load parameter the later one counts."""
 
 
 class Node(NamedTuple):
@@ -215,13 +208,13 @@ class Follower:
         node = [start, *nodes][-1]
         self.t, self.z, self.phase = node.t, node.linear.z, Phase(phase.sense, phase.since, node.linear)
         if ending is not None:
-            self._end(ending)
+            self._end(_ENDINGS[ending])
         return True
 
-    def _end(self, ending: Ending) -> None:
+    def _end(self, after: Outcome | None) -> None:
         """Enter the state after the end of a phase."""
-        if ending is not Ending.FRICTION:
-            self._change(Outcome.OPEN if ending is Ending.RELEASE else Outcome.SLIPPED)
+        if after is not None:
+            self._change(after)
         elif self.phase.sense:
             self._enter([0])
         else:
@@ -269,7 +262,7 @@ class Follower:
             nodes.append(node)
         return nodes[1:]
 
-    def _event(self, phase: Phase, start: Node, before: Node, after: Node) -> tuple[float, Ending] | None:
+    def _event(self, phase: Phase, start: Node, before: Node, after: Node) -> tuple[float, int] | None:
         """First root of a margin between two equilibria of a step, and which; None where the first one is an event itself."""
 
         def margin(t: float, k: int) -> float:
@@ -277,13 +270,13 @@ class Follower:
             node = self._node(phase, t, before.linear.z + share * (after.linear.z - before.linear.z))
             return float(node.margins[k]) + self.edge - _EDGE if node is not None else np.nan
 
-        roots: list[tuple[float, Ending]] = []
-        for ending in Ending:
+        roots = list[tuple[float, int]]()
+        for ending, state in enumerate(_ENDINGS):
             if after.margins[ending] >= -self.edge:
                 continue
             at_edge = max(start.margins[ending], before.margins[ending]) <= self.edge
             has_lasted = start.t - phase.since > _TOGETHER or not self.rod.friction
-            if at_edge and (ending is Ending.SLIP_OFF or (before is start and has_lasted)):
+            if at_edge and (state is Outcome.SLIPPED or (before is start and has_lasted)):
                 return start.t, ending
             if before.margins[ending] <= self.edge:
                 return None
