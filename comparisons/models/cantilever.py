@@ -41,8 +41,7 @@ def to_rod(scene: Scene, who: str = "the exact rod") -> RodScene:
     ModelError
         Unless the scene is one beam, clamped at one end, under one pin.
     """
-    unknown = unstated(scene, who)
-    if unknown is not None:
+    if (unknown := unstated(scene, who)) is not None:
         raise ModelError(unknown)
     have, beam = "the exact models have", scene.beams[0]
     if max(len(scene.beams), len(scene.pins), len(scene.contacts)) > 1:

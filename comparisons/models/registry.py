@@ -17,8 +17,6 @@ from comparisons.referee import Certificate, Verdict, certify, default_allowance
 from comparisons.referee.certify import ALLOWED
 from comparisons.scene import Scene
 
-Certify = Literal["last", "all", "none"]
-"""Load parameters to certify: the last one and the neighbours of events, all, or none."""
 FILES = ("tsm", "solid", "rod")
 """The modules of this package with a tuple ``MODELS``; a new model adds its module here."""
 MODELS: dict[str, Model] = {
@@ -50,8 +48,7 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
     for option, value in vars(given).items():
         if value is not None and option not in chosen.options:
             raise ModelError(f"{chosen.name}: {option} = {value}: not an option of this model")
-    unknown = chosen.unstated(scene)
-    if unknown is not None:
+    if (unknown := chosen.unstated(scene)) is not None:
         raise ModelError(unknown)
     try:
         began = perf_counter()
@@ -89,7 +86,11 @@ def restored(response: Response, scene: Scene) -> Response:
 
 
 def certified(
-    response: Response, scene: Scene, which: Certify = "last", *, allowance: float | None = None
+    response: Response,
+    scene: Scene,
+    which: Literal["last", "all", "none"] = "last",
+    *,
+    allowance: float | None = None,
 ) -> Response:
     """Return `response` with its certificate. The verdict becomes the status of a refused answer, which is not completed.
 

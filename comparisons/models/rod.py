@@ -11,7 +11,7 @@ from comparisons.models.cantilever import RodScene, to_rod
 from comparisons.models.model import Model, ModelError, Options, Style, Watch, refused
 from comparisons.models.shared import POINTS, Axis, kept, rows
 from comparisons.models.theory import CHANGE, ROUND_OFF, Bending
-from comparisons.models.tsm import TSM, beams_refusal
+from comparisons.models.tsm import TSM
 from comparisons.referee import Equilibrium, Verdict, certify
 from comparisons.scene import Scene
 from comparisons.scene.keys import SPECIAL
@@ -38,7 +38,7 @@ class Rod(Model):
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why the rods cannot state `scene`; None if they can. Several rods are solved along the path of exact elements."""
-        return beams_refusal(scene)
+        return TSM.refusal(scene)
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:  # noqa: ARG002 - the rod has no options
         """Return the response to `scene`, not yet checked."""

@@ -1,6 +1,6 @@
 """Beams by the tangent stiffness method."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from itertools import accumulate
@@ -69,8 +69,13 @@ class Tsm(Model):
         return self.element(replace(options, element=suited))
 
     def refusal(self, scene: Scene) -> str | None:
-        """Return why beams cannot state `scene`; None if they can."""
-        return beams_refusal(scene)
+        """Return why no element of the tangent stiffness method states `scene`; None if one does."""
+        refused = (item.pair for item in scene.contacts if item.friction and _face_slope(scene, item))
+        words = (
+            "the tangent stiffness method does not state friction on the face of a beam whose height tapers"
+        )
+        use = 'use --model solid, surface = "axis" or one height'
+        return next((f"contact {pair}: {words}; {use}" for pair in refused), None)
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked; a tolerance is for elements that integrate."""
@@ -138,15 +143,15 @@ class Tsm(Model):
 
     def compared(self) -> tuple[Options, ...]:
         """Return the paper's element, the recommended one, and the exact one."""
-        counts = {PAPER: (10, 20, 50), MIXED: (10, 20), EXACT: (1,)}
-        return tuple(Options(element=name, elements=n) for name in counts for n in counts[name])
+        return _counted({PAPER: (10, 20, 50), MIXED: (10, 20), EXACT: (1,)})
 
-    def resolutions(self, *, quick: bool) -> Iterator[Options]:
-        """Yield numbers of exact elements, of `mixed`, and of the paper's element."""
-        counts = {EXACT: (1, 2, 4), MIXED: (2, 3, 5, 10, 20, 40, 80, 160), PAPER: (5, 10, 20, 50, 100)}
+    def resolutions(self, *, quick: bool) -> tuple[Options, ...]:
+        """Return numbers of exact elements, of `mixed`, and of the paper's element."""
         if quick:
-            counts = {EXACT: (1,), MIXED: (2, 3, 5, 10, 20, 40), PAPER: (10, 20, 50)}
-        yield from (Options(element=name, elements=n) for name in counts for n in counts[name])
+            return _counted({EXACT: (1,), MIXED: (2, 3, 5, 10, 20, 40), PAPER: (10, 20, 50)})
+        return _counted(
+            {EXACT: (1, 2, 4), MIXED: (2, 3, 5, 10, 20, 40, 80, 160), PAPER: (5, 10, 20, 50, 100)}
+        )
 
     def error_parts(self, scene: Scene, options: Options, bent: theory.Bending) -> dict[str, float]:
         """Return the allowed error from the element's order, contact and shear."""
@@ -176,6 +181,10 @@ class Tsm(Model):
             newton: theory.FLOOR,
             "round-off of positions, a kink of eps/l": theory.CHANGE * last_bit / shortest,
         }
+
+
+def _counted(counts: dict[str, tuple[int, ...]]) -> tuple[Options, ...]:
+    return tuple(Options(element=name, elements=n) for name in counts for n in counts[name])
 
 
 def _reporter(structure: tsm.Structure, watch: Watch) -> Callable[[Any], None]:
@@ -232,16 +241,14 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
     element : str, optional
         Key of `tsm.ELEMENTS`, `mixed` if not given.
     """
-    refused = beams_refusal(scene)
-    if refused is not None:
+    if (refused := TSM.refusal(scene)) is not None:
         raise ModelError(refused)
     kind = TSM.element(Options(element=element))
     return tsm.Structure(
         beams=tuple(_beam(scene, beam, elements, kind) for beam in scene.beams),
         supports=tuple(
             tsm.Support(ux=ux, uy=uy, rotation=turn, onward=later[1:], **kept(own, "beam end"))
-            for motion in scene.prescribed_motions.values()
-            for own, later in [(motion.support, motion.increments)]
+            for own, later in scene.prescribed_motions.values()
             for ux, uy, turn in [own.motion]
         ),
         loads=tuple(
@@ -267,14 +274,6 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
         pins=tuple(tsm.Pin(name=pin.name, **ways(pin)) for pin in scene.pins),
         contacts=tuple(_pair(scene, contact) for contact in scene.contacts),
     )
-
-
-def beams_refusal(scene: Scene) -> str | None:
-    """Return why no element of the tangent stiffness method states `scene`; None if one does."""
-    refused = (item.pair for item in scene.contacts if item.friction and _face_slope(scene, item))
-    words = "the tangent stiffness method does not state friction on the face of a beam whose height tapers"
-    use = 'use --model solid, surface = "axis" or one height'
-    return next((f"contact {pair}: {words}; {use}" for pair in refused), None)
 
 
 def _face_slope(scene: Scene, contact: ContactSpec) -> float:

@@ -5,7 +5,7 @@ import shutil
 import signal
 import sys
 from collections.abc import Container, Iterable, Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from enum import Enum
 from os import getpid, kill, waitpid
 from pathlib import Path
@@ -99,15 +99,16 @@ def _finished(command: list[str], how: dict[str, Any], seconds: float, memory: f
     import subprocess
 
     others, written = set(_family()), (how["stdout"], how["stderr"])
-    _adopt(1)
-    try:
-        process = subprocess.Popen(command, start_new_session=True, **how)  # noqa: S603 the program that the user names
-    except (OSError, ValueError) as error:
-        _adopt(0)
-        reason = getattr(error, "strerror", None) or str(error)
-        raise ProgramError(ProgramStatus.NOT_STARTED, f"{command[0]}: {reason}") from None
-    began, look = perf_counter(), FIRST_LOOK
-    try:
+    with ExitStack() as after:
+        _adopt(1)
+        after.callback(_adopt, 0)
+        try:
+            process = subprocess.Popen(command, start_new_session=True, **how)  # noqa: S603 the program that the user names
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or str(error)
+            raise ProgramError(ProgramStatus.NOT_STARTED, f"{command[0]}: {reason}") from None
+        after.callback(_end, process, others)
+        began, look = perf_counter(), FIRST_LOOK
         while True:
             with suppress(subprocess.TimeoutExpired):
                 return int(process.wait(timeout=look))
@@ -121,9 +122,6 @@ def _finished(command: list[str], how: dict[str, Any], seconds: float, memory: f
             ):
                 if used > most:
                     raise ProgramError(status, words.format(most))
-    finally:
-        _end(process, others)
-        _adopt(0)
 
 
 def _adopt(adopts: int) -> None:

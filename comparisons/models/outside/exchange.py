@@ -38,8 +38,7 @@ def request(scene: Scene, options: Options, load_parameters: Sequence[float]) ->
     of elements in place of the scene's. No load parameters ask only whether the program can state the scene. A `ModelError` names a key
     that the resolved scene does not state.
     """
-    unknown = unstated(scene, "the resolved scene")
-    if unknown is not None:
+    if (unknown := unstated(scene, "the resolved scene")) is not None:
         raise ModelError(unknown)
     data = {
         "name": scene.name,

@@ -50,8 +50,8 @@ class Program(Value, Model):
         )
 
     @abstractmethod
-    def digest(self) -> str:
-        """Return a digest of what its answers depend on."""
+    def sources(self) -> tuple[bytes, *tuple[Path, ...]]:
+        """Return a text and files, as far as they are there, on which its answers depend."""
 
     @abstractmethod
     def ask(self, text: str) -> bytes:
@@ -64,7 +64,12 @@ class Program(Value, Model):
     @property
     def identity(self) -> str:
         """Name of the program, and a digest of what its answers depend on."""
-        return f"{self.name} {self.digest()}"
+        import hashlib  # 2 ms that only a study needs
+
+        text, *files = self.sources()
+        parts = (text, *(file.read_bytes() if file.is_file() else b"" for file in files))
+        digest = hashlib.sha256(b"\0".join(parts)).hexdigest()
+        return f"{self.name} {digest}"
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why the program cannot state the scene, or what is missing to run it."""
@@ -103,9 +108,9 @@ class Command(Program):
     requires: str = ""
     needs: str = ""  #: How to install what it requires.
 
-    def digest(self) -> str:
-        """Return a digest of the command and of the files among its words."""
-        return _digest(json.dumps(self.command).encode(), *(self.folder / word for word in self.command))
+    def sources(self) -> tuple[bytes, *tuple[Path, ...]]:
+        """Return the command, and the files among its words."""
+        return json.dumps(self.command).encode(), *(self.folder / word for word in self.command)
 
     def missing(self) -> str | None:
         """Return what must be installed to run the command; None if it can be found."""
@@ -124,9 +129,9 @@ class Functions(Program):
     #: ``states(scene, histories)``: adds the states to `histories` and yields the load parameter of each.
     states: States
 
-    def digest(self) -> str:
-        """Return a digest of the file that defines the states."""
-        return _digest(b"", Path(self.states.__code__.co_filename))
+    def sources(self) -> tuple[bytes, *tuple[Path, ...]]:
+        """Return the file that defines the states."""
+        return b"", Path(self.states.__code__.co_filename)
 
     def ask(self, text: str) -> bytes:
         """Call the functions. If one raises, the status of the response names the exception. What they print goes to standard error."""
@@ -135,14 +140,6 @@ class Functions(Program):
                 return json.dumps(answered(json.loads(text), self.refuses, self.states)).encode()
         except Exception as error:
             raise ProgramError(ProgramStatus.CRASHED, f"{type(error).__name__}: {error}") from error
-
-
-def _digest(text: bytes, *files: Path) -> str:
-    """Return a digest of a text and of files, as far as they are there."""
-    import hashlib  # 2 ms that only a study needs
-
-    parts = (text, *(file.read_bytes() if file.is_file() else b"" for file in files))
-    return hashlib.sha256(b"\0".join(parts)).hexdigest()
 
 
 @lru_cache(maxsize=256)

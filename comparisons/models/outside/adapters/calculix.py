@@ -61,13 +61,12 @@ MEMORY = 1e5
 
 def refusal(scene: Table) -> str | None:
     """Return why the deck of bricks cannot state the scene."""
-    beam, reason = scene["beams"][0], one_strip(scene)
-    if reason is not None:
+    if (reason := one_strip(scene)) is not None:
         return reason
     if len(scene["loads"]) + len(scene["contacts"]) != 1:
         return "the adapter has one load or one contact"
     for load in scene["loads"]:
-        along, _ = axes(beam) @ load["force"]
+        along, _ = axes(scene["beams"][0]) @ load["force"]
         if load["end"] != "end" or load["moment"] or abs(along) > 1e-12 * max(map(abs, load["force"])):
             return "the adapter has a transverse force at the free end"
     for item in scene["contacts"]:
