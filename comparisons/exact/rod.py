@@ -191,8 +191,7 @@ class Follower:
         (phase, nodes), ending = swept, None
         for before, after in pairwise([start, *nodes]):
             if np.any(after.margins < -self.edge):
-                event = self._event(phase, start, before, after)
-                if event is None:
+                if (event := self._event(phase, start, before, after)) is None:
                     return False
                 t, ending = event
                 own = [] if t - start.t < _AT_ONCE else self._nodes(phase, start, t)

@@ -201,7 +201,7 @@ def _sections(scene: Scene, beam: str, state: Equilibrium) -> Sections:
     length, pairs = scene.beam(beam).length, [spec.pair for spec in scene.contacts if spec.beam == beam]
     jumps = [state.contacts[pair].arc_position for pair in pairs if pair in state.contacts]
     sides = [np.nextafter(arc, side) for arc in jumps for side in (0.0, length)]
-    arc = np.unique(np.concatenate([np.linspace(0.0, length, POINTS), sides]))
+    arc = np.unique([*np.linspace(0.0, length, POINTS), *sides])
     shape = state.shape(beam, arc)
     return Sections(arc=arc, N=shape.N, V=shape.Q, M=shape.moment)
 

@@ -103,7 +103,7 @@ class Solid(Model):
             contacts=contacts,
             material_force=Deferred(lambda: j_integrals(scene, result)),
             round_off=result.round_off,
-            events=_events(result) if any(contact.friction for contact in problem.contacts) else None,
+            events=_events(result) if any(spec.friction for spec in problem.contacts) else None,
             deformation=Deformation(
                 load_parameter=result.load_parameter, turn=turn, strain=np.zeros_like(turn), bearable=1.0
             ),
@@ -273,10 +273,7 @@ class _Joints:
 
 
 def _is_clamp(scene: Scene, spec: SupportSpec) -> bool:
-    """Whether a support clamps the edge itself: it holds a single end at rest that bears no load and no spring.
-
-    Any other support holds the mean displacement and rotation of the end's section.
-    """
+    """Whether a support clamps the edge itself, a single end at rest without load and spring; others hold the section's mean motion."""
     if len(spec.held) < len(COMPONENTS):
         return False
     if not (scene.prescribed_motions[spec.node].moves or spec.node in occupied(scene)):

@@ -205,11 +205,7 @@ def _reporter(structure: tsm.Structure, watch: Watch) -> Callable[[Any], None]:
 
 
 def _grid(scene: Scene, result: Any, k: int) -> Grid:
-    """Return the elements as lines, which share no points, because section forces jump at a contact.
-
-    The field `arc` is the distance along the undeformed axis. Axial stresses are given at
-    the right and the left face, seen along the beam. `height` is 0 where the section has no height.
-    """
+    """Return the elements as lines that share no points, since forces jump at a contact; `height` is 0 where the section has none."""
     parts = []
     for number, beam in enumerate(scene.beams):
         stations = result.stations(beam.name, k)

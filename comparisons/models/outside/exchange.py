@@ -111,9 +111,8 @@ def answer(output: bytes, scene: Scene, model: str) -> Response:
         response = restated({"scene": scene.name, **given, **data, "model": model})
         t = np.array(scene.times[: len(response.load_parameter)])
         if "tips" not in data and t.size:
-            ends = {beam.name: -1 if scene.tip(beam.name) == "end" else 0 for beam in scene.beams}
             lines = sampled_axes(response).position
-            tips = {name: lines[name][:, end] for name, end in ends.items() if name in lines}
+            tips = {beam: line[:, 0 if scene.tip(beam) == "start" else -1] for beam, line in lines.items()}
             response = replace(response, tips=tips)
         wrong = next(contradictions(response, scene), "")
     except NotFiniteError as error:

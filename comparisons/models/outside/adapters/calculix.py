@@ -54,7 +54,6 @@ DECK = Path(__file__).with_name("calculix.inp.jinja")
 _HEADER = re.compile(r" (displacements|forces) \(.*\) for set (\S+) and time\s+(\S+)")
 _SHORT = re.compile(r"(?<=\d)(?=[+-]\d{3}$)")
 """Place of the E that Fortran leaves out before an exponent of three digits."""
-_TAIL = 300
 MEMORY = 1e5
 """Limit on the memory of CalculiX [MB]."""
 
@@ -188,15 +187,12 @@ class Slab:
         )
 
     def _answer(self, steps: int, **action: Any) -> Answer:
-        """Return the answer up to the last increment that was printed completely; raise `ProgramError` if there is none.
-
-        The clamp named ``rod`` holds transverse motion on the edge's middle line only.
-        """
+        """Return the answer up to the last increment that was printed completely; raise `ProgramError` if there is none."""
         from jinja2 import Template
 
         strip, n, (nx, ny) = self.strip, self.numbers, self.strip.mesh
         x, y, z = np.array([[*map(int, place)] for place in _BRICK.split()]).T
-        held = n[0] if strip.clamp == "full" else n[0, ny]
+        held = n[0] if strip.clamp == "full" else n[0, ny]  # of the clamp "rod" the edge's middle line alone
         named = {"CLAMP": n[0], "HELD": held, "MIDDLE": n[:, :, 0], "TIP": n[-1, :, 0], "AXIS": n[:, ny, 0]}
         sets = {name: numbers[numbers > 0] for name, numbers in named.items()}
         deck = Template(DECK.read_text(encoding="ascii"), trim_blocks=True, keep_trailing_newline=True)
@@ -222,7 +218,7 @@ class Slab:
         return Answer(np.array(times[:count]), mean, forces.sum(axis=1), moment, self.axis + bent, stopped)
 
 
-def run(deck: str, seconds: float = 300.0) -> tuple[list[float], Tables, str]:
+def run(deck: str, seconds: float) -> tuple[list[float], Tables, str]:
     """Run ``ccx`` on a deck, on one thread, for at most `seconds`; return what `parse` reads, and why it did not finish, empty if it did."""
     words = reason = ""
     with tempfile.TemporaryDirectory(prefix="calculix-") as folder:
@@ -239,7 +235,7 @@ def run(deck: str, seconds: float = 300.0) -> tuple[list[float], Tables, str]:
                 reason = f"did not finish within {seconds:g} s"
         if not reason and "Job finished" not in words:
             where = words.find("*ERROR")
-            reason = f"stopped: {words[where : where + _TAIL] if where >= 0 else words[-_TAIL:]}"
+            reason = f"stopped: {words[where:][: child.TAIL] if where >= 0 else words[-child.TAIL :]}"
         found = Path(folder) / "job.dat"
         return *parse(found.read_text(encoding="ascii", errors="replace") if found.exists() else ""), reason
 
