@@ -19,7 +19,7 @@ STOPS = {
     "LOST_CONTACT": "a contact that must persist was released",
     "SLIPPED_OFF": "a contact that must persist slipped off the beam",
     "END_CONTACT": "contact with the end of a beam is not modelled",
-    Outcome.JAMMED.name: "the contact can neither stick nor slip",
+    "JAMMED": "the contact can neither stick nor slip",
 }
 """Reasons why an exact solution stops."""
 _LOST = [state.name for state in Outcome if state.ends]

@@ -19,7 +19,7 @@ from comparisons.answer import (
 from comparisons.answer.material import AWAY, Deferred, clamped
 from comparisons.models import theory
 from comparisons.models.model import Model, ModelError, Options, Reached, Style, Watch, refused
-from comparisons.models.shared import joints, kept, line_loads, occupied, of_result, result_of, ways
+from comparisons.models.shared import joints, kept, line_loads, occupied, of_result, ways
 from comparisons.scene import BeamSpec, LoadSpec, Scene, SupportSpec
 from comparisons.scene.conditions import COMPONENTS
 from comparisons.scene.keys import SPECIAL
@@ -64,7 +64,8 @@ class Solid(Model):
             watch(Reached(step.load_parameter, step.iterations, tuple(touching)))
 
         problem = to_solid(scene, mesh=options.mesh)
-        result = result_of(fem_reference, problem, scene, options, report)
+        settings = fem_reference.Settings(branch=options.branch or "stop")
+        result = fem_reference.solve(problem, np.array(scene.times), settings, throw=False, watch=report)
         beam = np.repeat(np.arange(len(scene.beams)), [len(body.mesh.nodes) for body in result.model.bodies])
 
         def axis_line(beam: str, k: int) -> tuple[Array, Array]:

@@ -21,7 +21,7 @@ from comparisons.answer import (
 )
 from comparisons.models import theory
 from comparisons.models.model import Model, ModelError, Options, Reached, Style, Watch
-from comparisons.models.shared import kept, line_loads, of_result, result_of, rows, ways
+from comparisons.models.shared import kept, line_loads, of_result, rows, ways
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 from comparisons.scene.keys import SPECIAL
 from tsm.elements import ELEMENTS, ClosedForm, ElementType
@@ -84,8 +84,9 @@ class Tsm(Model):
         if tolerance is not None and kind.meshed:
             integrated = ", ".join(name for name, other in tsm.ELEMENTS.items() if not other.meshed)
             raise ModelError(f"integration_tolerance = {tolerance:g}: belongs to element = {integrated}")
-        settings = {} if tolerance is None else {"integration_tolerance": tolerance}
-        result = result_of(tsm, structure, scene, options, _reporter(structure, watch), **settings)
+        own = {} if tolerance is None else {"integration_tolerance": tolerance}
+        settings, report = tsm.Settings(branch=options.branch or "stop", **own), _reporter(structure, watch)
+        result = tsm.solve(structure, np.array(scene.times), settings, throw=False, watch=report)
 
         def sections(beam: str, k: int) -> Sections:
             stations = result.stations(beam, k)

@@ -132,10 +132,7 @@ def _adopt(adopts: int) -> None:
 
 
 def _family(others: Container[int] = ()) -> dict[int, int]:
-    """Return the resident memory [byte] of what programs have started, by process; none where the system has no ``/proc``.
-
-    A program is a child in another session than this process, and none of `others`, which are from before; it may be adopted.
-    """
+    """Return the resident memory [byte] of programs, children in another session but `others`, and of their own; {} without ``/proc``."""
     every = {}
     for file in Path("/proc").glob("[0-9]*/stat") if LINUX else ():
         with suppress(OSError):

@@ -85,8 +85,8 @@ def _contact(ops: Any, mesh: Frame, item: Table) -> dict[int, int]:
     (x0, y0), (x1, y1) = beam["start"], beam["end"]
     ops.node(first, x - across * s + inward * (x1 - x0), y + across * c + inward * (y1 - y0))
     times, ways = mesh.way(pin)
-    for k in (0, 1):
-        ops.timeSeries("Path", first + k, "-time", *times, "-values", *ways[k])
+    for k, way in enumerate(ways):
+        ops.timeSeries("Path", first + k, "-time", *times, "-values", *way)
         ops.pattern("Plain", first + k, first + k)
         ops.sp(first, k + 1, 1.0)
     touching = {first + k: k for k in mesh.elements_of(beam)}
