@@ -56,10 +56,9 @@ def to_rod(scene: Scene, who: str = "the exact rod") -> RodScene:
     if others:
         raise ModelError(f'{have} one support, beam "{beam.name}" has two')
     pin, contact = scene.pins[0], scene.contacts[0]
-    along = np.array(beam.direction) * (1.0 if clamp.end == "start" else -1.0)
-    left = np.array([-along[1], along[0]])
-    mirrored = contact.side == ("left" if clamp.end == "start" else "right")
-    axes = np.stack([along, -left if mirrored else left], axis=1)
+    (c, s), along = beam.direction, 1.0 if clamp.end == "start" else -1.0
+    left = 1.0 if contact.side == "right" else -1.0
+    axes = np.array([[along * c, -left * s], [along * s, left * c]])
     stations = np.union1d([0.0, *scene.times], pin.corners)
     path = (np.array([pin.position(float(t)) for t in stations]) - scene.place(clamp.node)) @ axes
     return RodScene(scene, clamp, path, np.searchsorted(stations, scene.times), axes)

@@ -78,11 +78,11 @@ def restored(response: Response, scene: Scene) -> Response:
     """Return a response from a file with the kind that its model is registered with, and checked as when it was solved."""
     from comparisons.models.outside.programs import known
 
-    kind = _kind(response, MODELS.get(response.model) or known(response.model))
+    response = replace(response, **_kind(response, MODELS.get(response.model) or known(response.model)))
     if response.completed and not response.reported_success:
         contradiction = f"the status is {response.status}, and reported_success is false"
-        return replace(response, **kind, status=CHECK_FAILED, message=contradiction)
-    return verified(replace(response, **kind), scene)
+        return replace(response, status=CHECK_FAILED, message=contradiction)
+    return verified(response, scene)
 
 
 def certified(

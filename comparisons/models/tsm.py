@@ -1,7 +1,6 @@
 """Beams by the tangent stiffness method."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cache
 from itertools import accumulate
 from math import hypot, nan, sqrt
@@ -66,7 +65,7 @@ class Tsm(Model):
     def kind(self, scene: Scene, options: Options) -> ElementType:
         """Return the type of the elements, by `rule` where the options name none."""
         suited = options.element or self.rule(scene, options).partition(",")[0]
-        return self.element(replace(options, element=suited))
+        return self.element(Options(element=suited))
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why no element of the tangent stiffness method states `scene`; None if one does."""
