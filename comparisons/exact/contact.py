@@ -25,14 +25,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
-from comparisons.exact.section import (
-    COMPLEX_STEP,
-    Array,
-    Flexibility,
-    Section,
-    integrate,
-    tangent,
-)
+from comparisons.exact.section import COMPLEX_STEP, Array, Flexibility, Section, integrate, tangent
 from comparisons.frozen import Value
 
 Real = NDArray[np.float64]
@@ -40,7 +33,6 @@ _LARGEST_CORRECTION, _CONVERGED = 0.1, 3e-8
 _ROUND_OFF, _NOISE = 1e-14, 1e-5
 """A residual at round-off, and the correction that it may leave where the equations are stiff."""
 _SINGULAR = 1e13
-_ARC = np.array([0.0, 0.0, 0.0, 1.0])
 
 
 class Contact(NamedTuple):
@@ -53,20 +45,12 @@ class Contact(NamedTuple):
     roll: Array
 
 
-class Held(NamedTuple):
-    """Arc position, A and roll at a place of a stick."""
-
-    arc: float
-    factor: float
-    roll: float
-
-
 class Phase(NamedTuple):
     """Slip of a sense, or stick, whose sense is 0, since a load parameter; an earlier place of a stick, and c from there on."""
 
     sense: int
     since: float
-    held: Held
+    place: "Linear | None" = None
     area: Polynomial = Polynomial([0.0])
 
 
@@ -80,14 +64,9 @@ class Linear(NamedTuple):
     slope: Contact
 
     @property
-    def held(self) -> Held:
-        """Place of a stick."""
-        return Held(self.z[3], float(self.here.factor), float(self.here.roll))
-
-    @property
     def slip(self) -> Real:
         """Derivatives (4,) of the slip."""
-        return np.asarray(self.here.factor * _ARC + self.slope.roll)
+        return np.asarray(self.slope.roll + np.array([0.0, 0.0, 0.0, self.here.factor]))
 
     def rates(self, velocity: Real, *, stick: bool) -> Real | None:
         """Rates of the unknowns (4,) at a velocity of the pin (2,); None where they are not determined."""
@@ -150,9 +129,10 @@ class Cantilever(Value):
         table = z + 1j * COMPLEX_STEP * np.eye(4)
         found = self.contact(table, pin)
         last = found.tangential - phase.sense * self.friction * found.normal
-        if not phase.sense:
-            arc, factor, roll = phase.held
-            last = (found.factor + factor) / 2.0 * (table[:, 3] - arc) + found.roll - roll - phase.area(t)
+        if not phase.sense and phase.place is not None:
+            arc, before = phase.place.z[3], phase.place.here
+            mean = (found.factor + before.factor) / 2.0
+            last = mean * (table[:, 3] - arc) + found.roll - before.roll - phase.area(t)
         rows = np.column_stack([found.residual, last])
         here, slope = (
             Contact(*part) for part in zip(*((f[0].real, f.imag / COMPLEX_STEP) for f in found), strict=True)

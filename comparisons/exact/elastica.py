@@ -8,11 +8,9 @@ straight. With `u = tc - theta` the first integral of the moment equation is `EI
     I0 = int_0^tc du/sqrt(sin u),   I1 = int_0^tc cos u/sqrt(sin u) du = 2 sqrt(sin tc),   I2 = int_0^tc sqrt(sin u) du
     s = lam I0,   x = lam (cos tc I1 + sin tc I2),   y = lam (sin tc I1 - cos tc I2)
 
-so that the polar angle of the pin is `tc - arctan(I2/I1)`. It grows with `tc` up to the fold at `fold_angle()`, where the pin
+so that the polar angle of the pin is `tc - arctan(I2/I1)`. It grows with `tc` up to the fold at `FOLD`, where the pin
 is a little behind the clamp. The branch below the fold starts at the straight beam.
 """
-
-from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,8 +18,12 @@ from scipy.optimize import brentq
 from scipy.special import beta, betainc
 
 from comparisons.exact.contact import Cantilever, Real
-from comparisons.exact.path import Event, Outcome, RodPath, Row, changed, collected, require, vertices
+from comparisons.exact.path import Change, Outcome, RodPath, Row, collected, require, vertices
 from comparisons.exact.section import Flexibility
+
+FOLD = 2.9834184819066856
+"""Tangent angle `tc` of the largest polar angle of the pin, at the end of the branch from the straight beam: the root of
+`1 + 2 k^2 + k cot tc = 0` with `k = I2/I1`, where the derivative of `tc - arctan k` vanishes."""
 
 
 def _integrals(u: Real | float) -> tuple[Real, Real, Real]:
@@ -37,35 +39,15 @@ def _polar_angle(tc: float) -> float:
     return tc - float(np.arctan2(I2, I1))
 
 
-@cache
-def fold_angle() -> float:
-    """Tangent angle `tc` of the largest polar angle of the pin, at the end of the branch from the straight beam.
-
-    Root of `1 + 2 k^2 + k cot tc = 0` with `k = I2/I1`, where the derivative of `tc - arctan k` vanishes.
-
-    Examples
-    --------
-    >>> round(fold_angle(), 9)
-    2.983418482
-    """
-
-    def slope(tc: float) -> float:
-        _, I1, I2 = _integrals(tc)
-        k = float(I2 / I1)
-        return float(1.0 + 2.0 * k**2 + k / np.tan(tc))
-
-    return float(brentq(slope, 2.0, 3.1, xtol=1e-15))
-
-
 def _state(x: float, y: float) -> tuple[Outcome, Real]:
     """State of contact with a pin at a place, where EI = L = 1, and force, moment at the clamp and arc position."""
     if y <= 0.0:
         touches = y == 0.0 and 0.0 < x <= 1.0
         return Outcome.CONTACT if touches else Outcome.OPEN, np.array([0.0, 0.0, 0.0, x])
-    polar, fold = float(np.arctan2(y, x)), fold_angle()
-    if polar >= _polar_angle(fold):
+    polar = float(np.arctan2(y, x))
+    if polar >= _polar_angle(FOLD):
         return Outcome.LOST, np.full(4, np.nan)
-    tc = float(brentq(lambda angle: _polar_angle(angle) - polar, polar, fold, xtol=1e-300, rtol=1e-15))
+    tc = float(brentq(lambda angle: _polar_angle(angle) - polar, polar, FOLD, xtol=1e-300, rtol=1e-15))
     I0, I1, I2 = map(float, _integrals(tc))
     lam = float(np.hypot(x, y)) / float(np.hypot(I1, I2))
     F, s = 1.0 / (2.0 * lam**2), lam * I0
@@ -76,7 +58,7 @@ def _state(x: float, y: float) -> tuple[Outcome, Real]:
 def elastica_under_pin(points: ArrayLike, *, EI: float = 1.0, length: float = 1.0) -> RodPath:
     """Equilibrium of the elastica under a frictionless pin at every vertex of the pin's path.
 
-    The states are on the branch from the straight beam, `0 < tc < fold_angle()`, on which `y/x` increases. They depend only on the
+    The states are on the branch from the straight beam, `0 < tc < FOLD`, on which `y/x` increases. They depend only on the
     position of the pin, except that a pin which has left the beam stays off it while it is above the straight beam. A pin that has never
     touched the beam is `SLIPPED` too if it is beyond the tip.
 
@@ -106,13 +88,13 @@ def elastica_under_pin(points: ArrayLike, *, EI: float = 1.0, length: float = 1.
     """
     require("positive and finite", EI=EI, length=length)
     pins, times = vertices(points)
-    rows, events, before = list[Row](), list[Event](), Outcome.OPEN
+    rows, changes, before = list[Row](), list[Change](), Outcome.OPEN
     for t, (x, y) in zip(times.tolist(), (pins / length).tolist(), strict=True):
         state, z = _state(x, y)
         if before is Outcome.SLIPPED and y > 0.0:
             state = before
         if state is not before:
-            events.append(changed(t, before, state, z))
+            changes.append((t, before, state, z))
         rows.append(Row(t, state, z))
         before = state
-    return collected(Cantilever(flexibility=Flexibility(0.0, 0.0)), rows, events, EI, length)
+    return collected(Cantilever(flexibility=Flexibility(0.0, 0.0)), rows, changes, EI, length)

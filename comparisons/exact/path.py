@@ -1,7 +1,6 @@
 """What an exact solution states along the path of a pin: states of contact, events, and the states of the rod in the units of the input."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable
 from enum import StrEnum
 from math import inf
 from typing import NamedTuple
@@ -115,14 +114,12 @@ class Row(NamedTuple):
     iterations: int = 0
 
 
-def changed(t: float, before: Outcome, after: Outcome, z: Real) -> Event:
-    """Return a change of state at unknowns (4,)."""
-    arc, force = float(z[3]), float(np.hypot(*z[:2]))
-    return Event(load_parameter=float(t), before=before, after=after, arc_position=arc, magnitude=force)
+Change = tuple[float, Outcome, Outcome, Real]
+"""Load parameter of a change of state, the states before and after it, and the unknowns (4,)."""
 
 
-def collected(rod: Cantilever, rows: list[Row], events: Sequence[Event], EI: float, length: float) -> RodPath:
-    """Return the states in the units of the input."""
+def collected(rod: Cantilever, rows: list[Row], changes: list[Change], EI: float, length: float) -> RodPath:
+    """Return the states and their changes in the units of the input."""
     unit, energy = EI / length**2, EI / length
     t, outcome, unknowns, energies, iterations = zip(*rows, strict=True)
     touches = np.array([state.touches for state in outcome])
@@ -142,8 +139,14 @@ def collected(rod: Cantilever, rows: list[Row], events: Sequence[Event], EI: flo
         dissipated=dissipated + lost,
         iterations=np.diff(iterations, prepend=0),
         events=tuple(
-            replace(event, arc_position=length * event.arc_position, magnitude=unit * event.magnitude)
-            for event in events
+            Event(
+                load_parameter=float(t),
+                before=before,
+                after=after,
+                arc_position=length * float(z[3]),
+                magnitude=unit * float(np.hypot(*z[:2])),
+            )
+            for t, before, after, z in changes
         ),
         unknowns=z,
         rod=rod,

@@ -6,7 +6,6 @@ the path of the pin turns and where a phase ends, the state that follows is the 
 """
 
 from collections.abc import Iterable, Iterator
-from enum import IntEnum
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -16,8 +15,8 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 
-from comparisons.exact.contact import Cantilever, Held, Linear, Phase, Real
-from comparisons.exact.path import Event, Outcome, RodPath, Row, changed, collected, require, vertices
+from comparisons.exact.contact import Cantilever, Linear, Phase, Real
+from comparisons.exact.path import Change, Outcome, RodPath, Row, collected, require, vertices
 from comparisons.exact.section import Flexibility, rule
 
 _GAUSS, _WEIGHTS = rule(8)
@@ -41,29 +40,21 @@ _SAME_DIRECTION = 1e-9
 _NO_RATE, _SHORT_STEP = 1e-9, 1e-5
 """A rate below the first is zero; the next order shows after the second, in load parameters."""
 _STATES = {1: Outcome.SLIP_TO_TIP, -1: Outcome.SLIP_TO_CLAMP, 0: Outcome.STICK}
-
-
-class Ending(IntEnum):
-    """Why a phase ends, in the order of the margins; of two at one load parameter the later one counts."""
-
-    FRICTION = 0
-    RELEASE = 1
-    SLIP_OFF = 2
+_ENDINGS = (None, Outcome.OPEN, Outcome.SLIPPED)
+"""States after a phase by the margin that ends it, None where friction decides; of two at one load parameter the later one counts."""
 
 
 class Node(NamedTuple):
-    """Equilibrium at a load parameter: unknowns and rates (4,), margins (3,), rates of work and dissipation (2,), place of a stick and dc/dt.
+    """Equilibrium at a load parameter, with the rates of its unknowns (4,), margins (3,), and rates of work and dissipation (2,).
 
     The margins are positive while a phase lasts: slip rate or distance from the cone, normal force, rest of the rod.
     """
 
     t: float
-    z: Real
+    linear: Linear
     rates: Real
     margins: Real
     flow: Real
-    held: Held
-    creep: float
 
 
 class Follower:
@@ -77,18 +68,16 @@ class Follower:
             )
         touches = not rod.friction and height >= -_TOUCH and x <= 1.0 + _TOUCH
         self.rod, self.state = rod, Outcome.CONTACT if touches else Outcome.OPEN
-        self.t, self.z, self.phase = 0.0, np.array([0.0, 0.0, 0.0, x]), Phase(1, 0.0, Held(1.0, 1.0, 0.0))
+        self.t, self.z, self.phase = 0.0, np.array([0.0, 0.0, 0.0, x]), Phase(1, 0.0)
         self.edge = max(_EDGE, min(_STIFF / (rod.flexibility.stretch or 1.0), _TOGETHER))
         self.energies = np.zeros(2)
-        self.events: list[Event] = []
+        self.changes: list[Change] = []
         self.iterations = 0
         self.start, self.begin, self.velocity = place, 0.0, np.zeros(2)
 
     def follow(self, pins: Real, t: Real) -> Iterator[Row]:
         """Yield the equilibria at the vertices (s, 2) of a path, whose load parameters are t (s,)."""
         for (start, end), (begin, finish) in zip(pairwise(pins), pairwise(t), strict=True):
-            if not self.rod.friction or finish <= begin:
-                yield self._row()
             if finish > begin:
                 way, before = (end - start) / (finish - begin), self.velocity
                 turns = np.linalg.norm(way - before) > _SAME_DIRECTION * np.linalg.norm(before)
@@ -98,8 +87,8 @@ class Follower:
                         self._touch(self.t)
                     elif self.state.touches and turns:
                         self._turn()
-                    yield self._row()
-                self._along(finish)
+            yield self._row()
+            self._along(finish)
         yield self._row()
 
     def _row(self) -> Row:
@@ -158,10 +147,7 @@ class Follower:
             self._decide((edge, 0))
 
     def _decide(self, senses: Iterable[int]) -> None:
-        """Enter the only state whose rates are admissible: slip in the sense of its friction, stick whose force enters the cone.
-
-        At a touch, where there is no force, they raise the normal force.
-        """
+        """Enter the only state whose rates are admissible; at a touch they raise the normal force, too."""
         touch, possible = not self.state.touches, []
         for sense in senses:
             linear = self._linear(sense)
@@ -174,7 +160,7 @@ class Follower:
                 beyond = abs(drag) if touch else np.sign(linear.here.tangential) * drag
                 margin = float(self.rod.friction * linear.slope.normal @ rates - beyond)
             if touch and abs(margin) < _NO_RATE * np.linalg.norm(self.velocity):
-                soon = self._node(Phase(sense, self.t, linear.held), self.t + _SHORT_STEP, self.z)
+                soon = self._node(Phase(sense, self.t, linear), self.t + _SHORT_STEP, self.z)
                 margin = -1.0 if soon is None else float(soon.margins[0])
             if margin > 0.0:
                 possible.append(sense)
@@ -185,30 +171,27 @@ class Follower:
         if len(possible) != 1:
             self._change(Outcome.JAMMED)
         elif not self.state.touches or possible[0] != self.phase.sense:
-            self.phase = Phase(possible[0], self.t, self._linear().held)
+            self.phase = Phase(possible[0], self.t, self._linear())
             self._change(_STATES[possible[0]] if self.rod.friction else Outcome.CONTACT)
 
     def _linear(self, sense: int = 1) -> Linear:
         """Equations at the present state, of a phase that begins here."""
-        pin, phase = self._pin(self.t), Phase(sense, self.t, self.phase.held)
-        return self.rod.linearise(self.z, pin, phase, self.t)
+        return self.rod.linearise(self.z, self._pin(self.t), Phase(sense, self.t), self.t)
 
     def _change(self, state: Outcome) -> None:
         """Change the state, with the event."""
-        self.events.append(changed(self.t, self.state, state, self.z))
+        self.changes.append((self.t, self.state, state, self.z))
         self.state = state
 
     def _taken(self, end: float) -> bool:
         """Take a step up to a load parameter or the first event before it; false where the step must be shorter."""
-        phase, start = self.phase, self._node(self.phase, self.t, self.z)
-        swept = None if start is None else self._sweep(phase, start, end)
-        if start is None or swept is None:
+        start = self._node(self.phase, self.t, self.z)
+        if start is None or (swept := self._sweep(self.phase, start, end)) is None:
             return False
         (phase, nodes), ending = swept, None
-        for before, after in zip([start, *nodes], nodes, strict=False):
+        for before, after in pairwise([start, *nodes]):
             if np.any(after.margins < -self.edge):
-                event = self._event(phase, start, before, after)
-                if event is None:
+                if (event := self._event(phase, start, before, after)) is None:
                     return False
                 t, ending = event
                 own = [] if t - start.t < _AT_ONCE else self._nodes(phase, start, t)
@@ -222,15 +205,15 @@ class Follower:
                 return False
             self.energies = self.energies + _WEIGHTS @ flow
         node = [start, *nodes][-1]
-        self.t, self.z, self.phase = node.t, node.z, Phase(phase.sense, phase.since, node.held)
+        self.t, self.z, self.phase = node.t, node.linear.z, Phase(phase.sense, phase.since, node.linear)
         if ending is not None:
-            self._end(ending)
+            self._end(_ENDINGS[ending])
         return True
 
-    def _end(self, ending: Ending) -> None:
+    def _end(self, after: Outcome | None) -> None:
         """Enter the state after the end of a phase."""
-        if ending is not Ending.FRICTION:
-            self._change(Outcome.OPEN if ending is Ending.RELEASE else Outcome.SLIPPED)
+        if after is not None:
+            self._change(after)
         elif self.phase.sense:
             self._enter([0])
         else:
@@ -240,15 +223,14 @@ class Follower:
         """Equilibrium at a load parameter from nearby unknowns; None without convergence."""
         linear, count = self.rod.solve(guess, self._pin(t), phase, t)
         self.iterations += count
-        rates = None if linear is None else linear.rates(self.velocity, stick=not phase.sense)
-        if linear is None or rates is None:
+        if linear is None or (rates := linear.rates(self.velocity, stick=not phase.sense)) is None:
             return None
-        z, tangential, normal = linear.z, float(linear.here.tangential), float(linear.here.normal)
+        tangential, normal = float(linear.here.tangential), float(linear.here.normal)
         slip = float(linear.slip @ rates) if phase.sense else 0.0
         first = phase.sense * slip if phase.sense else self.rod.friction * normal - abs(tangential)
-        margins = np.array([first if self.rod.friction else 1.0, normal, 1.0 - z[3]])
-        flow = np.array([z[:2] @ self.velocity, tangential * slip])
-        return Node(t, z, rates, margins, flow, linear.held, float(linear.matrix[3] @ rates))
+        margins = np.array([first if self.rod.friction else 1.0, normal, 1.0 - linear.z[3]])
+        flow = np.array([linear.z[:2] @ self.velocity, tangential * slip])
+        return Node(t, linear, rates, margins, flow)
 
     def _sweep(self, phase: Phase, start: Node, end: float) -> tuple[Phase, list[Node]] | None:
         """Phase with c of its stick in a step, and the nodes of the step; None where the step must be shorter."""
@@ -256,7 +238,7 @@ class Follower:
             nodes = self._nodes(phase, start, end)
             if nodes is None or phase.sense:
                 return None if nodes is None else (phase, nodes)
-            times, creep = np.array([(node.t, node.creep) for node in nodes]).T
+            times, creep = np.array([(node.t, node.linear.matrix[3] @ node.rates) for node in nodes]).T
             if abs(_DIFFERENCE @ creep[:-1]) * (end - start.t) > _ALLOWED_AREA:
                 return None
             area = Polynomial.fit(times[:-1], creep[:-1], len(_GAUSS) - 1).integ(lbnd=start.t)
@@ -269,31 +251,31 @@ class Follower:
         """Equilibria at the Gauss points of a step, unless there is no friction, and at its end."""
         nodes = [start]
         for t in (*(start.t + (end - start.t) * _GAUSS if self.rod.friction else ()), end):
-            guess = start.z + (t - start.t) * start.rates
+            guess = start.linear.z + (t - start.t) * start.rates
             if len(nodes) > 1:
-                times, z, rates = zip(*((node.t, node.z, node.rates) for node in nodes[-2:]), strict=True)
-                guess = CubicHermiteSpline(times, z, rates)(t)
+                ends = ((node.t, node.linear.z, node.rates) for node in nodes[-2:])
+                guess = CubicHermiteSpline(*zip(*ends, strict=True))(t)
             node = self._node(phase, float(t), guess)
             if node is None:
                 return None
             nodes.append(node)
         return nodes[1:]
 
-    def _event(self, phase: Phase, start: Node, before: Node, after: Node) -> tuple[float, Ending] | None:
+    def _event(self, phase: Phase, start: Node, before: Node, after: Node) -> tuple[float, int] | None:
         """First root of a margin between two equilibria of a step, and which; None where the first one is an event itself."""
 
         def margin(t: float, k: int) -> float:
             share = (t - before.t) / (after.t - before.t)
-            node = self._node(phase, t, before.z + share * (after.z - before.z))
+            node = self._node(phase, t, before.linear.z + share * (after.linear.z - before.linear.z))
             return float(node.margins[k]) + self.edge - _EDGE if node is not None else np.nan
 
-        roots: list[tuple[float, Ending]] = []
-        for ending in Ending:
+        roots = list[tuple[float, int]]()
+        for ending, state in enumerate(_ENDINGS):
             if after.margins[ending] >= -self.edge:
                 continue
             at_edge = max(start.margins[ending], before.margins[ending]) <= self.edge
             has_lasted = start.t - phase.since > _TOGETHER or not self.rod.friction
-            if at_edge and (ending is Ending.SLIP_OFF or (before is start and has_lasted)):
+            if at_edge and (state is Outcome.SLIPPED or (before is start and has_lasted)):
                 return start.t, ending
             if before.margins[ending] <= self.edge:
                 return None
@@ -364,4 +346,4 @@ def rod_under_pin(
     rod = Cantilever(flexibility=flexibility, face=offset / length, radius=radius / length, friction=friction)
     follower = Follower(rod, pins[0] / length)
     rows = list(follower.follow(pins / length, t))
-    return collected(rod, rows, follower.events, EI, length)
+    return collected(rod, rows, follower.changes, EI, length)

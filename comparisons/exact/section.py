@@ -50,7 +50,7 @@ def integrals(fractions: Array) -> Array:
     return np.asarray(legendre.legvander(2.0 * fractions - 1.0, POINTS) @ primitives / 2.0).T
 
 
-GAUSS, WEIGHTS = rule(POINTS)
+GAUSS, _ = rule(POINTS)
 _ONCE, _END = integrals(GAUSS), integrals(np.ones(1))
 _TWICE = _ONCE @ _ONCE
 

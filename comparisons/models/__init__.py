@@ -1,7 +1,7 @@
 """The models, by name in a registry. Each model solves a scene and returns its response."""
 
 from comparisons.models.model import Model, Style
-from comparisons.models.registry import MODELS, Certify, certified, find, restored, solve
+from comparisons.models.registry import MODELS, certified, find, restored, solve
 from comparisons.models.rod import ELASTICA, ROD
 from comparisons.models.solid import SOLID
 from comparisons.models.tsm import TSM
@@ -12,7 +12,6 @@ __all__ = [
     "ROD",
     "SOLID",
     "TSM",
-    "Certify",
     "Model",
     "Style",
     "certified",

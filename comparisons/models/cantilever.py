@@ -1,41 +1,36 @@
 """One rod, clamped at one end, under one pin: the scene in the rod's frame."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from comparisons.answer import Array, Ints
-from comparisons.frozen import Value
 from comparisons.models.model import ModelError
-from comparisons.scene import BeamSpec, ContactSpec, Scene
+from comparisons.scene import Scene, SupportSpec
 from comparisons.scene.keys import unstated
 
 
-class RodScene(Value):
+class RodScene(NamedTuple):
     """One cantilever under one pin in a local frame: the clamp at the origin, the beam along +x, the pin pushes towards +y."""
 
     scene: Scene
-    beam: BeamSpec
-    clamp: str  #: Clamped end of the beam.
-    contact: ContactSpec
-    offset: float
+    clamp: SupportSpec
     path: Array  #: Places (p, 2) of the pin: at the start, at the load parameters and at the corners of its path.
     hits: Ints  #: Indices (s,) of the load parameters among them.
-    origin: Array  #: Place (2,) of the clamp.
     axes: Array  #: The local x and y axes (2, 2) as columns.
 
     @property
     def sense(self) -> int:
         """1 where the local x runs from the beam's start to its end, -1 where it runs from end to start."""
-        return 1 if self.clamp == "start" else -1
+        return 1 if self.clamp.end == "start" else -1
 
     def position(self, local: Array) -> Array:
         """Return points (..., 2) of the local frame in the scene's."""
-        return local @ self.axes.T + self.origin
+        return local @ self.axes.T + self.scene.place(self.clamp.node)
 
     def arc(self, local: Any) -> Any:
         """Return distances from the clamp as distances from the beam's start."""
-        return local if self.sense > 0 else self.beam.length - local
+        return local if self.sense > 0 else self.scene.beams[0].length - local
 
 
 def to_rod(scene: Scene, who: str = "the exact rod") -> RodScene:
@@ -46,8 +41,7 @@ def to_rod(scene: Scene, who: str = "the exact rod") -> RodScene:
     ModelError
         Unless the scene is one beam, clamped at one end, under one pin.
     """
-    unknown = unstated(scene, who)
-    if unknown is not None:
+    if (unknown := unstated(scene, who)) is not None:
         raise ModelError(unknown)
     have, beam = "the exact models have", scene.beams[0]
     if max(len(scene.beams), len(scene.pins), len(scene.contacts)) > 1:
@@ -62,19 +56,9 @@ def to_rod(scene: Scene, who: str = "the exact rod") -> RodScene:
     if others:
         raise ModelError(f'{have} one support, beam "{beam.name}" has two')
     pin, contact = scene.pins[0], scene.contacts[0]
-    along = np.array(beam.direction) * (1.0 if clamp.end == "start" else -1.0)
-    left = np.array([-along[1], along[0]])
-    mirrored = contact.side == ("left" if clamp.end == "start" else "right")
-    origin, axes = np.array(scene.place(clamp.node)), np.stack([along, -left if mirrored else left], axis=1)
+    (c, s), along = beam.direction, 1.0 if clamp.end == "start" else -1.0
+    left = 1.0 if contact.side == "right" else -1.0
+    axes = np.array([[along * c, -left * s], [along * s, left * c]])
     stations = np.union1d([0.0, *scene.times], pin.corners)
-    return RodScene(
-        scene=scene,
-        beam=beam,
-        clamp=clamp.end,
-        contact=contact,
-        offset=scene.offset(contact),
-        path=(np.array([pin.position(float(t)) for t in stations]) - origin) @ axes,
-        hits=np.searchsorted(stations, scene.times),
-        origin=origin,
-        axes=axes,
-    )
+    path = (np.array([pin.position(float(t)) for t in stations]) - scene.place(clamp.node)) @ axes
+    return RodScene(scene, clamp, path, np.searchsorted(stations, scene.times), axes)

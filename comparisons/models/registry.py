@@ -17,8 +17,6 @@ from comparisons.referee import Certificate, Verdict, certify, default_allowance
 from comparisons.referee.certify import ALLOWED
 from comparisons.scene import Scene
 
-Certify = Literal["last", "all", "none"]
-"""Load parameters to certify: the last one and the neighbours of events, all, or none."""
 FILES = ("tsm", "solid", "rod")
 """The modules of this package with a tuple ``MODELS``; a new model adds its module here."""
 MODELS: dict[str, Model] = {
@@ -35,10 +33,7 @@ def find(name: str) -> Model:
         return MODELS[name]
     from comparisons.models.outside.programs import outside
 
-    found = outside(name, taken=MODELS)
-    if found is None:
-        raise ModelError(f"model = {name}: must be one of {', '.join(MODELS)}, or a program file NAME.toml")
-    return found
+    return outside(name, MODELS)
 
 
 def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch = unwatched) -> Response:
@@ -53,8 +48,7 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
     for option, value in vars(given).items():
         if value is not None and option not in chosen.options:
             raise ModelError(f"{chosen.name}: {option} = {value}: not an option of this model")
-    unknown = chosen.unstated(scene)
-    if unknown is not None:
+    if (unknown := chosen.unstated(scene)) is not None:
         raise ModelError(unknown)
     try:
         began = perf_counter()
@@ -66,33 +60,37 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
             more["grid"] = partial(axis_grid, scene, found.axis_line)
         if not chosen.continuum:
             more["material_force"] = material_forces(found, scene, strains=chosen.rod)
-        more |= {"setting": chosen.setting(scene, given), **_kind(found, chosen.name, chosen)}
+        more |= {"setting": chosen.setting(scene, given), **_kind(found, chosen)}
         success = found.completed or found.reported_success
         return verified(replace(found, **more, reported_success=success), scene)
     except ValueError as error:
         raise ModelError(f"{chosen.name}: {error}") from error
 
 
-def _kind(response: Response, name: str, model: Model | None) -> dict[str, Any]:
+def _kind(response: Response, model: Model | None) -> dict[str, Any]:
     """Return of what kind an answer is by its model, whatever it says of itself; without a model it is a program's, which says its kind."""
     continuum = response.continuum if model is None else model.continuum
     round_off = response.round_off if continuum and model is not None else 0.0
-    return {"continuum": continuum, "outside": name not in MODELS, "round_off": round_off}
+    return {"continuum": continuum, "outside": model not in MODELS.values(), "round_off": round_off}
 
 
 def restored(response: Response, scene: Scene) -> Response:
     """Return a response from a file with the kind that its model is registered with, and checked as when it was solved."""
     from comparisons.models.outside.programs import known
 
-    kind = _kind(response, response.model, MODELS.get(response.model) or known(response.model))
+    response = replace(response, **_kind(response, MODELS.get(response.model) or known(response.model)))
     if response.completed and not response.reported_success:
         contradiction = f"the status is {response.status}, and reported_success is false"
-        return replace(response, **kind, status=CHECK_FAILED, message=contradiction)
-    return verified(replace(response, **kind), scene)
+        return replace(response, status=CHECK_FAILED, message=contradiction)
+    return verified(response, scene)
 
 
 def certified(
-    response: Response, scene: Scene, which: Certify = "last", *, allowance: float | None = None
+    response: Response,
+    scene: Scene,
+    which: Literal["last", "all", "none"] = "last",
+    *,
+    allowance: float | None = None,
 ) -> Response:
     """Return `response` with its certificate. The verdict becomes the status of a refused answer, which is not completed.
 

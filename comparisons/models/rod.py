@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import takewhile
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from comparisons.models.cantilever import RodScene, to_rod
 from comparisons.models.model import Model, ModelError, Options, Style, Watch, refused
 from comparisons.models.shared import POINTS, Axis, kept, rows
 from comparisons.models.theory import CHANGE, ROUND_OFF, Bending
-from comparisons.models.tsm import TSM, beams_refusal
+from comparisons.models.tsm import TSM
 from comparisons.referee import Equilibrium, Verdict, certify
 from comparisons.scene import Scene
 from comparisons.scene.keys import SPECIAL
@@ -39,7 +38,7 @@ class Rod(Model):
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why the rods cannot state `scene`; None if they can. Several rods are solved along the path of exact elements."""
-        return beams_refusal(scene)
+        return TSM.refusal(scene)
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:  # noqa: ARG002 - the rod has no options
         """Return the response to `scene`, not yet checked."""
@@ -48,9 +47,9 @@ class Rod(Model):
         from comparisons.exact import rod_under_pin
         from comparisons.models.rod_response import local_response
 
-        local = to_rod(scene)
-        section, radius = kept(local.beam, "EA GA EI length"), scene.radius(local.contact)
-        pin = {"friction": local.contact.friction, "offset": local.offset - radius, "radius": radius}
+        local, (contact,) = to_rod(scene), scene.contacts
+        section, radius = kept(scene.beams[0], "EA GA EI length"), scene.radius(contact)
+        pin = {"friction": contact.friction, "offset": scene.offset(contact) - radius, "radius": radius}
         return local_response(local, rod_under_pin(local.path, **section, **pin), unknowns=4)
 
 
@@ -78,8 +77,8 @@ class Elastica(Model):
         from comparisons.models.rod_response import local_response
 
         local = _on_axis(scene)
-        sizes = kept(local.beam, "EI length")
-        return local_response(local, elastica_under_pin(local.path, **sizes), unknowns=1)
+        path = elastica_under_pin(local.path, **kept(scene.beams[0], "EI length"))
+        return local_response(local, path, unknowns=1)
 
     def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:  # noqa: ARG002 - as above
         """Return the errors from missing stretch and shear."""
@@ -94,9 +93,9 @@ class Elastica(Model):
 def _on_axis(scene: Scene) -> RodScene:
     """Return `scene` in the frame of the one cantilever that a pin on its axis pushes."""
     local = to_rod(scene, "the elastica")
-    if local.contact.friction:
+    if scene.contacts[0].friction:
         raise ModelError("the elastica has no friction here, the scene has some")
-    if local.offset:
+    if scene.offset(scene.contacts[0]):
         raise ModelError(
             "the elastica has a point in contact on its axis only, the scene has a face or a round pin"
         )
@@ -116,17 +115,15 @@ def solve_rods(scene: Scene, watch: Watch) -> Response:
     """
     followed = TSM.solve(scene, TSM.reference, watch)
     found = certify(followed, scene, at=range(len(followed.load_parameter)))
-    judged = takewhile(
-        lambda item: item.verdict is Verdict.CERTIFIED and item.exact is not None, found.judged
-    )
-    states = [item.exact for item in judged if item.exact is not None]
+    states = list[Equilibrium]()
+    for item in found.judged:
+        if item.verdict is not Verdict.CERTIFIED or item.exact is None:
+            break
+        states.append(item.exact)
     spent = _dissipated(scene, followed, states)
     sound = found.verdict in (Verdict.CERTIFIED, Verdict.NOT_JUDGED) or not found.judged
     # work of pins, supports and loads is strain energy and dissipation, unknown where a node slipped off
     work = np.array([state.strain_energy for state in states]) + sum(spent.values())
-    held = {
-        node.node: rows([state.reactions[node.node] for state in states], 3) for node in scene.all_supports
-    }
     reached = slice(len(states))
 
     def axis_line(beam: str, k: int) -> Axis:
@@ -143,7 +140,9 @@ def solve_rods(scene: Scene, watch: Watch) -> Response:
         },
         work=work if spent and np.all(np.isfinite(work)) else None,
         supports={
-            node: SupportHistory(force=table[:, :2], moment=table[:, 2]) for node, table in held.items()
+            support.node: SupportHistory(force=held[:, :2], moment=held[:, 2])
+            for support in scene.all_supports
+            for held in [rows([state.reactions[support.node] for state in states], 3)]
         },
         springs={
             node: replace(one, force=one.force[reached], moment=one.moment[reached])
@@ -202,7 +201,7 @@ def _sections(scene: Scene, beam: str, state: Equilibrium) -> Sections:
     length, pairs = scene.beam(beam).length, [spec.pair for spec in scene.contacts if spec.beam == beam]
     jumps = [state.contacts[pair].arc_position for pair in pairs if pair in state.contacts]
     sides = [np.nextafter(arc, side) for arc in jumps for side in (0.0, length)]
-    arc = np.unique(np.concatenate([np.linspace(0.0, length, POINTS), sides]))
+    arc = np.unique([*np.linspace(0.0, length, POINTS), *sides])
     shape = state.shape(beam, arc)
     return Sections(arc=arc, N=shape.N, V=shape.Q, M=shape.moment)
 

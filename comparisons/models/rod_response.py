@@ -8,14 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.answer import (
-    Array,
-    ContactEvent,
-    ContactHistory,
-    FrictionHistory,
-    Response,
-    SupportHistory,
-)
+from comparisons.answer import Array, ContactEvent, ContactHistory, FrictionHistory, Response, SupportHistory
 from comparisons.exact import Outcome, RodPath
 from comparisons.models.cantilever import RodScene
 from comparisons.models.shared import POINTS
@@ -26,7 +19,7 @@ STOPS = {
     "LOST_CONTACT": "a contact that must persist was released",
     "SLIPPED_OFF": "a contact that must persist slipped off the beam",
     "END_CONTACT": "contact with the end of a beam is not modelled",
-    Outcome.JAMMED.name: "the contact can neither stick nor slip",
+    "JAMMED": "the contact can neither stick nor slip",
 }
 """Reasons why an exact solution stops."""
 _LOST = [state.name for state in Outcome if state.ends]
@@ -42,7 +35,7 @@ def _events(path: RodPath, local: RodScene) -> Iterator[ContactEvent]:
         yield ContactEvent(
             kind="touch" if touch else kinds.get(event.after, "slip"),
             load_parameter=event.load_parameter,
-            pair=local.contact.pair,
+            pair=local.scene.contacts[0].pair,
             element=0,
             arc_position=float(local.arc(event.arc_position)),
             force=event.magnitude,
@@ -52,21 +45,20 @@ def _events(path: RodPath, local: RodScene) -> Iterator[ContactEvent]:
 
 def local_response(local: RodScene, path: RodPath, *, unknowns: int) -> Response:
     """Return the response in the scene's frame, up to the last load parameter at which an equilibrium was found."""
-    scene, name, sense = local.scene, local.beam.name, local.sense
-    times = np.array(scene.times)
+    scene, sense = local.scene, local.sense
+    (beam,), (contact,), times = scene.beams, scene.contacts, np.array(scene.times)
     stop, reached = _end(path, local, times)
     met = _end_contact(local, path)
     if times[:reached].max(initial=0.0) >= met or (stop in _LOST and met <= times[reached]):
         stop, reached = "END_CONTACT", int(np.searchsorted(times, met))
     when = f" at load parameter {times[reached]:.6g}" if stop else ""
     if stop == "END_CONTACT":
-        end = "start" if sense < 0 else "end"
-        when = f": {local.contact.node} meets the {end} of {name} at load parameter {met:.9g}"
+        when = f": {contact.node} meets the {scene.tip(beam.name)} of {beam.name} at load parameter {met:.9g}"
 
     @cache
     def axis_line(_: str, k: int) -> tuple[Array, Array]:
         line = local.position(path.shape(int(local.hits[k]), POINTS)[:, :2])
-        return np.linspace(0.0, local.beam.length, POINTS), line[::sense]
+        return np.linspace(0.0, beam.length, POINTS), line[::sense]
 
     at = local.hits[:reached]
     force, outcome = path.force[at] @ local.axes.T, [path.outcome[k] for k in at]
@@ -74,7 +66,7 @@ def local_response(local: RodScene, path: RodPath, *, unknowns: int) -> Response
     slipped = np.array([one is Outcome.SLIPPED for one in outcome], dtype=bool)
     more: dict[str, Any] = {}
     friction = None
-    if local.contact.friction:
+    if contact.friction:
         friction = FrictionHistory(
             tangential=sense * path.tangential[at],
             normal=path.normal[at],
@@ -82,10 +74,12 @@ def local_response(local: RodScene, path: RodPath, *, unknowns: int) -> Response
             dissipated=path.dissipated[at],
         )
         more = {"work": path.work[at], "events": tuple(_events(path, local)), "index": np.full(reached, -1)}
-    contact = ContactHistory(
+    history = ContactHistory(
         force=np.hypot(*force.T),
         arc_position=arcs,
-        gap=np.where(np.isfinite(arcs), 0.0, np.where(slipped, np.nan, -local.path[at, 1] - local.offset)),
+        gap=np.where(
+            np.isfinite(arcs), 0.0, np.where(slipped, np.nan, -local.path[at, 1] - scene.offset(contact))
+        ),
         slip_off=path.slip_off if reached and path.slip_off <= times[reached - 1] else np.nan,
         vector=force,
         friction=friction,
@@ -96,9 +90,9 @@ def local_response(local: RodScene, path: RodPath, *, unknowns: int) -> Response
         status=stop or "COMPLETED",
         message=f"{STOPS[stop]}{when}" if stop else "all load parameters were reached",
         load_parameter=times[:reached],
-        contacts={local.contact.pair: contact},
-        supports={f"{name}.{local.clamp}": SupportHistory(force=-force, moment=moment)},
-        tips={name: local.position(path.tip[at])},
+        contacts={contact.pair: history},
+        supports={local.clamp.node: SupportHistory(force=-force, moment=moment)},
+        tips={beam.name: local.position(path.tip[at])},
         newton_iterations=np.diff(np.cumsum(path.iterations)[at], prepend=0),
         unknowns=unknowns,
         axis_line=axis_line,
@@ -108,7 +102,7 @@ def local_response(local: RodScene, path: RodPath, *, unknowns: int) -> Response
 
 def _end(path: RodPath, local: RodScene, times: Array) -> tuple[str | None, int]:
     """Return the reason why the solution stops, None if it does not, and the number of load parameters reached before."""
-    closed, keep = False, local.contact.keep
+    closed, keep = False, local.scene.contacts[0].keep
     slipped = np.searchsorted(times, path.slip_off) if keep else len(times)
     for k, state in enumerate(path.outcome):
         before = int(np.searchsorted(local.hits, k))
@@ -124,18 +118,23 @@ def _end(path: RodPath, local: RodScene, times: Array) -> tuple[str | None, int]
 
 def _end_contact(local: RodScene, found: RodPath) -> float:
     """Load parameter at which the pin meets the tip while the rod is straight, or rolls onto its corner; inf if it does not."""
-    if not local.offset:
+    scene, t = local.scene, found.load_parameter
+    offset, radius, length = (
+        scene.offset(scene.contacts[0]),
+        scene.radius(scene.contacts[0]),
+        scene.beams[0].length,
+    )
+    if not offset:
         return math.inf
-    radius, t = local.scene.radius(local.contact), found.load_parameter
-    path = local.path - [local.beam.length, 0.0]
-    tip = BeamEnd("", (0.0, 0.0), (-1.0, 0.0), local.offset - radius, radius)
+    path = local.path - [length, 0.0]
+    tip = BeamEnd("", (0.0, 0.0), (-1.0, 0.0), offset - radius, radius)
     corner = found.slip_off if radius and not np.isnan(found.slip_off) else math.inf
     for k, (start, end) in enumerate(pairwise(path)):
         if found.outcome[k].touches or t[k] >= corner:
             continue
         part = tip.meeting((start[0], start[1]), (end[0], end[1]))
         x, y = start + part * (end - start)
-        up = (-local.offset - start[1]) / (y - start[1]) if start[1] <= -local.offset < y else 1.0
-        if start[0] + up * (x - start[0]) > -1e-12 * local.beam.length:
+        up = (-offset - start[1]) / (y - start[1]) if start[1] <= -offset < y else 1.0
+        if start[0] + up * (x - start[0]) > -1e-12 * length:
             return min(corner, float((1.0 - part) * t[k] + part * t[k + 1]))
     return corner

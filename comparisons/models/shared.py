@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from comparisons.answer import Array, CriticalPoint, Response, SupportHistory
-from comparisons.models.model import Options
 from comparisons.scene import BeamSpec, PinSpec, Scene
 
 POINTS = 401
@@ -54,17 +53,6 @@ def ways(pin: PinSpec) -> dict[str, Any]:
 def rows(found: Any, width: int) -> Array:
     """Return a list of vectors as an array (n, width), also where the list is empty."""
     return np.array(found, dtype=np.float64).reshape(-1, width)
-
-
-def result_of(
-    solver: Any, problem: Any, scene: Scene, options: Options, report: Callable[[Any], None], **settings: Any
-) -> Any:
-    """Return the result of one of the solvers, a package, also where it stopped; `report` receives every accepted step."""
-    given = solver.Settings(branch=options.branch or "stop", **settings)
-    try:
-        return solver.solve(problem, np.array(scene.times), given, watch=report)
-    except solver.SolveError as error:
-        return error.result
 
 
 def of_result(

@@ -19,8 +19,8 @@ from comparisons.answer import (
 from comparisons.answer.material import AWAY, Deferred, clamped
 from comparisons.models import theory
 from comparisons.models.model import Model, ModelError, Options, Reached, Style, Watch, refused
-from comparisons.models.shared import joints, kept, line_loads, occupied, of_result, result_of, ways
-from comparisons.scene import BeamSpec, LoadSpec, Scene, SpringSpec, SupportSpec
+from comparisons.models.shared import joints, kept, line_loads, occupied, of_result, ways
+from comparisons.scene import BeamSpec, LoadSpec, Scene, SupportSpec
 from comparisons.scene.conditions import COMPONENTS
 from comparisons.scene.keys import SPECIAL
 
@@ -64,7 +64,8 @@ class Solid(Model):
             watch(Reached(step.load_parameter, step.iterations, tuple(touching)))
 
         problem = to_solid(scene, mesh=options.mesh)
-        result = result_of(fem_reference, problem, scene, options, report)
+        settings = fem_reference.Settings(branch=options.branch or "stop")
+        result = fem_reference.solve(problem, np.array(scene.times), settings, throw=False, watch=report)
         beam = np.repeat(np.arange(len(scene.beams)), [len(body.mesh.nodes) for body in result.model.bodies])
 
         def axis_line(beam: str, k: int) -> tuple[Array, Array]:
@@ -103,7 +104,7 @@ class Solid(Model):
             contacts=contacts,
             material_force=Deferred(lambda: j_integrals(scene, result)),
             round_off=result.round_off,
-            events=_events(result) if any(contact.friction for contact in problem.contacts) else None,
+            events=_events(result) if any(spec.friction for spec in problem.contacts) else None,
             deformation=Deformation(
                 load_parameter=result.load_parameter, turn=turn, strain=np.zeros_like(turn), bearable=1.0
             ),
@@ -192,16 +193,22 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
     return fem.SolidProblem(
         strips=tuple(_strip(beam, clamps, mesh) for beam in scene.beams),
         supports=tuple(
-            fem.Support(strip=spec.beam, end=spec.end, motion=joints.motion(spec), onward=later[1:])
-            for spec in scene.all_supports
+            fem.Support(strip=spec.beam, end=spec.end, motion=(x, y, turned), onward=later[1:])
+            for spec, later in scene.prescribed_motions.values()
             if spec.node not in clamps
-            for later in [scene.prescribed_motions[spec.node].increments]
+            for x, y, rotation in [spec.motion]
+            for turned in [joints.turned(spec.node, "support", rotation)]
         ),
-        joints=tuple(fem.Joint(**joint) for joint in joints.stated()),
+        joints=tuple(
+            fem.Joint(ends=tuple(ends), hinged=tuple(hinged), stiffness=tuple(hinged.values()))
+            for ends in joints.meeting
+            for hinged in [{end: joints.hinges[end] for end in ends[1:] if end in joints.hinges}]
+        ),
         springs=tuple(
             fem.Spring(strip=spec.beam, end=spec.end, stiffness=stiffness)
             for spec in scene.springs
-            for stiffness in [joints.stiffness(spec)]
+            for turned in [joints.turned(spec.node, "spring", spec.rotation or None)]
+            for stiffness in [(*spec.stiffness, turned or 0.0)]
             if any(stiffness)
         ),
         loads=(
@@ -225,18 +232,11 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
 
 
 class _Joints:
-    """The ends that meet, joint by joint, the hinges among them, and what is held or acts there."""
+    """The ends that meet, joint by joint, those with a hinge last, and the stiffnesses of the hinges."""
 
     def __init__(self, scene: Scene) -> None:
-        self.meeting = joints(scene)
         self.hinges = {hinge.node: hinge.stiffness for hinge in scene.hinges}
-
-    def stated(self) -> Iterator[dict[str, Any]]:
-        """Yield the joints. The first end is one without a hinge, if there is one."""
-        for meeting in self.meeting:
-            first, *others = sorted(meeting, key=lambda end: end in self.hinges)
-            hinged = {end: self.hinges[end] for end in others if end in self.hinges}
-            yield {"ends": (first, *others), "hinged": tuple(hinged), "stiffness": tuple(hinged.values())}
+        self.meeting = [sorted(ends, key=self.hinges.__contains__) for ends in joints(scene)]
 
     def at(self, node: str) -> list[str]:
         """Return the ends that meet at one of them."""
@@ -246,10 +246,10 @@ class _Joints:
         """Return an end without a hinge at the joint of an end."""
         return next((end for end in self.at(node) if end not in self.hinges), None)
 
-    def turn(self, node: str, kind: str) -> bool:
-        """Whether a condition on the rotation of an end turns with its joint; not where all ends of the joint turn freely in hinges."""
-        if node not in self.hinges:
-            return True
+    def turned(self, node: str, kind: str, rotation: float | None) -> float | None:
+        """Return what a condition states on the rotation of a joint; None where all of its ends turn freely in hinges."""
+        if rotation is None or node not in self.hinges:
+            return rotation
         plain = self.plain(node)
         if plain or any(self.hinges[end] for end in self.at(node)):
             way = (
@@ -258,17 +258,7 @@ class _Joints:
             raise ModelError(
                 f'the solid model states the rotation of a joint at an end without a hinge, the {kind} "{node}" has one; {way}, or --model tsm'
             )
-        return False
-
-    def motion(self, spec: SupportSpec) -> tuple[float | None, float | None, float | None]:
-        """Return the motion of a support, without a rotation where all ends of its joint turn freely in hinges."""
-        x, y, rotation = spec.motion
-        return x, y, None if rotation is None or not self.turn(spec.node, "support") else rotation
-
-    def stiffness(self, spec: SpringSpec) -> tuple[float, float, float]:
-        """Return the stiffness of a spring, without a rotation as of a support."""
-        x, y = spec.stiffness
-        return x, y, spec.rotation if spec.rotation and self.turn(spec.node, "spring") else 0.0
+        return None
 
     def loaded(self, load: LoadSpec) -> tuple[str, float]:
         """Return beam and part of its length at which a load acts; a moment acts on an end without a hinge."""
@@ -284,10 +274,7 @@ class _Joints:
 
 
 def _is_clamp(scene: Scene, spec: SupportSpec) -> bool:
-    """Whether a support clamps the edge itself: it holds a single end at rest that bears no load and no spring.
-
-    Any other support holds the mean displacement and rotation of the end's section.
-    """
+    """Whether a support clamps the edge itself, a single end at rest without load and spring; others hold the section's mean motion."""
     if len(spec.held) < len(COMPONENTS):
         return False
     if not (scene.prescribed_motions[spec.node].moves or spec.node in occupied(scene)):

@@ -1,7 +1,6 @@
 """Beams by the tangent stiffness method."""
 
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Callable
 from functools import cache
 from itertools import accumulate
 from math import hypot, nan, sqrt
@@ -21,7 +20,7 @@ from comparisons.answer import (
 )
 from comparisons.models import theory
 from comparisons.models.model import Model, ModelError, Options, Reached, Style, Watch
-from comparisons.models.shared import kept, line_loads, of_result, result_of, rows, ways
+from comparisons.models.shared import kept, line_loads, of_result, rows, ways
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 from comparisons.scene.keys import SPECIAL
 from tsm.elements import ELEMENTS, ClosedForm, ElementType
@@ -66,11 +65,16 @@ class Tsm(Model):
     def kind(self, scene: Scene, options: Options) -> ElementType:
         """Return the type of the elements, by `rule` where the options name none."""
         suited = options.element or self.rule(scene, options).partition(",")[0]
-        return self.element(replace(options, element=suited))
+        return self.element(Options(element=suited))
 
     def refusal(self, scene: Scene) -> str | None:
-        """Return why beams cannot state `scene`; None if they can."""
-        return beams_refusal(scene)
+        """Return why no element of the tangent stiffness method states `scene`; None if one does."""
+        refused = (item.pair for item in scene.contacts if item.friction and _face_slope(scene, item))
+        words = (
+            "the tangent stiffness method does not state friction on the face of a beam whose height tapers"
+        )
+        use = 'use --model solid, surface = "axis" or one height'
+        return next((f"contact {pair}: {words}; {use}" for pair in refused), None)
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked; a tolerance is for elements that integrate."""
@@ -79,8 +83,9 @@ class Tsm(Model):
         if tolerance is not None and kind.meshed:
             integrated = ", ".join(name for name, other in tsm.ELEMENTS.items() if not other.meshed)
             raise ModelError(f"integration_tolerance = {tolerance:g}: belongs to element = {integrated}")
-        settings = {} if tolerance is None else {"integration_tolerance": tolerance}
-        result = result_of(tsm, structure, scene, options, _reporter(structure, watch), **settings)
+        own = {} if tolerance is None else {"integration_tolerance": tolerance}
+        settings, report = tsm.Settings(branch=options.branch or "stop", **own), _reporter(structure, watch)
+        result = tsm.solve(structure, np.array(scene.times), settings, throw=False, watch=report)
 
         def sections(beam: str, k: int) -> Sections:
             stations = result.stations(beam, k)
@@ -138,15 +143,15 @@ class Tsm(Model):
 
     def compared(self) -> tuple[Options, ...]:
         """Return the paper's element, the recommended one, and the exact one."""
-        counts = {PAPER: (10, 20, 50), MIXED: (10, 20), EXACT: (1,)}
-        return tuple(Options(element=name, elements=n) for name in counts for n in counts[name])
+        return _counted({PAPER: (10, 20, 50), MIXED: (10, 20), EXACT: (1,)})
 
-    def resolutions(self, *, quick: bool) -> Iterator[Options]:
-        """Yield numbers of exact elements, of `mixed`, and of the paper's element."""
-        counts = {EXACT: (1, 2, 4), MIXED: (2, 3, 5, 10, 20, 40, 80, 160), PAPER: (5, 10, 20, 50, 100)}
+    def resolutions(self, *, quick: bool) -> tuple[Options, ...]:
+        """Return numbers of exact elements, of `mixed`, and of the paper's element."""
         if quick:
-            counts = {EXACT: (1,), MIXED: (2, 3, 5, 10, 20, 40), PAPER: (10, 20, 50)}
-        yield from (Options(element=name, elements=n) for name in counts for n in counts[name])
+            return _counted({EXACT: (1,), MIXED: (2, 3, 5, 10, 20, 40), PAPER: (10, 20, 50)})
+        return _counted(
+            {EXACT: (1, 2, 4), MIXED: (2, 3, 5, 10, 20, 40, 80, 160), PAPER: (5, 10, 20, 50, 100)}
+        )
 
     def error_parts(self, scene: Scene, options: Options, bent: theory.Bending) -> dict[str, float]:
         """Return the allowed error from the element's order, contact and shear."""
@@ -178,6 +183,10 @@ class Tsm(Model):
         }
 
 
+def _counted(counts: dict[str, tuple[int, ...]]) -> tuple[Options, ...]:
+    return tuple(Options(element=name, elements=n) for name in counts for n in counts[name])
+
+
 def _reporter(structure: tsm.Structure, watch: Watch) -> Callable[[Any], None]:
     """Return a function that passes accepted steps on to `watch`; elements are counted from 1."""
     counts = {beam.name: beam.elements for beam in structure.beams}
@@ -196,11 +205,7 @@ def _reporter(structure: tsm.Structure, watch: Watch) -> Callable[[Any], None]:
 
 
 def _grid(scene: Scene, result: Any, k: int) -> Grid:
-    """Return the elements as lines, which share no points, because section forces jump at a contact.
-
-    The field `arc` is the distance along the undeformed axis. Axial stresses are given at
-    the right and the left face, seen along the beam. `height` is 0 where the section has no height.
-    """
+    """Return the elements as lines that share no points, since forces jump at a contact; `height` is 0 where the section has none."""
     parts = []
     for number, beam in enumerate(scene.beams):
         stations = result.stations(beam.name, k)
@@ -232,16 +237,14 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
     element : str, optional
         Key of `tsm.ELEMENTS`, `mixed` if not given.
     """
-    refused = beams_refusal(scene)
-    if refused is not None:
+    if (refused := TSM.refusal(scene)) is not None:
         raise ModelError(refused)
     kind = TSM.element(Options(element=element))
     return tsm.Structure(
         beams=tuple(_beam(scene, beam, elements, kind) for beam in scene.beams),
         supports=tuple(
             tsm.Support(ux=ux, uy=uy, rotation=turn, onward=later[1:], **kept(own, "beam end"))
-            for motion in scene.prescribed_motions.values()
-            for own, later in [(motion.support, motion.increments)]
+            for own, later in scene.prescribed_motions.values()
             for ux, uy, turn in [own.motion]
         ),
         loads=tuple(
@@ -267,14 +270,6 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
         pins=tuple(tsm.Pin(name=pin.name, **ways(pin)) for pin in scene.pins),
         contacts=tuple(_pair(scene, contact) for contact in scene.contacts),
     )
-
-
-def beams_refusal(scene: Scene) -> str | None:
-    """Return why no element of the tangent stiffness method states `scene`; None if one does."""
-    refused = (item.pair for item in scene.contacts if item.friction and _face_slope(scene, item))
-    words = "the tangent stiffness method does not state friction on the face of a beam whose height tapers"
-    use = 'use --model solid, surface = "axis" or one height'
-    return next((f"contact {pair}: {words}; {use}" for pair in refused), None)
 
 
 def _face_slope(scene: Scene, contact: ContactSpec) -> float:

@@ -77,10 +77,6 @@ def _infinite(response: Response, _: Scene) -> Iterator[str]:
     yield from (f"{name} is not finite" for name, values in numbers.items() if not np.isfinite(values).all())
 
 
-def _unbalanced(response: Response, scene: Scene) -> Iterator[str]:
-    return iter(()) if response.outside else balance_failures(response, scene)
-
-
 def _deformed(sentence: str, failed: Callable[[Deformation], Mask]) -> Check:
     """Return the check that no element fails up to the last load parameter; the sentence has the largest turn and the bearable one."""
 
@@ -123,10 +119,6 @@ def _ajar(contact: ContactHistory, spec: ContactSpec, beam: BeamSpec, response: 
     penalty = response.outside or (response.continuum and not stated)
     gap = contact.gap if penalty else np.abs(contact.gap)
     return (contact.force > 0.0) & (gap > max(CLOSED, stated) * beam.length)
-
-
-def _passed(response: Response, scene: Scene) -> Iterator[str]:
-    return (str(item) for item in passages(response, scene) if item.certain)
 
 
 def _inside(response: Response, scene: Scene) -> Iterator[str]:
@@ -204,8 +196,10 @@ CHECKS: dict[str, Check] = {
     ),
     "round pins outside": _inside,
     "clear ends": _overlapping,
-    "sides of beams": _passed,
-    "balance": _unbalanced,
+    "sides of beams": lambda response, scene: (
+        str(item) for item in passages(response, scene) if item.certain
+    ),
+    "balance": lambda response, scene: iter(() if response.outside else balance_failures(response, scene)),
     "bend of elements": _deformed(
         "too few elements: one bends by {:.2g} rad, more than {:g}", lambda at: at.turn > at.bearable
     ),

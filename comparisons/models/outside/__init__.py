@@ -11,12 +11,10 @@ from comparisons.models.outside.adapters.exchange import (
     refined,
     serve,
 )
-from comparisons.models.outside.adapters.frame import Frame, frame
-from comparisons.models.outside.programs import Command, Functions
+from comparisons.models.outside.adapters.frame import frame
+from comparisons.models.outside.programs import Functions
 
 __all__ = [
-    "Command",
-    "Frame",
     "Functions",
     "Histories",
     "RefusedError",

@@ -5,7 +5,7 @@ import shutil
 import signal
 import sys
 from collections.abc import Container, Iterable, Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from enum import Enum
 from os import getpid, kill, waitpid
 from pathlib import Path
@@ -31,7 +31,6 @@ ADOPT = 36
 """PR_SET_CHILD_SUBREAPER: a process becomes the parent of its descendants whose own parents have ended."""
 ROUNDS = 5000
 """How often the processes that a program leaves behind are looked for and ended."""
-KILL = 9
 
 
 class ProgramStatus(Enum):
@@ -99,15 +98,16 @@ def _finished(command: list[str], how: dict[str, Any], seconds: float, memory: f
     import subprocess
 
     others, written = set(_family()), (how["stdout"], how["stderr"])
-    _adopt(1)
-    try:
-        process = subprocess.Popen(command, start_new_session=True, **how)  # noqa: S603 the program that the user names
-    except (OSError, ValueError) as error:
-        _adopt(0)
-        reason = getattr(error, "strerror", None) or str(error)
-        raise ProgramError(ProgramStatus.NOT_STARTED, f"{command[0]}: {reason}") from None
-    began, look = perf_counter(), FIRST_LOOK
-    try:
+    with ExitStack() as after:
+        _adopt(1)
+        after.callback(_adopt, 0)
+        try:
+            process = subprocess.Popen(command, start_new_session=True, **how)  # noqa: S603 the program that the user names
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or str(error)
+            raise ProgramError(ProgramStatus.NOT_STARTED, f"{command[0]}: {reason}") from None
+        after.callback(_end, process, others)
+        began, look = perf_counter(), FIRST_LOOK
         while True:
             with suppress(subprocess.TimeoutExpired):
                 return int(process.wait(timeout=look))
@@ -121,9 +121,6 @@ def _finished(command: list[str], how: dict[str, Any], seconds: float, memory: f
             ):
                 if used > most:
                     raise ProgramError(status, words.format(most))
-    finally:
-        _end(process, others)
-        _adopt(0)
 
 
 def _adopt(adopts: int) -> None:
@@ -135,10 +132,7 @@ def _adopt(adopts: int) -> None:
 
 
 def _family(others: Container[int] = ()) -> dict[int, int]:
-    """Return the resident memory [byte] of what programs have started, by process; none where the system has no ``/proc``.
-
-    A program is a child in another session than this process, and none of `others`, which are from before; it may be adopted.
-    """
+    """Return the resident memory [byte] of programs, children in another session but `others`, and of their own; {} without ``/proc``."""
     every = {}
     for file in Path("/proc").glob("[0-9]*/stat") if LINUX else ():
         with suppress(OSError):
@@ -163,7 +157,7 @@ def _end(process: Any, others: Container[int]) -> None:
             family = _family(others)
             for pid in family:
                 with suppress(ProcessLookupError, PermissionError):
-                    kill(pid, KILL)
+                    kill(pid, signal.SIGKILL)
                 if pid != process.pid:
                     with suppress(ChildProcessError):
                         waitpid(pid, os.WNOHANG)
@@ -176,7 +170,7 @@ def _end(process: Any, others: Container[int]) -> None:
         subprocess.run(["taskkill", "/T", "/F", "/PID", str(process.pid)], capture_output=True, check=False)  # noqa: S603, S607
     else:
         with suppress(ProcessLookupError, PermissionError):
-            getattr(os, "killpg", kill)(process.pid, KILL)
+            getattr(os, "killpg", kill)(process.pid, signal.SIGKILL)
     process.wait()
 
 

@@ -38,8 +38,7 @@ def request(scene: Scene, options: Options, load_parameters: Sequence[float]) ->
     of elements in place of the scene's. No load parameters ask only whether the program can state the scene. A `ModelError` names a key
     that the resolved scene does not state.
     """
-    unknown = unstated(scene, "the resolved scene")
-    if unknown is not None:
+    if (unknown := unstated(scene, "the resolved scene")) is not None:
         raise ModelError(unknown)
     data = {
         "name": scene.name,
@@ -112,9 +111,8 @@ def answer(output: bytes, scene: Scene, model: str) -> Response:
         response = restated({"scene": scene.name, **given, **data, "model": model})
         t = np.array(scene.times[: len(response.load_parameter)])
         if "tips" not in data and t.size:
-            ends = {beam.name: -1 if scene.tip(beam.name) == "end" else 0 for beam in scene.beams}
             lines = sampled_axes(response).position
-            tips = {name: lines[name][:, end] for name, end in ends.items() if name in lines}
+            tips = {beam: line[:, 0 if scene.tip(beam) == "start" else -1] for beam, line in lines.items()}
             response = replace(response, tips=tips)
         wrong = next(contradictions(response, scene), "")
     except NotFiniteError as error:

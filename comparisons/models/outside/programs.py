@@ -6,7 +6,7 @@ A program gets the resolved scene as JSON text and returns a response as JSON te
 import json
 import sys
 from abc import abstractmethod
-from collections.abc import Container
+from collections.abc import Collection
 from contextlib import redirect_stdout
 from functools import cache, lru_cache
 from importlib import import_module
@@ -50,8 +50,8 @@ class Program(Value, Model):
         )
 
     @abstractmethod
-    def digest(self) -> str:
-        """Return a digest of what its answers depend on."""
+    def sources(self) -> tuple[bytes, *tuple[Path, ...]]:
+        """Return a text and files, as far as they are there, on which its answers depend."""
 
     @abstractmethod
     def ask(self, text: str) -> bytes:
@@ -64,7 +64,12 @@ class Program(Value, Model):
     @property
     def identity(self) -> str:
         """Name of the program, and a digest of what its answers depend on."""
-        return f"{self.name} {self.digest()}"
+        import hashlib  # 2 ms that only a study needs
+
+        text, *files = self.sources()
+        parts = (text, *(file.read_bytes() if file.is_file() else b"" for file in files))
+        digest = hashlib.sha256(b"\0".join(parts)).hexdigest()
+        return f"{self.name} {digest}"
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why the program cannot state the scene, or what is missing to run it."""
@@ -103,9 +108,9 @@ class Command(Program):
     requires: str = ""
     needs: str = ""  #: How to install what it requires.
 
-    def digest(self) -> str:
-        """Return a digest of the command and of the files among its words."""
-        return _digest(json.dumps(self.command).encode(), *(self.folder / word for word in self.command))
+    def sources(self) -> tuple[bytes, *tuple[Path, ...]]:
+        """Return the command, and the files among its words."""
+        return json.dumps(self.command).encode(), *(self.folder / word for word in self.command)
 
     def missing(self) -> str | None:
         """Return what must be installed to run the command; None if it can be found."""
@@ -124,9 +129,9 @@ class Functions(Program):
     #: ``states(scene, histories)``: adds the states to `histories` and yields the load parameter of each.
     states: States
 
-    def digest(self) -> str:
-        """Return a digest of the file that defines the states."""
-        return _digest(b"", Path(self.states.__code__.co_filename))
+    def sources(self) -> tuple[bytes, *tuple[Path, ...]]:
+        """Return the file that defines the states."""
+        return b"", Path(self.states.__code__.co_filename)
 
     def ask(self, text: str) -> bytes:
         """Call the functions. If one raises, the status of the response names the exception. What they print goes to standard error."""
@@ -135,14 +140,6 @@ class Functions(Program):
                 return json.dumps(answered(json.loads(text), self.refuses, self.states)).encode()
         except Exception as error:
             raise ProgramError(ProgramStatus.CRASHED, f"{type(error).__name__}: {error}") from error
-
-
-def _digest(text: bytes, *files: Path) -> str:
-    """Return a digest of a text and of files, as far as they are there."""
-    import hashlib  # 2 ms that only a study needs
-
-    parts = (text, *(file.read_bytes() if file.is_file() else b"" for file in files))
-    return hashlib.sha256(b"\0".join(parts)).hexdigest()
 
 
 @lru_cache(maxsize=256)
@@ -181,17 +178,17 @@ _USED: dict[str, Model] = {}
 """The models from outside that this process has used, by name."""
 
 
-def outside(name: str, taken: Container[str] = ()) -> Model | None:
-    """Return a model that is none of this package; None if there is no such model.
+def outside(name: str, taken: Collection[str]) -> Model:
+    """Return a model that is none of this package.
 
     The name is that of a program file ``NAME.toml``, of one read before, of an adapter, or of an entry point. An `InputError` is
-    raised if the file cannot be read or states a name in `taken`, a `ModelError` if an entry point yields no model.
+    raised if the file cannot be read or states a name in `taken`, a `ModelError` if an entry point yields no model or there is no such model.
     """
     model = read_program(Path(name)) if name.endswith(SUFFIX) else known(name)
     if model is None and name in offered():
         model = loaded(offered()[name], Model)
     if model is None:
-        return None
+        raise ModelError(f"model = {name}: must be one of {', '.join(taken)}, or a program file NAME.toml")
     if model.name in taken or model is not ADAPTERS.get(model.name, model):
         raise InputError(name, f'program.name = "{model.name}": must not be the name of a model')
     _USED[model.name] = model

@@ -17,6 +17,7 @@ import re
 import tempfile
 from collections import defaultdict
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from fem_reference import Strip
 
 Array = NDArray[Any]
-Tables = dict[tuple[str, str], list[list[list[float]]]]
+Tables = defaultdict[tuple[str, str], list[list[list[float]]]]
 """Printed rows of three components, one table for each increment, by ``displacements`` or ``forces`` and the node set."""
 
 ACROSS = 2
@@ -53,20 +54,18 @@ DECK = Path(__file__).with_name("calculix.inp.jinja")
 _HEADER = re.compile(r" (displacements|forces) \(.*\) for set (\S+) and time\s+(\S+)")
 _SHORT = re.compile(r"(?<=\d)(?=[+-]\d{3}$)")
 """Place of the E that Fortran leaves out before an exponent of three digits."""
-_TAIL = 300
 MEMORY = 1e5
 """Limit on the memory of CalculiX [MB]."""
 
 
 def refusal(scene: Table) -> str | None:
     """Return why the deck of bricks cannot state the scene."""
-    beam, reason = scene["beams"][0], one_strip(scene)
-    if reason is not None:
+    if (reason := one_strip(scene)) is not None:
         return reason
     if len(scene["loads"]) + len(scene["contacts"]) != 1:
         return "the adapter has one load or one contact"
     for load in scene["loads"]:
-        along, _ = axes(beam) @ load["force"]
+        along, _ = axes(scene["beams"][0]) @ load["force"]
         if load["end"] != "end" or load["moment"] or abs(along) > 1e-12 * max(map(abs, load["force"])):
             return "the adapter has a transverse force at the free end"
     for item in scene["contacts"]:
@@ -86,16 +85,15 @@ def states(scene: Table, histories: Histories) -> Iterator[float]:
         **own, start=(0.0, 0.0), end=(beam["length"], 0.0),
         poissons_ratio=beam["youngs_modulus"] / (2.0 * beam["shear_modulus"]) - 1.0,
         mesh=(beam["elements"], ACROSS),
-    ))  # fmt: skip
+    ), seconds=1e5)  # fmt: skip
     penalty = PENALTY * beam["EI"] / beam["length"] ** 3
     increments = refined(scene, LOAD_STEPS if scene["loads"] else PIN_STEPS)
     steps = sum(map(len, increments))
-    if scene["loads"]:
-        deck = slab.tip_load(float((frame @ scene["loads"][0]["force"])[1]), steps)
-    else:
-        deck = slab.pin(way(beam, scene["pins"][0])[1], steps, penalty)
     try:
-        found = slab.answer(deck, seconds=1e5)
+        if scene["loads"]:
+            found = slab.tip_load(float((frame @ scene["loads"][0]["force"])[1]), steps)
+        else:
+            found = slab.pin(way(beam, scene["pins"][0])[1], steps, penalty)
     except ProgramError as error:
         raise StoppedError(str(error)) from error
     for number, t in enumerate(scene["load_parameters"]):
@@ -128,8 +126,7 @@ class Answer(NamedTuple):
 
 def tip_load(strip: "Strip", force: float) -> Answer:
     """Return the answer to a transverse dead load [N] at the free end; raise `ProgramError` unless the whole load is reached."""
-    slab = Slab(strip)
-    answer = slab.answer(slab.tip_load(force, LOAD_STEPS))
+    answer = Slab(strip).tip_load(force, LOAD_STEPS)
     if answer.stopped:
         raise ProgramError(ProgramStatus.CRASHED, f"CalculiX {answer.stopped}")
     return answer
@@ -138,7 +135,7 @@ def tip_load(strip: "Strip", force: float) -> Answer:
 def pressed(strip: "Strip", path: ArrayLike, steps: int, penalty: float) -> Answer:
     """Return the answer to a sharp pin on the right face, see `Slab.pin`, before it slips through the face or an increment fails."""
     slab = Slab(strip)
-    found = slab.answer(slab.pin(path, steps, penalty))
+    found = slab.pin(path, steps, penalty)
     through = np.flatnonzero(np.hypot(*found.force.T) < slab.unit)
     if not through.size:
         return found
@@ -153,38 +150,35 @@ class Slab:
     the number is 0 at a grid point without a node. `axis` (a, 2) and `clamp` (c, 2) are the nodes there, `unit` is the deck's unit of force.
     """
 
-    def __init__(self, strip: "Strip") -> None:
-        stated = (strip.clamped, strip.material, strip.plane, strip.mesh_file)
-        if stated != (("start",), "st-venant-kirchhoff", "stress", None):
-            raise ValueError(f"Strip({strip.name!r}): CalculiX's deck has no strip {stated}")
+    def __init__(self, strip: "Strip", seconds: float = 300.0) -> None:
         nx, ny = strip.mesh
         i, j, k = np.indices((2 * nx + 1, 2 * ny + 1, 3))
         there = i % 2 + j % 2 + k % 2 <= 1
         x, y = strip.length * i / (2 * nx), strip.height * (j / (2 * ny) - 0.5)
-        self.strip, self.thickness = strip, THINNESS * strip.height
+        self.strip, self.seconds, self.thickness = strip, seconds, THINNESS * strip.height
         self.unit = 1e-5 * strip.bending_stiffness / strip.length**2
         self.numbers = np.where(there, np.cumsum(there).reshape(there.shape), 0)
-        self.points = np.stack([x, y, THINNESS * strip.height * k / 2], axis=-1)
+        self.points = np.stack([x, y, self.thickness * k / 2], axis=-1)
         self.axis, self.clamp = (
             self.points[part][self.numbers[part] > 0][:, :2] for part in (np.s_[:, ny, 0], np.s_[0])
         )
 
-    def tip_load(self, force: float, steps: int) -> str:
-        """Deck of a transverse dead load [N], spread evenly over the free end, in equal steps."""
+    def tip_load(self, force: float, steps: int) -> Answer:
+        """Return the answer to a transverse dead load [N], spread evenly over the free end, in equal steps."""
         ny, end = self.strip.mesh[1], self.numbers[-1]
         loads = np.zeros(end.shape)
         for row in range(ny):
             loads[2 * row : 2 * row + 3] += force / self.unit / ny * _FACE
-        return self._deck(steps, loads=zip(end[end > 0], loads[end > 0], strict=True))
+        return self._answer(steps, loads=zip(end[end > 0], loads[end > 0], strict=True))
 
-    def pin(self, path: ArrayLike, steps: int, penalty: float) -> str:
-        """Deck of a sharp pin that moves along the right face in equal steps, between two points in the strip's frame, `path` (2, 2).
+    def pin(self, path: ArrayLike, steps: int, penalty: float) -> Answer:
+        """Return the answer to a sharp pin that moves along the right face in equal steps, between two points in the strip's frame, `path` (2, 2).
 
         The pin is a needle across the half slab. Its two nodes are the slaves of a contact with the face. `penalty` [N/m] is the contact
         stiffness. CalculiX multiplies the stated slope of the pressure by half the area of a face for each of the two nodes.
         """
         (nx, ny), (start, end) = self.strip.mesh, np.asarray(path)
-        return self._deck(
+        return self._answer(
             steps,
             needle=[(*start, part * self.thickness) for part in (0.25, 0.75)],
             face=range(1, 1 + nx * ny, ny),
@@ -192,34 +186,27 @@ class Slab:
             motion=(*(end - start), 0.0),
         )
 
-    def _deck(self, steps: int, **action: Any) -> str:
-        """Deck of a load or of a pin; the clamp named ``rod`` holds transverse motion on the edge's middle line only."""
+    def _answer(self, steps: int, **action: Any) -> Answer:
+        """Return the answer up to the last increment that was printed completely; raise `ProgramError` if there is none."""
         from jinja2 import Template
 
         strip, n, (nx, ny) = self.strip, self.numbers, self.strip.mesh
         x, y, z = np.array([[*map(int, place)] for place in _BRICK.split()]).T
-        held = n[0] if strip.clamp == "full" else n[0, ny]
-        sets = {"CLAMP": n[0], "HELD": held, "MIDDLE": n[:, :, 0], "TIP": n[-1, :, 0], "AXIS": n[:, ny, 0]}
+        held = n[0] if strip.clamp == "full" else n[0, ny]  # of the clamp "rod" the edge's middle line alone
+        named = {"CLAMP": n[0], "HELD": held, "MIDDLE": n[:, :, 0], "TIP": n[-1, :, 0], "AXIS": n[:, ny, 0]}
+        sets = {name: numbers[numbers > 0] for name, numbers in named.items()}
         deck = Template(DECK.read_text(encoding="ascii"), trim_blocks=True, keep_trailing_newline=True)
-        text: str = deck.render(
+        text = deck.render(
             nodes=[*zip(n[n > 0], map(tuple, self.points[n > 0]), strict=True)],
             bricks=[n[x + 2 * column, y + 2 * row, z].tolist() for column, row in np.ndindex(nx, ny)],
-            sets={name: numbers[numbers > 0] for name, numbers in sets.items()},
+            sets=sets,
             law=(strip.youngs_modulus * strip.width / self.thickness / self.unit, strip.poissons_ratio),
             steps=steps,
             **action,
         )
-        return text
-
-    def answer(self, deck: str, seconds: float = 300.0) -> Answer:
-        """Return the answer to a deck, up to the last increment that was printed completely; raise `ProgramError` if there is none."""
-        times, tables, stopped = run(deck, seconds)
-        ny, held = self.strip.mesh[1], len(self.clamp)
-        sizes = {"TIP": 2 * ny + 1, "AXIS": len(self.axis), "CLAMP": held}
-        wanted = {("displacements", name): size for name, size in sizes.items()} | {("forces", "CLAMP"): held}
-        whole = [
-            [rows for rows in tables.get(name, []) if len(rows) == size] for name, size in wanted.items()
-        ]
+        times, tables, stopped = run(text, self.seconds)
+        printed = [*product(["displacements"], ["TIP", "AXIS", "CLAMP"]), ("forces", "CLAMP")]
+        whole = [[rows for rows in tables[one] if len(rows) == len(sets[one[1]])] for one in printed]
         count = min(map(len, whole))
         if count == 0:
             raise ProgramError(ProgramStatus.CRASHED, f"CalculiX {stopped or 'printed no result'}")
@@ -231,7 +218,7 @@ class Slab:
         return Answer(np.array(times[:count]), mean, forces.sum(axis=1), moment, self.axis + bent, stopped)
 
 
-def run(deck: str, seconds: float = 300.0) -> tuple[list[float], Tables, str]:
+def run(deck: str, seconds: float) -> tuple[list[float], Tables, str]:
     """Run ``ccx`` on a deck, on one thread, for at most `seconds`; return what `parse` reads, and why it did not finish, empty if it did."""
     words = reason = ""
     with tempfile.TemporaryDirectory(prefix="calculix-") as folder:
@@ -248,16 +235,14 @@ def run(deck: str, seconds: float = 300.0) -> tuple[list[float], Tables, str]:
                 reason = f"did not finish within {seconds:g} s"
         if not reason and "Job finished" not in words:
             where = words.find("*ERROR")
-            reason = f"stopped: {words[where : where + _TAIL] if where >= 0 else words[-_TAIL:]}"
+            reason = f"stopped: {words[where:][: child.TAIL] if where >= 0 else words[-child.TAIL :]}"
         found = Path(folder) / "job.dat"
         return *parse(found.read_text(encoding="ascii", errors="replace") if found.exists() else ""), reason
 
 
 def parse(text: str) -> tuple[list[float], Tables]:
     """Read a ``.dat`` file: the end of every increment that converged, and its tables; an incomplete last line is skipped."""
-    tables: Tables = defaultdict(list)
-    times: dict[float, None] = {}
-    rows: list[list[float]] = []
+    tables, times, rows = Tables(list), dict[float, None](), list[list[float]]()
     for line in text[: text.rfind("\n") + 1].splitlines():
         if header := _HEADER.match(line):
             rows = []
@@ -265,7 +250,7 @@ def parse(text: str) -> tuple[list[float], Tables]:
             times[float(header[3])] = None
         elif line.strip():
             rows.append([float(_SHORT.sub("E", value)) for value in line.split()[1:]])
-    return list(times), dict(tables)
+    return list(times), tables
 
 
 if __name__ == "__main__":

@@ -70,8 +70,7 @@ def serve(refusal: Refusal, states: States) -> None:
 
 def answered(scene: Table, refusal: Refusal | None, states: States) -> Table:
     """Return the tables of the response to a scene, see `serve`."""
-    reason = refusal and refusal(scene)
-    if reason is not None:
+    if (reason := refusal and refusal(scene)) is not None:
         return {"status": "REFUSED", "message": reason}
     histories, began = Histories(scene), perf_counter()
     status, message = "COMPLETED", "the program reports success"

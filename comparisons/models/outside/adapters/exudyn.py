@@ -121,8 +121,9 @@ def _joint(ex: Any, system: Any, mesh: Frame, item: Table, cables: list[int]) ->
     """State the pin of a pair and its sliding joint."""
     beam, pin = mesh.pair(item)
     start, node = pin["path"][0], system.AddNode(ex.NodePoint2D(referenceCoordinates=pin["path"][0]))
-    for k in (0, 1):
-        _moved(ex, system, node, k, mesh.way(pin)[0], mesh.way(pin)[1][k])
+    times, ways = mesh.way(pin)
+    for k, way in enumerate(ways):
+        _moved(ex, system, node, k, times, way)
     own = [cables[k] for k in mesh.elements_of(beam)]
     part = min(max(projection(beam["start"], beam["end"], start)[0], 0.0), 1.0)
     first = min(int(part * len(own)), len(own) - 1)

@@ -47,10 +47,10 @@ def states(scene: Table, histories: Histories) -> Iterator[float]:
     for steps in refined(scene, STEPS):
         for t in steps:
             load.update(np.where(axis[end], 4.0, 1.0)[:, None] / 6.0 * t * full)
-            closed = [pin for pin in pins if pin.presses(t)]
+            closed = [pin for pin in pins if pin.pressed(t)]
             try:
                 fem.newtonraphson(items=[solid, load, *closed], **options)
-                if len(closed) > len(closed := [pin for pin in closed if pin.presses(t)]):
+                if len(closed) > len(closed := [pin for pin in closed if pin.pressed(t)]):
                     fem.newtonraphson(items=[solid, load, *closed], **options)
             except (ValueError, np.linalg.LinAlgError) as error:
                 raise StoppedError(f"{error} at load parameter {t:.6g}") from error
@@ -89,17 +89,16 @@ class _Contact:
         at = foot(place, self.pin)
         return at, place[at.first : at.first + 3]
 
-    def presses(self, t: float) -> bool:
-        """Move the pin to a load parameter; return whether its foot lies on the line and it is beyond the line."""
+    def pressed(self, t: float) -> Foot | None:
+        """Move the pin to a load parameter; return its foot if this lies on the line and the pin is beyond the line."""
         self.pin = np.array([np.interp(t, self.way[0], self.way[1][:, k]) for k in (0, 1)])
         at, _ = self.now()
-        return abs(at.xi) <= 1.0 + 1e-9 and self.gap(at) < 0.0
+        return at if abs(at.xi) <= 1.0 + 1e-9 and self.gap(at) < 0.0 else None
 
     def add(self, histories: Histories, t: float, frame: Any) -> None:
-        if not self.presses(t):
+        if (at := self.pressed(t)) is None:
             histories.open(self.pair)
             return
-        at, _ = self.now()
         force = self.stiffness * self.gap(at) * self.side * at.normal @ frame
         arc = at.shape @ self.points[self.line[at.first : at.first + 3], 0]
         histories.contact(self.pair, force, float(arc), self.gap(at))
@@ -110,12 +109,12 @@ class _Contact:
 
     def sparse(self, values: Any, first: int, columns: int) -> Any:
         """Return values of three nodes as a sparse matrix of all unknowns."""
-        from scipy.sparse import csr_matrix
+        from scipy.sparse import lil_matrix
 
         rows = (2 * self.line[first : first + 3, None] + [0, 1]).ravel()
-        place = np.meshgrid(rows, rows if columns > 1 else [0], indexing="ij")
-        entries = values.ravel(), (place[0].ravel(), place[1].ravel())
-        return csr_matrix(entries, shape=(self.points.size, columns))
+        found = lil_matrix((self.points.size, columns))
+        found[np.ix_(rows, rows if columns > 1 else np.array([0]))] = values.reshape(rows.size, -1)
+        return found.tocsr()
 
     def vector(self, field: Any = None, **_: Any) -> Any:
         self.field = self.field if field is None else field

@@ -42,20 +42,6 @@ class Frame(Value):
         """Return the indices of the elements of a beam."""
         return [k for k, one in enumerate(self.elements) if one.beam is beam]
 
-    def beside(self, contact: Table, radius: float) -> tuple[tuple[float, float], float]:
-        """Return the start of a contact's pin, moved across the axis until a gap of the scene is one for `radius`; and its gap."""
-        beam, pin = self.pair(contact)
-        (x, y), (c, s), side = pin["path"][0], beam["direction"], 1.0 if contact["side"] == "left" else -1.0
-        _, left = projection(beam["start"], beam["end"], (x, y))
-        across = side * (radius - contact["offset"])
-        return (x - across * s, y + across * c), side * left - contact["offset"]
-
-    def arc_position(self, element: int, places: Sequence[Any], point: Any) -> float:
-        """Return the arc position of the foot of a point on the chord of an element."""
-        item = self.elements[element]
-        part, _ = projection(places[item.nodes[0]], places[item.nodes[1]], point)
-        return item.arc + min(max(part, 0.0), 1.0) * item.length
-
     def add(self, histories: Histories, places: Sequence[Any], reactions: Sequence[Any]) -> None:
         """Add positions (n, 2) of the nodes and reactions (n, 3), force and moment, of the supported ones to histories."""
         for beam in self.scene["beams"]:

@@ -76,19 +76,17 @@ def _contact(ops: Any, mesh: Frame, item: Table) -> dict[int, int]:
     ops.model("basic", "-ndm", 2, "-ndf", 2)
     first = 1_000_000 * (1 + mesh.scene["contacts"].index(item))
     beam, pin = mesh.pair(item)
+    (x, y), (c, s), side = pin["path"][0], beam["direction"], 1.0 if item["side"] == "left" else -1.0
+    part, left = projection(beam["start"], beam["end"], (x, y))
+    closed = side * left - item["offset"] < INSIDE * beam["length"]
+    # the gap of the scene is one for the radius; the projection of a closed contact must lie inside an element
     radius = item["offset"] or APART * beam["length"]
-    (x, y), gap = mesh.beside(item, radius)
-    closed = gap < INSIDE * beam["length"]
-    # the projection of a closed contact must lie inside an element
-    inward = (
-        INSIDE if closed and projection(beam["start"], beam["end"], (x, y))[0] < 0.5 else -INSIDE * closed
-    )
-    ops.node(
-        first, *(a + inward * (z - b) for a, b, z in zip((x, y), beam["start"], beam["end"], strict=True))
-    )
+    across, inward = side * (radius - item["offset"]), closed * (INSIDE if part < 0.5 else -INSIDE)
+    (x0, y0), (x1, y1) = beam["start"], beam["end"]
+    ops.node(first, x - across * s + inward * (x1 - x0), y + across * c + inward * (y1 - y0))
     times, ways = mesh.way(pin)
-    for k in (0, 1):
-        ops.timeSeries("Path", first + k, "-time", *times, "-values", *ways[k])
+    for k, way in enumerate(ways):
+        ops.timeSeries("Path", first + k, "-time", *times, "-values", *way)
         ops.pattern("Plain", first + k, first + k)
         ops.sp(first, k + 1, 1.0)
     touching = {first + k: k for k in mesh.elements_of(beam)}
@@ -114,9 +112,10 @@ def _add(
     if not any(forces[most]):
         histories.open(pair)
         return
-    pin = _place(ops, ops.eleNodes(most)[2])
+    one, pin = mesh.elements[elements[most]], _place(ops, ops.eleNodes(most)[2])
+    part, _ = projection(places[one.nodes[0]], places[one.nodes[1]], pin)
     vector = [-sum(force[k] for force in forces.values()) for k in (0, 1)]
-    histories.contact(pair, vector, mesh.arc_position(elements[most], places, pin), 0.0)
+    histories.contact(pair, vector, one.arc + min(max(part, 0.0), 1.0) * one.length, 0.0)
 
 
 if __name__ == "__main__":
