@@ -60,6 +60,7 @@ def up_to(xi: Array) -> Array:
 class Mesh(NamedTuple):
     """Elements of all parts, in order."""
 
+    layout: Layout
     grids: list[Array]  #: Their ends as fractions of every part, from 0 to 1.
     part: Ints
     start: Array
@@ -90,21 +91,22 @@ def mesh_of(layout: Layout, grids: list[Array]) -> Mesh:
     to[..., 2, 2] = to[..., 3, 3] = 1.0
     to[..., 4, 4], to[..., 4, 5], to[..., 5, 4], to[..., 5, 5] = -half, half, 1.0 - points, points
     return Mesh(
-        grids=grids,
+        layout=layout, grids=grids,
         part=np.repeat(np.arange(len(grids)), [len(grid) - 1 for grid in grids]),
         start=start, share=share, local=np.array(local), unknowns=count, points=points, to=to,
     )  # fmt: skip
 
 
-def rotations(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> Array:
-    """Coefficients (e, p + 1) of the rotation in the shape functions."""
-    return np.column_stack([layout.full(z)[mesh.local[:, :2]], bubbles])
+def rotations(mesh: Mesh, z: Array) -> Array:
+    """Coefficients (e, p + 1) of the rotation in the shape functions; those of the bubbles stand behind the other unknowns."""
+    bubbles = z[mesh.unknowns :].reshape(-1, DEGREE - 1)
+    return np.column_stack([mesh.layout.full(z)[mesh.local[:, :2]], bubbles])
 
 
-def elements(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> tuple[Array, Array, Array]:
+def elements(mesh: Mesh, z: Array) -> tuple[Array, Array, Array]:
     """Gradient (e, p + 5) and Hessian of the energy in `theta_a, theta_b, c_x, c_y, s_a, s_b` and the bubbles; strain energy (e,)."""
-    ends, x, to = layout.extents(z)[mesh.part], mesh.points, mesh.to
-    coefficients = rotations(layout, mesh, z, bubbles)
+    layout, x, to = mesh.layout, mesh.points, mesh.to
+    ends, coefficients = layout.extents(z)[mesh.part], rotations(mesh, z)
     extent, given = np.diff(ends), np.empty((6, *x.shape))
     given[0], given[1] = coefficients @ VALUES.T, coefficients @ SLOPES.T
     given[2:4] = z[mesh.local[:, 2:4]].T[..., None]

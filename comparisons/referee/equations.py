@@ -37,10 +37,11 @@ class System(NamedTuple):
     energy: float
 
 
-def assemble(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> System:
-    """Return the condensed equations at the unknowns `z` and the `bubbles` (e, p - 1)."""
-    own_gradient, own_hessian, stored = elements(layout, mesh, z, bubbles)
-    local, blocks, across = mesh.local, own_hessian[:, OUTER:, OUTER:], own_hessian[:, :OUTER, OUTER:]
+def assemble(mesh: Mesh, z: Array) -> System:
+    """Return the condensed equations at the unknowns `z`, with the coefficients of the bubbles behind the others."""
+    own_gradient, own_hessian, stored = elements(mesh, z)
+    layout, local = mesh.layout, mesh.local
+    blocks, across = own_hessian[:, OUTER:, OUTER:], own_hessian[:, :OUTER, OUTER:]
     rhs = np.concatenate([own_gradient[:, OUTER:, None], across.swapaxes(1, 2)], axis=2)
     solved = np.linalg.solve(blocks, rhs)
     shift, lever = solved[:, :, 0], solved[:, :, 1:]
@@ -120,20 +121,20 @@ def scales(matrix: Array) -> Array:
     return scale
 
 
-def index_of(layout: Layout, z: Array, system: System) -> int:
+def index_of(mesh: Mesh, z: Array, system: System) -> int:
     """Return the index of an equilibrium, the number of negative eigenvalues on the admissible variations; -1 with friction.
 
     The energy is a maximum in the two force components of every part, whose block of the Hessian is negative definite. By
     Haynsworth's formula ``index = negatives(K) - 2 parts``, where the negatives of the elements' condensed blocks count too. The
     normal of a contact with offset is normal to the mean of the two tangents, so that the angle phi is not an independent variation.
     """
-    if layout.grips:
+    if mesh.layout.grips:
         return -1
-    free = directions(layout, z)
+    free = directions(mesh, z)
     reduced = free.T @ system.hessian @ free
     scale = scales(reduced)
     eigenvalues = np.linalg.eigvalsh(scale[:, None] * reduced * scale), np.linalg.eigvalsh(system.blocks)
-    return sum(int((values < 0.0).sum()) for values in eigenvalues) - 2 * len(layout.parts)
+    return sum(int((values < 0.0).sum()) for values in eigenvalues) - 2 * len(mesh.layout.parts)
 
 
 def orientation_of(system: System) -> int:
@@ -142,11 +143,11 @@ def orientation_of(system: System) -> int:
     return int(np.prod(np.sign(signs)))
 
 
-def directions(layout: Layout, z: Array) -> Array:
+def directions(mesh: Mesh, z: Array) -> Array:
     """Admissible variations as columns; the angles phi follow with the directions of the faces."""
-    turned, free = [touch for touch in layout.touches if touch.angle != NONE], np.eye(len(z))
+    turned, free = [item for item in mesh.layout.touches if item.angle != NONE], np.eye(mesh.unknowns)
     for touch in turned:
-        numbers, _, derivatives = rows(layout, touch, z, 0.0)
+        numbers, _, derivatives = rows(mesh.layout, touch, z, 0.0)
         change = np.zeros(len(free) + 1)
         np.add.at(change, numbers, derivatives[2])
         free[touch.angle] = -change[:-1] / change[touch.angle]

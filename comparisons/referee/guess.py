@@ -15,6 +15,8 @@ from comparisons.scene import BeamSpec, ContactSpec, Scene
 
 Rotations = tuple[Array, Array]
 """Arc positions from one end of a beam to the other, and rotations of its sections there, linear in between; in units of `Layout`."""
+Seen = Callable[[int, Array], tuple[Array, Array]]
+"""Positions (m, 2) in the scene's units and rotations (m,) that are seen at arc positions of a beam in those of `Layout`."""
 
 PULL = 1e-9
 """Largest contact force that is round-off, over EI/L^2 of the touched beam, for the models' contacts at a release."""
@@ -67,29 +69,31 @@ def idle_at_an_end(contact: ContactHistory, scene: Scene, spec: ContactSpec, k: 
     return abs(float(contact.force[k])) <= pull_allowed(beam) and abs(inside) <= SHORTEST
 
 
-def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotations]]:
-    """Return the unknowns of the layout and the beams' rotations from an answer."""
+def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, Seen]:
+    """Return the unknowns of the layout, and what an answer shows of its beams."""
     z = np.zeros(layout.unknowns)
     for touch in layout.touches:
         z[touch.arc] = answer.arcs[touch.spec.pair] / layout.length
     for _ in range(2):  # the shear follows from the forces
         turns = _rotations(layout, answer, z)
 
-        def seen(beam: int, s: float, turns: list[Rotations] = turns) -> tuple[Array, float]:
+        def seen(beam: int, s: Array, turns: list[Rotations] = turns) -> tuple[Array, Array]:
             axis, line = answer.axes[layout.scene.beams[beam].name]
-            place = np.array([np.interp(s * layout.length, axis, way) for way in line.T])
-            return place, float(np.interp(s, *turns[beam]))
+            places = np.transpose([np.interp(s * layout.length, axis, way) for way in line.T])
+            return places, np.interp(s, *turns[beam])
 
         put(layout, z, seen)
         _balance(layout, answer, z)
-    return z, turns
+    return z, seen
 
 
-def put(layout: Layout, z: Array, seen: Callable[[int, float], tuple[Array, float]]) -> None:
-    """Set the stations' motions, and the directions of contacts, from the position and the rotation seen at an arc position of a beam."""
+def put(layout: Layout, z: Array, seen: Seen) -> None:
+    """Set the stations' motions, and the directions of contacts, from what is seen of the beams."""
     for part, arcs in zip(layout.parts, layout.extents(z), strict=True):
-        for number, s in zip((part.first, part.last), arcs.tolist(), strict=True):
-            station, (place, theta) = layout.stations[number], seen(part.beam, s)
+        for number, s, place, theta in zip(
+            (part.first, part.last), arcs, *seen(part.beam, arcs), strict=True
+        ):
+            station = layout.stations[number]
             moved = (place - layout.scene.beams[0].start) / layout.length - station.reference
             free = (station.numbers >= 0) & [station.touch is None, station.touch is None, True]
             z[station.numbers[free]] = np.append(moved, theta)[free]

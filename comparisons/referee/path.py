@@ -14,7 +14,7 @@ from comparisons.referee.grip import LOOSE, Grip
 from comparisons.referee.layout import lay_out
 from comparisons.referee.newton import correct, newton_step, switched, undeformed
 from comparisons.referee.rod import largest
-from comparisons.referee.state import Change, Equilibrium, located
+from comparisons.referee.state import Equilibrium, located
 from comparisons.scene import Scene
 
 Held = Callable[[float], Mapping[str, Grip]]
@@ -68,7 +68,7 @@ def corners(scene: Scene) -> tuple[float, ...]:
 def moved(now: Equilibrium, t: float, grips: Mapping[str, Grip]) -> Equilibrium:
     """Return the guess at load parameter t with the contacts of an equilibrium and its unknowns."""
     layout = lay_out(now.layout.scene, t, now.closed, grips)
-    return Equilibrium(layout=layout, mesh=mesh_of(layout, now.mesh.grids), z=now.z, bubbles=now.bubbles)
+    return Equilibrium(mesh=mesh_of(layout, now.mesh.grids), z=now.z)
 
 
 def reach(near: Equilibrium, t: float, grips: Mapping[str, Grip], halvings: int = _HALVINGS) -> Equilibrium:
@@ -82,15 +82,14 @@ def reach(near: Equilibrium, t: float, grips: Mapping[str, Grip], halvings: int 
     return reach(middle, t, grips, halvings - 1) if middle.found else middle
 
 
-def tangent(now: Equilibrium, little: float) -> Change:
-    """Rates of the unknowns and bubbles per load parameter, by a difference over `little`."""
-    nothing = np.zeros_like(now.z), np.zeros_like(now.bubbles)
+def tangent(now: Equilibrium, little: float) -> Array:
+    """Rates of the unknowns per load parameter, by a difference over `little`."""
     if little == 0.0:
-        return nothing
-    ahead = newton_step(moved(now, now.load_parameter + little, now.layout.grips)) or nothing
+        return np.zeros_like(now.z)
+    ahead = np.nan_to_num(newton_step(moved(now, now.load_parameter + little, now.layout.grips)))
     # in a stage that changes nothing the difference is round-off alone, which the correction here has too
-    here = (newton_step(now) or nothing) if now.layout.scene.stages else nothing
-    return (ahead[0] - here[0]) / little, (ahead[1] - here[1]) / little
+    here = np.nan_to_num(newton_step(now)) if now.scene.stages else 0.0
+    return np.asarray((ahead - here) / little)
 
 
 def departures(response: Response, states: Mapping[int, Equilibrium]) -> Iterator[str]:
@@ -147,7 +146,7 @@ def way_to(
 def _passed(now: Equilibrium, end: float) -> Equilibrium | None:
     """Return the equilibrium behind the place where two contacts pass each other on a beam; None where they do not."""
     layout, left = now.layout, end - now.load_parameter
-    ahead = now.z + _LEAVING * left * tangent(now, _LITTLE * left)[0]
+    ahead = now.z + _LEAVING * left * tangent(now, _LITTLE * left)
     if np.diff(layout.extents(ahead)).min() < 0.0 and largest((ahead - now.z)[layout.arcs]) < _MEETING:
         arcs = {touch.spec.pair: float(ahead[touch.arc]) * layout.length for touch in layout.touches}
         behind = switched(now, arcs, layout.grips, now.load_parameter + _LEAVING * left)
@@ -203,7 +202,7 @@ def same(one: Equilibrium, other: Equilibrium) -> bool:
 
 def at_rest(scene: Scene) -> Equilibrium:
     """Return the undeformed state of a scene with all contacts open."""
-    return correct(undeformed(lay_out(scene, 0.0, {}), 3), 6)
+    return correct(undeformed(lay_out(scene, 0.0, {})), 6)
 
 
 def departs(first: Equilibrium, last: Equilibrium) -> str:
@@ -240,7 +239,7 @@ def _followed(first: Equilibrium, end: float, last: Equilibrium | None = None) -
             return now, False
         stop = sign * next(t for t in stops if t > sign * here)
         left = abs(stop - here)
-        rate = rate or tangent(now, sign * _LITTLE * left)
+        rate = tangent(now, sign * _LITTLE * left) if rate is None else rate
         t = here + sign * step if step < left - _ROUND_OFF * ways else stop
         if t == here:
             return now, True
@@ -248,7 +247,7 @@ def _followed(first: Equilibrium, end: float, last: Equilibrium | None = None) -
         if last and t == end:
             off, behind = _unexplained(now, rate, last, index)
         if off >= _NEAR:
-            there = correct(moved(now, t, now.layout.grips).plus(rate, t - here), _ITERATIONS)
+            there = correct(moved(now, t, now.layout.grips).plus((t - here) * rate), _ITERATIONS)
             off, behind = _unexplained(now, rate, there, index)
         step = min(step, abs(t - here)) * float(np.clip(_AIM / max(off, 1e-300), 0.25, 3.0))
         if off < _NEAR:
@@ -258,9 +257,7 @@ def _followed(first: Equilibrium, end: float, last: Equilibrium | None = None) -
     return now, True
 
 
-def _unexplained(
-    now: Equilibrium, rate: Change, there: Equilibrium, index: int
-) -> tuple[float, Change | None]:
+def _unexplained(now: Equilibrium, rate: Array, there: Equilibrium, index: int) -> tuple[float, Array | None]:
     """Largest part of a step that the tangents at its ends do not explain, and the tangent at its end; infinite off the branch."""
     if not there.found or _kind(there) != index:
         return np.inf, None
@@ -276,10 +273,10 @@ def _kind(now: Equilibrium) -> int:
     return orientation_of(now.system) if now.layout.grips else now.index
 
 
-def _off(now: Equilibrium, rate: Change, there: Equilibrium) -> float:
+def _off(now: Equilibrium, rate: Array, there: Equilibrium) -> float:
     """Error of a prediction along a tangent over the change from one state to another; infinite for a large error."""
-    guess = replace(now, layout=there.layout, mesh=mesh_of(there.layout, now.mesh.grids))
-    off = _apart(guess.plus(rate, there.load_parameter - now.load_parameter), there)
+    guess = replace(now, mesh=mesh_of(there.layout, now.mesh.grids))
+    off = _apart(guess.plus((there.load_parameter - now.load_parameter) * rate), there)
     return off / (_apart(now, there) + _ROUND_OFF) if off < _SHORT else np.inf
 
 

@@ -14,8 +14,6 @@ from comparisons.referee.layout import NONE, Layout, Touch
 from comparisons.referee.rod import cross
 from comparisons.scene import Scene
 
-Change = tuple[Array, Array]
-"""Changes of the unknowns and of the bubbles."""
 _INSIDE = 1.0 - 1e-9
 """Fraction of a part up to which points lie before its end."""
 
@@ -52,19 +50,24 @@ class SearchStatus(Enum):
 class Equilibrium(Frozen):
     """The exact equilibrium near an answer, or a guess of it, by the unknowns of a layout."""
 
-    layout: Layout = field(repr=False)
     mesh: Mesh = field(repr=False)
-    z: Array = field(repr=False)
-    bubbles: Array = field(repr=False)  #: Coefficients (e, p - 1) of the bubbles.
+    z: Array = field(
+        repr=False
+    )  #: Unknowns, those of the layout first and the coefficients of the bubbles last.
     #: Outcome of the search; what follows from the unknowns is valid for `SearchStatus.FOUND` only.
     status: SearchStatus = SearchStatus.NO_EQUILIBRIUM
     message: str = ""  #: The status as a sentence.
     iterations: int = 0  #: Number of Newton iterations.
     correction: float = np.inf  #: Last correction of the unknowns.
 
-    def plus(self, change: Change, part: float = 1.0) -> "Equilibrium":
-        """Return the guess with a part of a change."""
-        return replace(self, z=self.z + part * change[0], bubbles=self.bubbles + part * change[1])
+    def plus(self, change: Array) -> "Equilibrium":
+        """Return the guess with other unknowns."""
+        return replace(self, z=self.z + change)
+
+    @property
+    def layout(self) -> Layout:
+        """The layout."""
+        return self.mesh.layout
 
     @property
     def found(self) -> bool:
@@ -89,7 +92,7 @@ class Equilibrium(Frozen):
     @cached_property
     def system(self) -> System:
         """The equations in the units of the layout."""
-        return assemble(self.layout, self.mesh, self.z, self.bubbles)
+        return assemble(self.mesh, self.z)
 
     @cached_property
     def contacts(self) -> dict[str, Contact]:
@@ -133,12 +136,17 @@ class Equilibrium(Frozen):
     @cached_property
     def index(self) -> int:
         """Number of negative eigenvalues of the energy's Hessian on the admissible variations; -1 with friction."""
-        return index_of(self.layout, self.z, self.system)
+        return index_of(self.mesh, self.z, self.system)
+
+    @property
+    def tails(self) -> Array:
+        """Largest amplitude of the last two bubbles of every element."""
+        return np.asarray((np.abs(rotations(self.mesh, self.z))[:, -2:] * AMPLITUDE[-2:]).max(axis=1))
 
     @property
     def error(self) -> float:
         """Estimated relative error: the last correction and the last terms of the rotation."""
-        return max(self.correction, float(tails(self.bubbles).max()))
+        return max(self.correction, float(self.tails.max()))
 
     def shape(self, beam: str, arc: Array) -> Shape:
         """Return the shape of a beam at arc lengths (m,)."""
@@ -155,7 +163,7 @@ class Equilibrium(Frozen):
         half = mesh.share[mine] * extent / 2.0
         points = extents[of, :1] + extent[:, None] * mesh.points[mine]
         constants = z[mesh.local[mine, 2:4]].T[..., None]
-        rotation = rotations(layout, mesh, z, self.bubbles)[mine]
+        rotation = rotations(mesh, z)[mine]
         inner = layout.pieces(of).strained(constants, points, rotation @ VALUES.T).way
         before = np.cumsum(np.pad(half * (inner @ WEIGHTS), ((0, 0), (1, 0))), axis=1)
         along = (
@@ -195,11 +203,6 @@ def located(exact: Equilibrium, part: Ints, x: Array) -> tuple[Ints, Array, Arra
     mesh = exact.mesh
     e = np.searchsorted(mesh.part + mesh.start, part + np.clip(x, 0.0, _INSIDE), side="right") - 1
     xi = 2.0 * (x - mesh.start[e]) / mesh.share[e] - 1.0
-    rotation = rotations(exact.layout, mesh, exact.z, exact.bubbles)[e]
+    rotation = rotations(mesh, exact.z)[e]
     theta, bent = ((item * rotation).sum(axis=-1) for item in shapes(xi))
     return e, xi, theta, bent
-
-
-def tails(bubbles: Array) -> Array:
-    """Largest amplitude of the last two bubbles of every element."""
-    return np.asarray((np.abs(bubbles) * AMPLITUDE)[:, -2:].max(axis=1))

@@ -47,7 +47,7 @@ def _rates(now: Equilibrium, behind: bool) -> Array:
     apart = [sign * (corner - now.load_parameter) for corner in corners(scene)]
     little = [part / 2.0 for part in apart if part > _CORNER]
     ahead = sign * min([_AHEAD, *little])
-    return 2.0 * tangent(now, ahead / 2.0)[0] - tangent(now, ahead)[0]
+    return 2.0 * tangent(now, ahead / 2.0) - tangent(now, ahead)
 
 
 def slip_rate(now: Equilibrium, touch: Touch, *, behind: bool = False) -> float:
