@@ -77,7 +77,7 @@ def mesh_of(layout: Layout, grids: list[Array]) -> Mesh:
     local: list[tuple[int, ...]] = []
     count = layout.unknowns
     for item, grid in zip(layout.parts, grids, strict=True):
-        begin, end = (int(layout.stations[k].numbers[2]) for k in (item.first, item.last))
+        begin, end = (int(layout.stations[k].numbers[2]) for k in item.stations)
         chain = [begin, *range(count, count + len(grid) - 2), end]
         local += [(*ends, item.force, item.force + 1, *item.arcs) for ends in pairwise(chain)]
         count += len(grid) - 2
@@ -124,7 +124,7 @@ def _at_points(pieces: Piece, given: Any) -> Any:
     """Gradient of the energy in theta, theta_xi, c_x, c_y, half and s, and the strain energy, at complex values (6, ...) of these."""
     theta, bent, *c, half, s = given
     EI, a, b, N, Q, n, way = pieces.strained(np.array(c), s, theta)
-    EI_s, EA_s, GA_s, *load = value(polyder(pieces.coefficients), s)
+    EA_s, GA_s, EI_s, *load = value(polyder(pieces.coefficients), s)
     stored, moment = (a * N**2 + b * Q**2) / 2.0, EI * bent / half
     f = (n * way).sum(axis=0) - stored
     f_s = pieces.curvature * (way[0] * n[1] - way[1] * n[0]) - load[0] * way[0] - load[1] * way[1]

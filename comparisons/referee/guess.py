@@ -15,7 +15,7 @@ from comparisons.scene import BeamSpec, ContactSpec, Scene
 
 Rotations = tuple[Array, Array]
 """Arc positions from one end of a beam to the other, and rotations of its sections there, linear in between; in units of `Layout`."""
-Seen = Callable[[int, Array], tuple[Array, Array]]
+Seen = Callable[[str, Array], tuple[Array, Array]]
 """Positions (m, 2) in the scene's units and rotations (m,) that are seen at arc positions of a beam in those of `Layout`."""
 
 PULL = 1e-9
@@ -77,8 +77,8 @@ def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, Seen]:
     for _ in range(2):  # the shear follows from the forces
         turns = _rotations(layout, answer, z)
 
-        def seen(beam: int, s: Array, turns: list[Rotations] = turns) -> tuple[Array, Array]:
-            axis, line = answer.axes[layout.scene.beams[beam].name]
+        def seen(beam: str, s: Array, turns: dict[str, Rotations] = turns) -> tuple[Array, Array]:
+            axis, line = answer.axes[beam]
             places = np.transpose([np.interp(s * layout.length, axis, way) for way in line.T])
             return places, np.interp(s, *turns[beam])
 
@@ -90,9 +90,7 @@ def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, Seen]:
 def put(layout: Layout, z: Array, seen: Seen) -> None:
     """Set the stations' motions, and the directions of contacts, from what is seen of the beams."""
     for part, arcs in zip(layout.parts, layout.extents(z), strict=True):
-        for number, s, place, theta in zip(
-            (part.first, part.last), arcs, *seen(part.beam, arcs), strict=True
-        ):
+        for number, s, place, theta in zip(part.stations, arcs, *seen(part.beam, arcs), strict=True):
             station = layout.stations[number]
             moved = (place - layout.scene.beams[0].start) / layout.length - station.reference
             free = (station.numbers >= 0) & [station.touch is None, station.touch is None, True]
@@ -101,27 +99,26 @@ def put(layout: Layout, z: Array, seen: Seen) -> None:
                 z[station.touch.angle] = part.piece.angle(s)[0] + theta + math.asin(station.touch.face.tilt)
 
 
-def _rotations(layout: Layout, answer: AnswerState, z: Array) -> list[Rotations]:
+def _rotations(layout: Layout, answer: AnswerState, z: Array) -> dict[str, Rotations]:
     """Rotations of all beams, with multiples of 2 pi, so that beams agree with prescribed rotations and, at joints, with each other."""
     known: dict[int, float] = {
         k: float(layout.given[item.numbers[2]])
         for k, item in enumerate(layout.stations)
         if item.numbers[2] < 0
     }
-    own: list[list[tuple[Part, Array]]] = [[] for _ in layout.scene.beams]
+    own: dict[str, list[tuple[Part, Array]]] = {beam.name: [] for beam in layout.scene.beams}
     for part, extent in zip(layout.parts, layout.extents(z), strict=True):
         own[part.beam].append((part, extent))
-    turns = [_rotation(layout, answer, parts, z) for parts in own]
-    ends = [(parts[0][0].first, parts[-1][0].last) for parts in own]
-    left = list(range(len(turns)))
-    while left:
-        number = next((b for b in left if any(k in known for k in ends[b])), left[0])
-        left.remove(number)
-        arc, theta = turns[number]
-        both = list(zip(ends[number], (theta[0], theta[-1]), strict=True))
+    turns = {}
+    while own:
+        joined = (b for b in own if {own[b][0][0].stations[0], own[b][-1][0].stations[1]} & known.keys())
+        beam = next(joined, next(iter(own)))
+        parts = own.pop(beam)
+        arc, theta = _rotation(layout, answer, parts, z)
+        both = [(parts[0][0].stations[0], theta[0]), (parts[-1][0].stations[1], theta[-1])]
         shift = next((known[k] - turn for k, turn in both if k in known), 0.0)
         whole = 2.0 * math.pi * round(shift / (2.0 * math.pi))
-        turns[number] = arc, theta + whole
+        turns[beam] = arc, theta + whole
         for k, turn in both:
             known.setdefault(k, float(turn + whole))
     return turns
@@ -133,8 +130,8 @@ def _rotation(layout: Layout, answer: AnswerState, own: list[tuple[Part, Array]]
     ``r' = d1 + (N/EA) d1 + (Q/GA) d2`` gives ``r' - n/GA = (1 + N/EA - N/GA) d1``. In strong shear the factor of d1 is negative; its
     sign is the one that agrees with N.
     """
-    part = own[0][0]
-    length, (arc, line) = part.rod.length, answer.axes[layout.scene.beams[part.beam].name]
+    part, length = own[0][0], own[-1][1][1]
+    arc, line = answer.axes[part.beam]
     chords, extents = np.diff(line, axis=0) @ (1.0, 1.0j), np.diff(arc)
     long = (np.abs(chords) > 0.0) & (extents > 0.0)
     if not long.any():
@@ -143,8 +140,8 @@ def _rotation(layout: Layout, answer: AnswerState, own: list[tuple[Part, Array]]
     way, back = chords[long] / extents[long], np.exp(-1.0j * part.piece.angle(s))
     theta = np.angle(way * back)
     for part, (first, last) in own:
-        _, EA, GA, *_ = value(part.piece.coefficients, s)
-        force = np.array([1.0, 1.0j]) @ part.piece.force(part.constant(z), s)
+        EA, GA, _, *W = value(part.piece.coefficients, s)
+        force = np.array([1.0, 1.0j]) @ (part.constant(z) - W)
         along = way - force / GA
         size = np.abs(along)
         d1 = along / np.where(size > 0.0, size, 1.0)
@@ -163,7 +160,7 @@ def _balance(layout: Layout, answer: AnswerState, z: Array) -> None:
     joined = {hinge.end: hinge.joint for hinge in layout.hinges}
     balance = np.zeros((len(layout.stations), len(layout.parts)))
     for n, part in enumerate(layout.parts):
-        for number, sign in ((part.first, -1.0), (part.last, 1.0)):
+        for number, sign in zip(part.stations, (-1.0, 1.0), strict=True):
             balance[joined.get(number, number), n] += sign
     for axis, forces in enumerate(layout.forces.reshape(-1, 2).T):
         stated = [
@@ -181,9 +178,9 @@ def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[i
         acting[hinge.joint] += acting[hinge.end]
     for end, (x, y, _) in answer.reactions.items():
         acting[layout.joint(end)] += np.array([x, y]) / layout.force
-    for k, touch in layout.touched:
+    for touch in layout.touches:
         force = np.nan_to_num(np.array(answer.forces[touch.spec.pair])) / layout.force
-        acting[k] += force
+        acting[touch.station] += force
         if "." in touch.spec.node:
             acting[layout.joint(touch.spec.node)] -= force
     return acting, {layout.joint(end) for end in answer.reactions}

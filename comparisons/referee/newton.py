@@ -79,8 +79,8 @@ def switched(now: Equilibrium, arcs: Mapping[str, float], grips: Mapping[str, Gr
     for touch in layout.touches:
         z[touch.arc] = arcs[touch.spec.pair] / layout.length
 
-    def seen(beam: int, s: Array) -> tuple[Array, Array]:
-        there = now.shape(now.scene.beams[beam].name, s * layout.length)
+    def seen(beam: str, s: Array) -> tuple[Array, Array]:
+        there = now.shape(beam, s * layout.length)
         return there.position, there.rotation
 
     put(layout, z, seen)
@@ -150,18 +150,15 @@ def _reason_not_to_judge(layout: Layout, z: Array) -> str:
         return f"the stiffest beam is {max(stiffness) / min(stiffness):.1g} times as stiff as the most flexible one"
     for part, extent in zip(layout.parts, np.diff(layout.extents(z)), strict=True):
         if extent <= SHORTEST:
-            beam = layout.scene.beams[part.beam].name
-            return (
-                f'two contacts on beam "{beam}", or a contact and an end, are at one place or beyond the end'
-            )
+            return f'two contacts on beam "{part.beam}", or a contact and an end, are at one place or beyond the end'
     return ""
 
 
 def _first_grids(layout: Layout, z: Array) -> list[Array]:
     """About one element for 1.5 of the length sqrt(EI/n) over which the deflection varies, at most 50."""
-    EI, stretch, shear = np.array([part.rod.softest for part in layout.parts]).T
+    EA, GA, EI = layout.softest(z)
     n = np.hypot(*z[layout.forces].reshape(-1, 2).T)
-    rate = np.sqrt(n * (1.0 + n * np.abs(stretch - shear)) / EI)
+    rate = np.sqrt(n * (1.0 + n * np.abs(1.0 / EA - 1.0 / GA)) / EI)
     counts = np.clip(np.ceil(np.diff(layout.extents(z))[:, 0] * rate / 1.5), 1, 50)
     return [np.linspace(0.0, 1.0, int(count) + 1) for count in counts]
 
@@ -190,8 +187,7 @@ def _fitted(mesh: Mesh, z: Array, rotation: Array, fit: Array) -> Equilibrium:
 def _newton(now: Equilibrium, iterations: int) -> Equilibrium:
     """Iterate until the corrections are round-off."""
     layout, last, error = now.layout, np.inf, np.inf
-    most = [part.rod.softest for part in layout.parts]
-    least = _LAST_PLACES / (_ROUND_OFF * min(min(stretch, shear or np.inf) for _, stretch, shear in most))
+    least = _LAST_PLACES / _ROUND_OFF * layout.softest(now.z)[:2].max()
     turning = np.append(np.ones(now.mesh.unknowns), np.tile(AMPLITUDE, len(now.mesh.part)))
     turning[layout.forces] = turning[layout.moving] = 0.0
     status, message = SearchStatus.NO_EQUILIBRIUM, SearchStatus.NO_EQUILIBRIUM.value

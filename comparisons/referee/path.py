@@ -191,7 +191,7 @@ def _alike(one: Equilibrium, other: Equilibrium) -> bool:
     if not one.found or one.closed.keys() != other.closed.keys():
         return False
     slips = [{pair: grip.slip for pair, grip in item.layout.grips.items()} for item in (one, other)]
-    orders = [[(part.beam, part.first, part.last) for part in item.layout.parts] for item in (one, other)]
+    orders = [[(part.beam, part.stations) for part in item.layout.parts] for item in (one, other)]
     return slips[0] == slips[1] and orders[0] == orders[1]
 
 

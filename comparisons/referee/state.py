@@ -151,7 +151,7 @@ class Equilibrium(Frozen):
     def shape(self, beam: str, arc: Array) -> Shape:
         """Return the shape of a beam at arc lengths (m,)."""
         layout, z, mesh, s = self.layout, self.z, self.mesh, np.asarray(arc) / self.layout.length
-        parts = [k for k, part in enumerate(layout.parts) if layout.scene.beams[part.beam].name == beam]
+        parts = [k for k, part in enumerate(layout.parts) if part.beam == beam]
         extents = layout.extents(z)
         part = np.array(parts)[np.searchsorted(extents[parts[1:], 0], s, side="right")]
         first, last = extents[part].T
@@ -187,7 +187,7 @@ class Equilibrium(Frozen):
     def tangents(self, touch: Touch) -> tuple[Array, Array]:
         """Return ``r'_-`` and ``r'_+`` at a contact."""
         parts, z = self.layout.beside(touch), self.z
-        s, theta = z[[touch.arc]], self.layout.motions(z)[parts[0].last, 2]
+        s, theta = z[[touch.arc]], self.layout.motions(z)[touch.station, 2]
         before, behind = (part.piece.tangent(part.constant(z), s, theta)[:, 0] for part in parts)
         return before, behind
 

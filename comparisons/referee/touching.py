@@ -26,12 +26,13 @@ from comparisons.answer import Array
 from comparisons.referee.elements import STEP
 from comparisons.referee.grip import LOOSE
 from comparisons.referee.layout import Layout, Touch
+from comparisons.referee.rod import value
 
 
 def rows(layout: Layout, touch: Touch, z: Array, moment: float) -> tuple[list[int], Array, Array]:
     """Return numbers; row of friction, couple, row of the direction, A and psi; and their derivatives (5, 8) by the numbers."""
     before, behind = layout.beside(touch)
-    turn = int(layout.stations[before.last].numbers[2])
+    turn = int(layout.stations[touch.station].numbers[2])
     forces = [before.force, before.force + 1, behind.force, behind.force + 1]
     # theta, c before the contact and behind it, phi, the moment before it, which has no number, and s
     numbers = [turn, *forces, touch.angle, -1, touch.arc]
@@ -48,7 +49,7 @@ def rows(layout: Layout, touch: Touch, z: Array, moment: float) -> tuple[list[in
     x, y = (cos, sin) if face.slope else mean / a
     drag, push = force[0] * x + force[1] * y, face.left * (force[0] * y - force[1] * x)
     couple = lever * drag
-    stretch = a + lever * ((m - couple / 2.0) / piece.EI(s) + piece.curvature)
+    stretch = a + lever * ((m - couple / 2.0) / value(piece.coefficients[:, 2], s) + piece.curvature)
     shear = phi - theta - piece.angle(s)
     row, hold = drag - grip.slip * grip.friction * push, grip.hold
     if hold is not None:

@@ -101,7 +101,7 @@ def test_the_direction_of_a_face_follows_the_variations_of_the_axis():
     before, behind = layout.beside(touch)
     forces = [part.force + k for part in (before, behind) for k in range(2)]
     kept = [k for k in range(exact.mesh.unknowns) if k != touch.angle]
-    for k in [layout.stations[before.last].numbers[2], *forces, touch.arc]:
+    for k in [layout.stations[touch.station].numbers[2], *forces, touch.arc]:
         e = 1e-6 * np.eye(len(z))[k]
         difference = (phi(z + e) - phi(z - e)) / 2e-6
         assert free[touch.angle, kept.index(k)] == pytest.approx(difference, rel=1e-6, abs=1e-9)
