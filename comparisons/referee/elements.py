@@ -81,9 +81,7 @@ def mesh_of(layout: Layout, grids: list[Array]) -> Mesh:
         chain = [begin, *range(count, count + len(grid) - 2), end]
         local += [(*ends, item.force, item.force + 1, *item.arcs) for ends in pairwise(chain)]
         count += len(grid) - 2
-    start, share = (
-        np.concatenate(items) for items in zip(*((grid[:-1], np.diff(grid)) for grid in grids), strict=True)
-    )
+    start, share = np.concatenate([[grid[:-1], np.diff(grid)] for grid in grids], axis=1)
     half = share[:, None] / 2.0
     points = start[:, None] + half * (1.0 + GAUSS)
     to = np.zeros((*points.shape, 6, OUTER + DEGREE - 1))
@@ -103,19 +101,24 @@ def rotations(mesh: Mesh, z: Array) -> Array:
     return np.column_stack([mesh.layout.full(z)[mesh.local[:, :2]], bubbles])
 
 
-def elements(mesh: Mesh, z: Array) -> tuple[Array, Array, Array]:
-    """Gradient (e, p + 5) and Hessian of the energy in `theta_a, theta_b, c_x, c_y, s_a, s_b` and the bubbles; strain energy (e,)."""
-    layout, x, to = mesh.layout, mesh.points, mesh.to
-    ends, coefficients = layout.extents(z)[mesh.part], rotations(mesh, z)
-    extent, given = np.diff(ends), np.empty((6, *x.shape))
+def at_gauss(mesh: Mesh, z: Array) -> Array:
+    """Theta, theta_xi, c_x, c_y, half and s (6, e, g) at the Gauss points."""
+    ends, coefficients = mesh.layout.extents(z)[mesh.part], rotations(mesh, z)
+    extent, given = np.diff(ends), np.empty((6, *mesh.points.shape))
     given[0], given[1] = coefficients @ VALUES.T, coefficients @ SLOPES.T
     given[2:4] = z[mesh.local[:, 2:4]].T[..., None]
-    given[4], given[5] = mesh.share[:, None] * extent / 2.0, ends[:, :1] + extent * x
-    steps = given[..., None] + 1j * STEP * np.eye(6)[:, None, None]
-    found = _at_points(layout.pieces(mesh.part), steps.reshape(6, len(x), -1)).reshape(7, *steps.shape[1:])
+    given[4], given[5] = mesh.share[:, None] * extent / 2.0, ends[:, :1] + extent * mesh.points
+    return given
+
+
+def elements(mesh: Mesh, z: Array) -> tuple[Array, Array, Array]:
+    """Gradient (e, p + 5) and Hessian of the energy in `theta_a, theta_b, c_x, c_y, s_a, s_b` and the bubbles; strain energy (e,)."""
+    to, steps = mesh.to, at_gauss(mesh, z)[..., None] + 1j * STEP * np.eye(6)[:, None, None]
+    given = steps.reshape(6, len(to), -1)
+    found = _at_points(mesh.layout.pieces(mesh.part), given).reshape(7, *steps.shape[1:])
     first, second = found[:6, ..., 0].real.transpose(1, 2, 0), found[:6].imag.transpose(1, 2, 0, 3) / STEP
     gradient = np.einsum("egi,egis->es", first * WEIGHTS[:, None], to)
-    rows, weighted = (len(x), -1, to.shape[-1]), second * WEIGHTS[:, None, None]
+    rows, weighted = (len(to), -1, to.shape[-1]), second * WEIGHTS[:, None, None]
     hessian = to.reshape(rows).swapaxes(1, 2) @ (weighted @ to).reshape(rows)
     return gradient, hessian, found[6, ..., 0].real @ WEIGHTS
 

@@ -79,7 +79,7 @@ def _add_parts(layout: Layout, z: Array, g: Array, k: Array) -> None:
     local, sizes = layout.sides
     given = layout.full(z)[local].T[..., None] + 1j * STEP * np.eye(6)[:, None]
     angle = layout.pieces(np.arange(len(local)) // 2).angle(given[4])
-    by = np.array(_at_side(given, angle, sizes[..., None]))
+    by = _at_side(given, angle, sizes[..., None])
     hessian = np.zeros((len(local), 6, 6))
     hessian[:, 2:] = by.imag.swapaxes(0, 1) / STEP
     hessian[:, :2, 2:] = hessian[:, 2:, :2].swapaxes(1, 2)
@@ -92,15 +92,13 @@ def _add_parts(layout: Layout, z: Array, g: Array, k: Array) -> None:
     g[layout.forces] += (ways[last] - ways[first] + rest).ravel()
 
 
-def _at_side(given: Any, angle: Any, sizes: Array) -> tuple[Any, ...]:
+def _at_side(given: Any, angle: Any, sizes: Array) -> Any:
     """Gradient of ``c.(r - R)`` at an end of a part by displacement (2), s and phi, at complex values."""
     (x, y, _, _, s, phi), (sign, left, start, slope) = given, sizes
     along, cos, sin = x * np.cos(angle) + y * np.sin(angle), np.cos(phi), np.sin(phi)
-    by_s, by_phi = (
-        -along - left * slope * (y * cos - x * sin),
-        left * (start + slope * s) * (x * cos + y * sin),
-    )
-    return sign * x, sign * y, sign * by_s, sign * by_phi
+    by_s = -along - left * slope * (y * cos - x * sin)
+    by_phi = left * (start + slope * s) * (x * cos + y * sin)
+    return sign * np.array([x, y, by_s, by_phi])
 
 
 def _add_springs_and_loads(layout: Layout, z: Array, g: Array, k: Array) -> float:

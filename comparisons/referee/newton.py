@@ -1,6 +1,6 @@
 """The search for the exact equilibrium of a scene's rods near an answer, by Newton's method on elements that are halved."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +12,7 @@ from comparisons.referee.grip import Grip
 from comparisons.referee.guess import SHORTEST, AnswerState, Seen, first_guess, put
 from comparisons.referee.layout import Layout, lay_out
 from comparisons.referee.rod import largest
-from comparisons.referee.state import Equilibrium, SearchStatus, located
+from comparisons.referee.state import Equilibrium, SearchStatus
 from comparisons.scene import Scene
 
 _RESOLVED = 3e-14
@@ -28,7 +28,6 @@ _ROUND_OFF = 1e-10
 """Correction below which a correction that no longer decreases is round-off."""
 _LAST_PLACES = 10.0 * float(np.finfo(float).eps)
 """Round-off of a force over EA, since forces follow from stretches."""
-_AT_ONE_PLACE = "two contacts on a beam, or a contact and an end, come to one place"
 _MOST_ELEMENTS = 400
 """Largest number of elements of a part."""
 _FIT = np.asarray(np.linalg.pinv(VALUES[:, 2:]), dtype=np.float64)
@@ -59,7 +58,7 @@ def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
     z, seen = first_guess(layout, answer)
     reason = _reason_not_to_judge(layout, z)
     if reason:
-        return replace(undeformed(layout), status=SearchStatus.NOT_JUDGED, message=reason)
+        return replace(undeformed(layout), status=SearchStatus.NOT_JUDGED, reason=reason)
     start = _seen(layout, z, seen, _FIT_LOW)
     best = correct(start, _ITERATIONS)
     # arc positions of contacts and forces of parts are more accurate in an answer than rotations
@@ -123,10 +122,8 @@ def correct(guess: Equilibrium, iterations: int) -> Equilibrium:
         if max(map(len, grids)) > _MOST_ELEMENTS:
             break
         finer = mesh_of(layout, grids)
-        seen = located(found, finer.part[:, None], _places(finer))[2]
-        guess = _fitted(finer, found.z[: layout.unknowns], seen, _FIT)
-    status = SearchStatus.NOT_RESOLVED
-    return replace(found, status=status, message=status.value, iterations=spent)
+        guess = _fitted(finer, found.z[: layout.unknowns], lambda *at, now=found: now.located(*at)[2], _FIT)
+    return replace(found, status=SearchStatus.NOT_RESOLVED, iterations=spent)
 
 
 def _rotations_corrected(guess: Equilibrium, held: Ints) -> Equilibrium:
@@ -163,22 +160,20 @@ def _first_grids(layout: Layout, z: Array) -> list[Array]:
     return [np.linspace(0.0, 1.0, int(count) + 1) for count in counts]
 
 
-def _places(mesh: Mesh) -> Array:
-    """Fractions (e, g + 2) of the parts at the Gauss points and the ends of the elements."""
-    return np.asarray(mesh.start[:, None] + mesh.share[:, None] * _PLACES)
-
-
 def _seen(layout: Layout, z: Array, seen: Seen, fit: Array) -> Equilibrium:
     """Return the guess with the rotations of the beams that are seen; z are the unknowns without the rotations inside the parts."""
-    mesh = mesh_of(layout, _first_grids(layout, z))
-    first, last = layout.extents(z)[mesh.part].T[..., None]
-    arcs = first + (last - first) * _places(mesh)
-    turns = [seen(layout.parts[k].beam, s)[1] for k, s in zip(mesh.part, arcs, strict=True)]
-    return _fitted(mesh, z, np.array(turns), fit)
+
+    def turned(part: Ints, x: Array) -> Array:
+        first, last = np.moveaxis(layout.extents(z)[part], -1, 0)
+        arcs = zip(part[:, 0], first + (last - first) * x, strict=True)
+        return np.array([seen(layout.parts[k].beam, s)[1] for k, s in arcs])
+
+    return _fitted(mesh_of(layout, _first_grids(layout, z)), z, turned, fit)
 
 
-def _fitted(mesh: Mesh, z: Array, rotation: Array, fit: Array) -> Equilibrium:
-    """Return the guess with rotations at `_places`."""
+def _fitted(mesh: Mesh, z: Array, turned: Callable[[Ints, Array], Array], fit: Array) -> Equilibrium:
+    """Return the guess with the rotations at fractions (e, g + 2) of the parts (e, 1): Gauss points and ends of the elements."""
+    rotation = turned(mesh.part[:, None], mesh.start[:, None] + mesh.share[:, None] * _PLACES)
     inside = rotation[mesh.local[:, 0] >= len(z), -2]
     bubbles = (rotation[:, :-2] - rotation[:, -2:] @ VALUES[:, :2].T) @ fit.T
     return Equilibrium(mesh=mesh, z=np.concatenate([z, inside, bubbles.ravel()]))
@@ -190,15 +185,15 @@ def _newton(now: Equilibrium, iterations: int) -> Equilibrium:
     least = _LAST_PLACES / _ROUND_OFF * layout.softest(now.z)[:2].max()
     turning = np.append(np.ones(now.mesh.unknowns), np.tile(AMPLITUDE, len(now.mesh.part)))
     turning[layout.forces] = turning[layout.moving] = 0.0
-    status, message = SearchStatus.NO_EQUILIBRIUM, SearchStatus.NO_EQUILIBRIUM.value
+    status, reason = SearchStatus.NO_EQUILIBRIUM, ""
     for iteration in range(1, iterations + 1):  # noqa: B007, the number of the last one is told
         error = np.inf
         if np.diff(layout.extents(now.z)).min() <= 0.0:
-            message = _AT_ONE_PLACE
+            reason = "two contacts on a beam, or a contact and an end, come to one place"
             break
         change = newton_step(now)
         if np.isnan(change).all():
-            message = "the equations are singular"
+            reason = "the equations are singular"
             break
         turn, moved = largest(turning * change), largest(change[layout.moving])
         scale, forced = (largest(x[layout.forces]) for x in (now.z, change))
@@ -209,10 +204,10 @@ def _newton(now: Equilibrium, iterations: int) -> Equilibrium:
         if not np.isfinite(size):
             break
         if part == 1.0 and (size < 1e-15 or (size < _ROUND_OFF and size >= 0.25 * last)):
-            status, message = SearchStatus.FOUND, SearchStatus.FOUND.value
+            status = SearchStatus.FOUND
             break
         last = size if part == 1.0 else np.inf
-    return replace(now, status=status, message=message, iterations=iteration, correction=error)
+    return replace(now, status=status, reason=reason, iterations=iteration, correction=error)
 
 
 def newton_step(guess: Equilibrium, held: Ints | None = None) -> Array:

@@ -14,7 +14,7 @@ from comparisons.referee.grip import LOOSE, Grip
 from comparisons.referee.layout import lay_out
 from comparisons.referee.newton import correct, newton_step, switched, undeformed
 from comparisons.referee.rod import largest
-from comparisons.referee.state import Equilibrium, located
+from comparisons.referee.state import Equilibrium
 from comparisons.scene import Scene
 
 Held = Callable[[float], Mapping[str, Grip]]
@@ -106,7 +106,7 @@ def departures(response: Response, states: Mapping[int, Equilibrium]) -> Iterato
         for way in way_to(response, now, there.load_parameter, steps=0)[-1:] if stated else ():
             # beyond an event that is stated within an allowance only, a path that is not found tells nothing
             if _alike(way, there) and (way is now or not _followed(way, there.load_parameter, there)[1]):
-                yield from filter(None, [departs(way, there)])
+                yield from _departs(way, there)
         now, begin = there, k
 
 
@@ -205,23 +205,21 @@ def at_rest(scene: Scene) -> Equilibrium:
     return correct(undeformed(lay_out(scene, 0.0, {})), 6)
 
 
-def departs(first: Equilibrium, last: Equilibrium) -> str:
-    """Return the reason why the path from `first` does not lead to `last` with the same contacts; empty if it does."""
+def _departs(first: Equilibrium, last: Equilibrium) -> Iterator[str]:
+    """Yield the reason why the path from `first` does not lead to `last` with the same contacts."""
     start, end = first.load_parameter, last.load_parameter
     there, stopped = _followed(first, end, last)
     if not stopped:
         off = _apart(there, last)
-        words = (
-            f"the path from load parameter {start:.6g} ends on another branch at {end:.6g}, {off:.2g} L away"
-        )
-        return "" if off < _SAME else words
+        if not off < _SAME:
+            yield f"the path from load parameter {start:.6g} ends on another branch at {end:.6g}, {off:.2g} L away"
+        return
     # where it ends at a bifurcation, all stable branches that lead back to it are right
     back, stopped = _followed(last, start)
     met, t = back.load_parameter, there.load_parameter
-    if stopped and abs(met - t) < _MEET * (end - start) and _apart(there, back) < _MEETING:
-        return ""
-    kind = "" if first.index < 0 else f" of index {first.index}"
-    return f"no continuous path{kind} leads on beyond load parameter {t:.6g}"
+    if not stopped or abs(met - t) >= _MEET * (end - start) or _apart(there, back) >= _MEETING:
+        kind = "" if first.index < 0 else f" of index {first.index}"
+        yield f"no continuous path{kind} leads on beyond load parameter {t:.6g}"
 
 
 def _followed(first: Equilibrium, end: float, last: Equilibrium | None = None) -> tuple[Equilibrium, bool]:
@@ -289,4 +287,4 @@ def _state(now: Equilibrium) -> Array:
     """Displacements, arc positions and directions of the stations, and the rotations along all parts."""
     layout = now.layout
     rest = np.delete(now.z[: layout.unknowns], layout.forces)
-    return np.append(rest, located(now, np.arange(len(layout.parts))[:, None], _PLACES)[2])
+    return np.append(rest, now.located(np.arange(len(layout.parts))[:, None], _PLACES)[2])

@@ -8,7 +8,7 @@ import numpy as np
 
 from comparisons.answer import Array, Ints
 from comparisons.frozen import Frozen
-from comparisons.referee.elements import AMPLITUDE, VALUES, WEIGHTS, Mesh, rotations, shapes, up_to
+from comparisons.referee.elements import AMPLITUDE, WEIGHTS, Mesh, at_gauss, rotations, shapes, up_to
 from comparisons.referee.equations import System, assemble, index_of
 from comparisons.referee.layout import NONE, Layout, Touch
 from comparisons.referee.rod import cross
@@ -56,7 +56,7 @@ class Equilibrium(Frozen):
     )  #: Unknowns, those of the layout first and the coefficients of the bubbles last.
     #: Outcome of the search; what follows from the unknowns is valid for `SearchStatus.FOUND` only.
     status: SearchStatus = SearchStatus.NO_EQUILIBRIUM
-    message: str = ""  #: The status as a sentence.
+    reason: str = ""  #: Why there is none, where more is known than the status says.
     iterations: int = 0  #: Number of Newton iterations.
     correction: float = np.inf  #: Last correction of the unknowns.
 
@@ -73,6 +73,11 @@ class Equilibrium(Frozen):
     def found(self) -> bool:
         """Whether it is an equilibrium."""
         return self.status is SearchStatus.FOUND
+
+    @property
+    def message(self) -> str:
+        """The outcome as a sentence."""
+        return self.reason or self.status.value
 
     @property
     def scene(self) -> Scene:
@@ -148,38 +153,43 @@ class Equilibrium(Frozen):
         """Estimated relative error: the last correction and the last terms of the rotation."""
         return max(self.correction, float(self.tails.max()))
 
+    @cached_property
+    def _strained(self) -> tuple[Array, Array]:
+        """Derivatives (2, e, g) of the strained way by xi at the Gauss points, and its integrals (2, e + 1) over the elements before."""
+        theta, _, *c, half, s = at_gauss(self.mesh, self.z)
+        ways = half * self.layout.pieces(self.mesh.part).strained(np.array(c), s, theta).way
+        return ways, np.cumsum(np.pad(ways @ WEIGHTS, ((0, 0), (1, 0))), axis=1)
+
+    def located(self, part: Ints, x: Array) -> tuple[Ints, Array, Array, Array]:
+        """Return elements, xi, rotations and their derivatives by xi at fractions x (...) of the parts `part` (...)."""
+        mesh = self.mesh
+        e = np.searchsorted(mesh.part + mesh.start, part + np.clip(x, 0.0, _INSIDE), side="right") - 1
+        xi = 2.0 * (x - mesh.start[e]) / mesh.share[e] - 1.0
+        rotation = rotations(mesh, self.z)[e]
+        theta, bent = ((item * rotation).sum(axis=-1) for item in shapes(xi))
+        return e, xi, theta, bent
+
     def shape(self, beam: str, arc: Array) -> Shape:
         """Return the shape of a beam at arc lengths (m,)."""
-        layout, z, mesh, s = self.layout, self.z, self.mesh, np.asarray(arc) / self.layout.length
+        layout, z, s = self.layout, self.z, np.asarray(arc) / self.layout.length
         parts = [k for k, part in enumerate(layout.parts) if part.beam == beam]
         extents = layout.extents(z)
         part = np.array(parts)[np.searchsorted(extents[parts[1:], 0], s, side="right")]
         first, last = extents[part].T
-        e, xi, theta, bent = located(self, part, (s - first) / (last - first))
-        # integrals of the strained tangent over the elements before
-        mine = slice(*np.searchsorted(mesh.part, [parts[0], parts[-1] + 1]).tolist())
-        of, e = mesh.part[mine], e - mine.start
-        extent = np.diff(extents)[of, 0]
-        half = mesh.share[mine] * extent / 2.0
-        points = extents[of, :1] + extent[:, None] * mesh.points[mine]
-        constants = z[mesh.local[mine, 2:4]].T[..., None]
-        rotation = rotations(mesh, z)[mine]
-        inner = layout.pieces(of).strained(constants, points, rotation @ VALUES.T).way
-        before = np.cumsum(np.pad(half * (inner @ WEIGHTS), ((0, 0), (1, 0))), axis=1)
-        along = (
-            before[:, e]
-            - before[:, np.searchsorted(of, part)]
-            + half[e] * (up_to(xi) * inner[:, e]).sum(axis=2)
-        )
-        pieces, c, at, turned = layout.pieces(part), constants[:, e], s[:, None], theta[:, None]
+        e, xi, theta, bent = self.located(part, (s - first) / (last - first))
+        ways, before = self._strained
+        begun = before[:, np.searchsorted(self.mesh.part, part)]
+        along = before[:, e] - begun + (up_to(xi) * ways[:, e]).sum(axis=2)
+        c = z[self.mesh.local[e, 2:4]].T[..., None]
+        pieces, at, turned = layout.pieces(part), s[:, None], theta[:, None]
         begins = (layout.references + layout.shifts(z))[layout.chords[0][0, part]]
-        there = pieces.strained(c, at, turned)
+        there, half = pieces.strained(c, at, turned), self.mesh.share[e] * (last - first) / 2.0
         position = begins + (along + pieces.between(first[:, None], at)[..., 0]).T
         return Shape(
             position=np.array(layout.scene.beams[0].start) + layout.length * position,
             tangent=pieces.tangent(c, at, turned)[..., 0].T,
             rotation=theta,
-            moment=layout.force * layout.length * there.EI[:, 0] * bent / half[e],
+            moment=layout.force * layout.length * there.EI[:, 0] * bent / half,
             N=layout.force * there.N[:, 0],
             Q=layout.force * there.Q[:, 0],
         )
@@ -196,13 +206,3 @@ class Equilibrium(Frozen):
         if "." in node:
             return self.ends[node]
         return np.array(self.scene.pin(node).position(self.load_parameter))
-
-
-def located(exact: Equilibrium, part: Ints, x: Array) -> tuple[Ints, Array, Array, Array]:
-    """Return elements, xi, rotations and their derivatives by xi at fractions x (...) of the parts `part` (...)."""
-    mesh = exact.mesh
-    e = np.searchsorted(mesh.part + mesh.start, part + np.clip(x, 0.0, _INSIDE), side="right") - 1
-    xi = 2.0 * (x - mesh.start[e]) / mesh.share[e] - 1.0
-    rotation = rotations(mesh, exact.z)[e]
-    theta, bent = ((item * rotation).sum(axis=-1) for item in shapes(xi))
-    return e, xi, theta, bent
