@@ -54,12 +54,8 @@ class Passage(NamedTuple):
         )
 
 
-class _Moment(NamedTuple):
-    """A load parameter, with the axis of a beam and the place of a node."""
-
-    t: float
-    line: Array
-    node: Array
+Moment = tuple[float, Array, Array]
+"""A load parameter, with the axis of a beam and the place of a node."""
 
 
 @lru_cache(maxsize=1)
@@ -127,17 +123,18 @@ class _Pair:
             if depth < -_UNSURE or (held and not stated and self.place(now)[1] < 0.0):
                 continue
             way = self.follow(k)
-            if self.passes(way, held) if way else depth > _UNSURE and not held:
-                return Passage(self.spec.pair, t, certain=True)
+            certain = self.passes(way, held) if way else depth > _UNSURE and not held
+            if certain:
+                return Passage(self.spec.pair, t, certain)
             if not way:
-                unsure = unsure or Passage(self.spec.pair, t, certain=False)
+                unsure = unsure or Passage(self.spec.pair, t, certain)
         return unsure
 
     def passes(self, way: list[Equilibrium], before: bool) -> bool:
         """Whether the node, first at the pair's side or closed, passes through the beam on a way, and does not return."""
         beam, node, through = self.spec.beam, self.spec.node, False
         arcs = self.response.axis_line(beam, 0)[0]
-        steps = [_Moment(one.load_parameter, one.shape(beam, arcs).position, one.place(node)) for one in way]
+        steps = [(one.load_parameter, one.shape(beam, arcs).position, one.place(node)) for one in way]
         for begin, end in pairwise(steps):
             gap, inside = self.place(end)
             through = through or self.depth(begin, end, before) >= (_NEARLY if inside < 0.0 else 0.0)
@@ -145,49 +142,40 @@ class _Pair:
             through = through and not before
         return through
 
-    def depth(self, begin: _Moment, end: _Moment, before: bool) -> float:
+    def depth(self, begin: Moment, end: Moment, before: bool) -> float:
         """How far inside the beam's ends the node gets from `before` the beam behind it, over its path; -inf if it does not."""
-        gap, _ = self.place(begin)
         if self.place(end)[0] >= -self.near:
             return -math.inf
-        parts, touched = np.linspace(0.0, 1.0, SAMPLES), np.concatenate([begin.line, end.line])
-        nodes = (1.0 - parts)[:, None] * begin.node + parts[:, None] * end.node
-        if "." not in self.spec.node:
-            pin = self.scene.pin(self.spec.node)
-            nodes = np.array([pin.position(float((1.0 - u) * begin.t + u * end.t)) for u in parts])
-        moved = (nodes[-1] - nodes[0]) - (end.line - begin.line)
-        way = np.hypot(*moved[[0, -1]].T).max() + self.near
-        apart = np.maximum(nodes.min(axis=0) - touched.max(axis=0), touched.min(axis=0) - nodes.max(axis=0))
-        widest = max(self.face.reach(arc) for arc in (0.0, self.scene.beam(self.spec.beam).length))
-        if apart.max() > widest + _UNSURE * way:
-            return -math.inf
-        # a node whose nearest point becomes another one does not cross the beam
-        most = (
-            np.hypot(*np.diff(nodes, axis=0).T).max() + np.hypot(*(end.line - begin.line).T).max() / SAMPLES
+        parts = np.linspace(0.0, 1.0, SAMPLES)
+        times, lines, nodes = (
+            [(1.0 - u) * a + u * b for u in parts] for a, b in zip(begin, end, strict=True)
         )
-        deep, before = -math.inf, before or gap >= -self.near
-        for u, node in zip(parts[1:], nodes[1:], strict=True):
-            last, (gap, inside) = gap, self.place(_Moment(u, (1.0 - u) * begin.line + u * end.line, node))
-            behind = gap < -self.near
-            if before and behind and gap >= min(last, 0.0) - 2.0 * most:
-                deep = max(deep, inside / way)
-            before = not behind
-        return deep
+        if "." not in self.spec.node:
+            nodes = [np.array(self.scene.pin(self.spec.node).position(float(t))) for t in times]
+        moved = lines[-1] - lines[0]
+        way = np.hypot(*(nodes[-1] - nodes[0] - moved[[0, -1]]).T).max() + self.near
+        gaps, insides = np.transpose([self.place(item) for item in zip(times, lines, nodes, strict=True)])
+        # a node whose nearest point becomes another one does not cross the beam
+        most = np.hypot(*np.diff(nodes, axis=0).T).max() + np.hypot(*moved.T).max() / SAMPLES
+        ahead = gaps >= -self.near
+        ahead[0] |= before
+        through = ahead[:-1] & ~ahead[1:] & (gaps[1:] >= np.minimum(gaps[:-1], 0.0) - 2.0 * most)
+        return float(np.max(insides[1:][through] / way, initial=-math.inf))
 
-    def moment(self, k: int) -> _Moment:
+    def moment(self, k: int) -> Moment:
         """The beam and the node at load parameter k; undeformed for k = -1."""
         arc, line = self.response.axis_line(self.spec.beam, max(k, 0))
         node = place_of(self.response, self.scene, self.spec.node, k)
         if k < 0:
-            return _Moment(0.0, axis_at_rest(self.scene.beam(self.spec.beam), arc), node)
-        return _Moment(float(self.response.load_parameter[k]), line, node)
+            return 0.0, axis_at_rest(self.scene.beam(self.spec.beam), arc), node
+        return float(self.response.load_parameter[k]), line, node
 
-    def place(self, now: _Moment) -> tuple[float, float]:
+    def place(self, now: Moment) -> tuple[float, float]:
         """Gap of the node from the curve of touching nodes, which goes on straight beyond the ends, and distance inside the nearer end."""
-        line = now.line
-        nearest = int(np.argmin(np.hypot(*(line - now.node).T)))
+        _, line, node = now
+        nearest = int(np.argmin(np.hypot(*(line - node).T)))
         first, last = max(nearest - 1, 0), min(nearest + 1, len(line) - 1)
-        tangent, away = line[last] - line[first], now.node - line[nearest]
+        tangent, away = line[last] - line[first], node - line[nearest]
         tangent = tangent / np.hypot(*tangent)
         arcs = np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))
         arc = float(arcs[nearest] + tangent @ away)
