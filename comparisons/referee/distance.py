@@ -12,7 +12,6 @@ from comparisons.answer import Array, Response
 from comparisons.answer.axis import place_of
 from comparisons.answer.round_off import (
     LAST_PLACES,
-    LEAST,
     RESIDUAL,
     UNRESOLVED,
     force_round_off,
@@ -22,7 +21,7 @@ from comparisons.frozen import Value
 from comparisons.referee.guess import SHORTEST
 from comparisons.referee.rod import angle, axis_at_rest, cross, face_of
 from comparisons.referee.state import Equilibrium
-from comparisons.scene import BeamSpec, ContactSpec, Scene
+from comparisons.scene import BeamSpec, ContactSpec
 
 Scales = tuple[float, float, float]
 """Largest force, moment and displacement."""
@@ -243,24 +242,19 @@ def largest_force(exact: Equilibrium) -> float:
 
 def _forces(exact: Equilibrium) -> tuple[float, float]:
     """Return the largest force and the largest moment; without a considerable moment the force times the longest beam."""
-    acting = np.array([*exact.reactions.values(), *_loads(exact.scene, exact.load_parameter)]).reshape(-1, 3)
-    moments = np.abs(acting[:, 2]).tolist()
-    length = max(beam.length for beam in exact.scene.beams)
-    forces = [*np.hypot(*acting[:, :2].T).tolist(), *(moment / length for moment in moments)]
-    size = max(largest_force(exact), *forces)
-    considerable = max(moments, default=0.0) > 1e-3 * size * length
-    return size, max(size * length * LEAST, *moments) if considerable else size * length
-
-
-def _loads(scene: Scene, t: float) -> Iterator[tuple[float, float, float]]:
-    """Yield the forces and moments of the dead loads at load parameter t, and the weights of the beams."""
+    scene, t = exact.scene, exact.load_parameter
+    acting = [
+        *exact.reactions.values(),
+        *((*np.multiply(scene.gravity_at(t), beam.mass), 0.0) for beam in scene.beams),
+    ]
     for item in scene.load_histories:
         along, (first, last) = item.load.force_per_length is not None, item.load.span
-        x, y, moment = item.at(t)
         span = (last - first) * scene.beam(item.load.beam).length if along else 1.0
-        yield x * span, y * span, 0.0 if along else moment
-    x, y = scene.gravity_at(t)
-    yield from ((beam.mass * x, beam.mass * y, 0.0) for beam in scene.beams)
+        acting.append(np.multiply(item.at(t), span))
+    x, y, moments = np.array(acting).T
+    length, moment = max(beam.length for beam in scene.beams), float(np.abs(moments).max())
+    size = max(largest_force(exact), float(np.hypot(x, y).max()), moment / length)
+    return size, moment if moment > 1e-3 * size * length else size * length
 
 
 def _misplaced(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple[str, float, float]]:
@@ -287,12 +281,7 @@ def _on_axis(arcs: Array, line: Array, arc: float) -> tuple[Array, float]:
     """Point of the answer's axis, and a bound of the chord's distance from a smooth axis: the triangle with its neighbours' directions."""
     k = int(np.clip(np.searchsorted(arcs, arc) - 1, 0, len(arcs) - 2))
     part = (arc - arcs[k]) / (arcs[k + 1] - arcs[k])
-    first, last = max(k - 1, 0), min(k + 2, len(arcs) - 1)
-    way = line[k + 1] - line[k]
-    before, behind = (
-        line[k] - line[first] if first < k else way,
-        line[last] - line[k + 1] if last > k + 1 else way,
-    )
-    turn = min(max(angle(before, way), angle(way, behind)), _SHARPEST)
-    cut = 0.5 * math.hypot(*way) * math.tan(turn)
-    return (1.0 - part) * line[k] + part * line[k + 1], cut
+    chords = np.diff(line, axis=0)
+    way, beside = chords[k], chords[max(k - 1, 0) : k + 2]
+    turn = min(max(angle(way, chord) for chord in beside), _SHARPEST)
+    return line[k] + part * way, 0.5 * math.hypot(*way) * math.tan(turn)

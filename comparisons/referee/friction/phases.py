@@ -66,7 +66,7 @@ def states(response: Response, scene: Scene, spec: ContactSpec) -> tuple[Ints, s
 def _from_arcs(contact: ContactHistory, length: float) -> Ints:
     """Signs of the changes of the arc position since the load parameter before; at the first, up to the next."""
     change = np.nan_to_num(np.diff(contact.arc_position))
-    change = np.concatenate([change[:1], change]) if len(change) else np.zeros(len(contact.force))
+    change = np.append(change[:1], change) if len(change) else np.zeros(len(contact.force))
     return np.where(np.abs(change) > _MOVED * length, np.sign(change), 0.0).astype(np.int64)
 
 
