@@ -126,7 +126,7 @@ def _ajar(contact: ContactHistory, spec: ContactSpec, beam: BeamSpec, response: 
 
 
 def _passed(response: Response, scene: Scene) -> Iterator[str]:
-    return (str(item) for item in passages(response, scene) if item.certain)
+    return (item.sentence for item in passages(response, scene) if item.certain)
 
 
 def _inside(response: Response, scene: Scene) -> Iterator[str]:

@@ -107,13 +107,10 @@ def unpaid(
     for k, exact in found.items():
         if k + 1 < _FEWEST or any(t <= response.load_parameter[k] for t in unknown):
             continue
-        fine, coarse = (
-            np.sum([item.work(np.array([0, *range(1 + k % step, k + 2, step)])) for item in actions], axis=0)
-            for step in (1, 2)
-        )
-        pairs = np.add.reduceat(fine, np.arange(-(k % 2 == 0), len(fine), 2).clip(0))
-        alone = abs(fine[0]) if k % 2 == 0 else 0.0
-        error = 3.0 * np.abs(pairs - coarse).sum() + alone
+        states, second = np.arange(k + 2), np.array([0, *range(1 + k % 2, k + 2, 2)])
+        fine, coarse = (np.sum([item.work(x) for item in actions], axis=0) for x in (states, second))
+        pairs = np.diff(np.append(0.0, np.cumsum(fine))[second])
+        error = 3.0 * np.abs(pairs - coarse).sum() + (abs(fine[0]) if k % 2 == 0 else 0.0)
         missing, largest = abs(np.sum(fine) - exact.strain_energy), max(np.abs(fine).sum(), least)
         if not missing <= allowed * largest + error:
             yield (

@@ -61,7 +61,7 @@ def certify(
     passed, path = list[Passage](), list[str]()
     if steps and not unsound:
         passed = [*passages(response, scene)]
-        path = [str(item) for item in passed if item.certain]
+        path = [item.sentence for item in passed if item.certain]
         path += _path(response, scene, found, allowed)
     if history is not None:
         from comparisons.referee.friction import rubs_wrongly_on_the_way
@@ -145,7 +145,7 @@ def _sound(
     for gone in departures(response, found):
         return Verdict.UNSTABLE, gone
     if passed:
-        return Verdict.NOT_JUDGED, str(passed[0])
+        return Verdict.NOT_JUDGED, passed[0].sentence
     worst = max(distances, key=lambda item: item.largest[1])
     stable = "stability not judged (friction)" if any(item.index for item in states.values()) else "stable"
     count = f"{len(states)} of {len(scene.times)} load parameters"

@@ -143,9 +143,8 @@ def _contact_differences(response: Response, k: int, exact: Equilibrium) -> Iter
         contact, stated = exact.contacts.get(pair), response.contacts[pair]
         if contact is not None:
             # without its direction, a force has the exact one
-            off = abs(np.hypot(*contact.force) - stated.force[k])
-            if stated.vector is not None:
-                off = np.hypot(*(contact.force - stated.vector[k]))
+            size, vector = np.hypot(*contact.force), stated.vector
+            off = abs(size - stated.force[k]) if vector is None else np.hypot(*(contact.force - vector[k]))
             yield "force", pair, _beyond(float(off), largest, force_round_off(exact.scene, largest))
             yield "arc_position", pair, abs(contact.arc_position - float(stated.arc_position[k])) / length
         if contact is not None or math.isfinite(stated.gap[k]):
@@ -154,17 +153,16 @@ def _contact_differences(response: Response, k: int, exact: Equilibrium) -> Iter
 
 def _holds(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple[str, Array, Any]]:
     """Yield the supports and the springs that the answer states, with the exact force and moment and the stated ones."""
-    for end, total in exact.reactions.items():
-        own = response.supports[end]
-        yield end, total, (*own.force[k], own.moment[k])
+    held = [(end, total, response.supports[end]) for end, total in exact.reactions.items()]
     for spring in exact.scene.springs:
         node = spring.node
         if node in response.springs:
-            own = response.springs[node]
-            way = np.array(spring.stiffness) * (exact.ends[node] - np.array(exact.scene.place(node)))
+            way = np.array(spring.stiffness) * (exact.ends[node] - exact.scene.place(node))
             turn = exact.layout.motions(exact.z)[exact.layout.joint(node), 2]
             total = -np.append(way, spring.rotation * turn)
-            yield f"the spring at {node}", total, (*own.force[k], own.moment[k])
+            held.append((f"the spring at {node}", total, response.springs[node]))
+    for name, total, own in held:
+        yield name, total, (*own.force[k], own.moment[k])
 
 
 def feet(exact: Equilibrium, spec: ContactSpec) -> tuple[Array, Array]:
@@ -264,10 +262,8 @@ def _misplaced(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple
         if spec.pair in exact.contacts:
             arc = float(response.contacts[spec.pair].arc_position[k])
             place, cut = _on_axis(*response.axis_line(spec.beam, k), arc)
-            apart = abs(
-                math.hypot(*(place - place_of(response, scene, spec.node, k)))
-                - face_of(scene, spec).reach(arc)
-            )
+            far = math.hypot(*(place - place_of(response, scene, spec.node, k)))
+            apart = abs(far - face_of(scene, spec).reach(arc))
             yield spec.pair, max(0.0, apart - cut), scene.beam(spec.beam).length
     for support in scene.all_supports:
         way = (place_of(response, scene, support.node, k) - scene.place(support.node)).tolist()

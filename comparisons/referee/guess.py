@@ -40,16 +40,17 @@ class AnswerState(Frozen):
 
 def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
     """Return the state at load parameter number k; a contact whose force is round-off is open at an end of its beam, but its force counts."""
-    pushing = {pair: item for pair, item in response.contacts.items() if item.force[k] != 0.0}
-    specs = [spec for spec in scene.contacts if spec.pair in pushing]
-    idle = {spec.pair for spec in specs if idle_at_an_end(pushing[spec.pair], scene, spec, k)}
+    arcs, forces = dict[str, float](), dict[str, Sequence[float]]()
+    for spec in scene.contacts:
+        item = response.contacts[spec.pair]
+        if item.force[k] != 0.0:
+            forces[spec.pair] = (math.nan, math.nan) if item.vector is None else item.vector[k].tolist()
+            if not idle_at_an_end(item, scene, spec, k):
+                arcs[spec.pair] = float(item.arc_position[k])
     return AnswerState(
         load_parameter=float(response.load_parameter[k]),
-        arcs={pair: float(item.arc_position[k]) for pair, item in pushing.items() if pair not in idle},
-        forces={
-            pair: (math.nan, math.nan) if item.vector is None else item.vector[k].tolist()
-            for pair, item in pushing.items()
-        },
+        arcs=arcs,
+        forces=forces,
         axes={beam.name: response.axis_line(beam.name, k) for beam in scene.beams},
         reactions={
             node: (*item.force[k].tolist(), float(item.moment[k])) for node, item in response.supports.items()

@@ -39,19 +39,10 @@ and those of a followed path do not of a node that ends beyond it."""
 
 
 class Passage(NamedTuple):
-    """A node that gets behind a beam up to a load parameter: through it, if that is certain."""
+    """A sentence on a node that gets behind a beam: through it, if that is certain."""
 
-    pair: str
-    load_parameter: float
+    sentence: str
     certain: bool
-
-    def __str__(self) -> str:
-        if self.certain:
-            return f"{self.pair} is open and its node goes through the beam up to load parameter {self.load_parameter:.6g}"
-        return (
-            f"the path up to load parameter {self.load_parameter:.6g} is not found, on which the node of {self.pair} "
-            "gets behind the beam, through it or past its end"
-        )
 
 
 Moment = tuple[float, Array, Array]
@@ -111,7 +102,8 @@ class _Pair:
     def passed_through(self) -> Passage | None:
         """The first passage of the open node that is certain, or one that is not; None without one, and after a slip-off."""
         # axes and ends move in straight lines; where a node gets behind the beam, along the path that is followed
-        contact, unsure, moment = self.response.contacts[self.spec.pair], None, cache(self.moment)
+        pair, unsure, moment = self.spec.pair, None, cache(self.moment)
+        contact = self.response.contacts[pair]
         closed, stated = np.append(False, contact.force > 0.0), self.response.events is not None
         for k, t in enumerate(map(float, self.response.load_parameter)):
             if t >= contact.slip_off:
@@ -123,11 +115,15 @@ class _Pair:
             if depth < -_UNSURE or (held and not stated and self.place(now)[1] < 0.0):
                 continue
             way = self.follow(k)
-            certain = self.passes(way, held) if way else depth > _UNSURE and not held
-            if certain:
-                return Passage(self.spec.pair, t, certain)
+            if self.passes(way, held) if way else depth > _UNSURE and not held:
+                words = f"{pair} is open and its node goes through the beam up to load parameter {t:.6g}"
+                return Passage(words, certain=True)
             if not way:
-                unsure = unsure or Passage(self.spec.pair, t, certain)
+                words = (
+                    f"the path up to load parameter {t:.6g} is not found, on which the node of {pair} "
+                    "gets behind the beam, through it or past its end"
+                )
+                unsure = unsure or Passage(words, certain=False)
         return unsure
 
     def passes(self, way: list[Equilibrium], before: bool) -> bool:

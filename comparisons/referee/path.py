@@ -55,8 +55,7 @@ CLOSES, OPENS, STAYS, PASSES = ("touch",), ("release", "slip-off"), ("slip", "st
 
 def changes_of(response: Response, pair: str = "") -> list[ContactEvent]:
     """Return the events at which a contact, or any one, changes; at a pass-through none does."""
-    events = [event for event in response.events or () if event.kind != PASSES]
-    return [event for event in events if pair in ("", event.pair)]
+    return [one for one in response.events or () if one.kind != PASSES and pair in ("", one.pair)]
 
 
 def corners(scene: Scene) -> tuple[float, ...]:
@@ -74,7 +73,8 @@ def moved(now: Equilibrium, t: float, grips: Mapping[str, Grip]) -> Equilibrium:
 def reach(near: Equilibrium, t: float, grips: Mapping[str, Grip], halvings: int = _HALVINGS) -> Equilibrium:
     """Return the equilibrium at load parameter t with the same contacts, held by `grips`, by steps from `near`."""
     there = correct(moved(near, t, grips), _ITERATIONS)
-    turning = [k for k in (item.numbers[2] for item in there.layout.stations) if k >= 0]
+    turning = there.layout.tables[0][:, 2]
+    turning = turning[turning >= 0]
     turned = largest(there.z[turning] - near.z[turning])
     if (there.found and turned < _TURN) or not halvings or near.load_parameter == t:
         return there
