@@ -158,7 +158,7 @@ def _holds(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple[str
         node = spring.node
         if node in response.springs:
             way = np.array(spring.stiffness) * (exact.ends[node] - exact.scene.place(node))
-            turn = exact.layout.motions(exact.z)[exact.layout.joint(node), 2]
+            turn = exact.layout.motions(exact.z)[exact.layout.joints[node], 2]
             total = -np.append(way, spring.rotation * turn)
             held.append((f"the spring at {node}", total, response.springs[node]))
     for name, total, own in held:

@@ -158,7 +158,7 @@ def _rotation(layout: Layout, answer: AnswerState, own: list[tuple[Part, Array]]
 def _balance(layout: Layout, answer: AnswerState, z: Array) -> None:
     """Set the forces of the parts by a least-squares balance with the answer's contact forces, reactions and loads."""
     acting, known = _acting(layout, answer, z)
-    joined = {hinge.end: hinge.joint for hinge in layout.hinges}
+    joined = {end: joint for end, joint, _ in layout.hinges}
     balance = np.zeros((len(layout.stations), len(layout.parts)))
     for n, part in enumerate(layout.parts):
         for number, sign in zip(part.stations, (-1.0, 1.0), strict=True):
@@ -175,13 +175,13 @@ def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[i
     """External forces (stations, 2), of ends behind a hinge at the joint, and the stations whose reactions the answer has."""
     _, loads, stiffness = layout.tables
     acting = loads[:, :2] - (stiffness @ layout.motions(z).ravel()).reshape(loads.shape)[:, :2]
-    for hinge in layout.hinges:
-        acting[hinge.joint] += acting[hinge.end]
-    for end, (x, y, _) in answer.reactions.items():
-        acting[layout.joint(end)] += np.array([x, y]) / layout.force
+    for end, joint, _ in layout.hinges:
+        acting[joint] += acting[end]
+    for node, (x, y, _) in answer.reactions.items():
+        acting[layout.joints[node]] += np.array([x, y]) / layout.force
     for touch in layout.touches:
         force = np.nan_to_num(np.array(answer.forces[touch.spec.pair])) / layout.force
         acting[touch.station] += force
         if "." in touch.spec.node:
-            acting[layout.joint(touch.spec.node)] -= force
-    return acting, {layout.joint(end) for end in answer.reactions}
+            acting[layout.joints[touch.spec.node]] -= force
+    return acting, {layout.joints[node] for node in answer.reactions}

@@ -12,7 +12,7 @@ from dataclasses import field
 from functools import cached_property
 from itertools import pairwise
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -58,21 +58,10 @@ class Station(Frozen):
     #: Stiffnesses (3,) against displacement and rotation.
     springs: Array = field(default_factory=lambda: np.zeros(3))
     touch: Touch | None = None
-    ends: tuple[str, ...] = ()  #: Ends of beams that are rigidly attached.
-    #: Ends of all beams at a joint, with those behind a hinge; empty for other stations.
-    joint: tuple[str, ...] = ()
 
     def turning(self, rotation: int, **more: Any) -> "Station":
         """Return a station at the same place with a rotation of its own."""
         return Station(reference=self.reference, numbers=np.append(self.numbers[:2], rotation), **more)
-
-
-class Hinge(NamedTuple):
-    """A hinge between the stations `end`, of the beam's end, and `joint`, with a rotational spring."""
-
-    end: int
-    joint: int
-    stiffness: float
 
 
 class Part(Frozen):
@@ -96,9 +85,11 @@ class Layout(Frozen):
     load_parameter: float
     length: float
     force: float
-    stations: tuple[Station, ...]
-    parts: tuple[Part, ...]
-    hinges: tuple[Hinge, ...]
+    stations: list[Station]
+    parts: list[Part]
+    joints: dict[str, int]  #: Numbers of the joints to which the beams' ends belong.
+    #: Numbers of the stations of a beam's end behind a hinge and of its joint, and the stiffness of the spring in between.
+    hinges: list[tuple[int, int, float]]
     given: Array  #: Prescribed quantities.
     unknowns: int  #: Number of unknowns without the rotations inside the parts.
 
@@ -159,10 +150,6 @@ class Layout(Frozen):
     def touch(self, pair: str) -> Touch:
         """Return the closed contact of a pair."""
         return next(item for item in self.touches if item.spec.pair == pair)
-
-    def joint(self, end: str) -> int:
-        """Return the number of the joint to which a beam's end belongs."""
-        return next(k for k, item in enumerate(self.stations) if end in item.joint)
 
     def beside(self, touch: Touch) -> tuple[Part, Part]:
         """Return the parts before and behind a contact."""
@@ -244,8 +231,12 @@ def lay_out(
     unit = np.array([force, force, force * length])
     rods = {beam.name: rod_of(scene, beam, load_parameter) for beam in scene.beams}
     numbers = _Numbers()
-    stations, hinges = _joints(scene, load_parameter, rods, unit, numbers)
-    at = {end: station for station in stations for end in station.joint}
+    stations, joints = _joints(scene, load_parameter, unit, numbers)
+    ends, hinges = dict(joints), []
+    for hinge in scene.hinges:
+        ends[hinge.node] = len(stations)
+        hinges.append((len(stations), joints[hinge.node], hinge.stiffness / unit[2]))
+        stations.append(stations[joints[hinge.node]].turning(numbers.free()))
     on_beam: dict[str, list[tuple[float, int, int]]] = {beam.name: [] for beam in scene.beams}
     for spec in (item for item in scene.contacts if item.pair in closed):
         face = face_of(scene, spec, length)
@@ -253,9 +244,11 @@ def lay_out(
         touch = Touch(
             spec=spec, station=len(stations), arc=arc, angle=angle, face=face, grip=grips.get(spec.pair)
         )
-        node = at.get(spec.node) or Station(
-            reference=_place(scene, scene.pin(spec.node).position(load_parameter)), numbers=np.full(3, NONE)
-        )
+        if spec.node in joints:
+            node = stations[joints[spec.node]]
+        else:
+            place = _place(scene, scene.pin(spec.node).position(load_parameter))
+            node = Station(reference=place, numbers=np.full(3, NONE))
         on_beam[spec.beam].append((closed[spec.pair], len(stations), arc))
         stations.append(node.turning(turn, touch=touch))
     for name, (breaks, _) in rods.items():
@@ -268,10 +261,10 @@ def lay_out(
             place = _place(scene, scene.beam(name).place(s / breaks[-1]))
             moved = numbers.free(3) + np.arange(3)
             stations.append(Station(reference=place, numbers=moved, load=loads / unit))
-    ends = {end: number for number, station in enumerate(stations) for end in station.ends}
     parts: list[Part] = []
     for name, (breaks, pieces) in rods.items():
         begin, end = (0.0, ends[f"{name}.start"], NONE), ends[f"{name}.end"]
+        stations[end].load[:2] += value(pieces[-1].coefficients[:, 3:, 0], breaks[-1])
         chain = [begin, *sorted(on_beam[name]), (breaks[-1], end, numbers.fixed(breaks[-1]))]
         piece = 0
         for (_, first, arc), (_, last, arc_after) in pairwise(chain):
@@ -279,9 +272,8 @@ def lay_out(
             arcs, c = (arc, arc_after), numbers.free(2)
             parts.append(Part(beam=name, stations=(first, last), arcs=arcs, force=c, piece=pieces[piece]))
     return Layout(
-        scene=scene, load_parameter=load_parameter, length=length, force=force, stations=tuple(stations),
-        parts=tuple(parts), hinges=tuple(hinges), given=np.array(numbers.given[::-1]),
-        unknowns=numbers.unknowns,
+        scene=scene, load_parameter=load_parameter, length=length, force=force, stations=stations, parts=parts,
+        joints=joints, hinges=hinges, given=np.array(numbers.given[::-1]), unknowns=numbers.unknowns,
     )  # fmt: skip
 
 
@@ -295,39 +287,25 @@ def _total(amounts: Iterable[Any]) -> Array:
     return np.asarray(np.sum([_NOTHING, *amounts], axis=0))
 
 
-def _joints(
-    scene: Scene, t: float, rods: Mapping[str, Rod], unit: Array, numbers: _Numbers
-) -> tuple[list[Station], list[Hinge]]:
-    """Return the stations of joints and ends with the numbers of their free components, those behind hinges last, and the hinges."""
-    resultants = {
-        f"{name}.end": np.append(value(pieces[-1].coefficients[:, 3:, 0], breaks[-1]), 0.0)
-        for name, (breaks, pieces) in rods.items()
-    }
-    hinged = {hinge.node: hinge.stiffness / unit[2] for hinge in scene.hinges}
-    stations: list[Station] = []
+def _joints(scene: Scene, t: float, unit: Array, numbers: _Numbers) -> tuple[list[Station], dict[str, int]]:
+    """Return the stations of joints with the numbers of their free components, and the numbers of the joints by the beams' ends."""
+    stations, joints = list[Station](), dict[str, int]()
+    hinged = {hinge.node: hinge.stiffness for hinge in scene.hinges}
     size = np.array([units_of(scene)[0]] * 2 + [1.0])
     for point, meeting in scene.meeting.items():
-        ends = tuple(f"{beam.name}.{end}" for beam, end in meeting)
-        own = tuple(end for end in ends if end not in hinged)
+        ends = [f"{beam.name}.{end}" for beam, end in meeting]
+        joints |= dict.fromkeys(ends, len(stations))
         held = (motion.at(t) for node, motion in scene.prescribed_motions.items() if node in ends)
         motion = next(held, (None, None, None))
         springs = _total((*item.stiffness, item.rotation) for item in scene.springs if item.node in ends)
-        turns = bool(own or springs[2] or any(hinged.get(end) for end in ends))
+        turns = springs[2] or any(hinged.get(end, True) for end in ends)
         loads = _total(item.at(t) for item in scene.load_histories if item.load.node in ends)
-        along = _total(resultants[end] for end in own if end in resultants)
         given = [
             numbers.free() if way is None and free else numbers.fixed((way or 0.0) / one)
             for way, one, free in zip(motion, size, (True, True, turns), strict=True)
         ]
         stations.append(Station(
-            reference=_place(scene, point), numbers=np.array(given), load=loads / unit + along,
-            springs=springs * size / unit, ends=own, joint=ends,
+            reference=_place(scene, point), numbers=np.array(given), load=loads / unit,
+            springs=springs * size / unit,
         ))  # fmt: skip
-    hinges: list[Hinge] = []
-    for node, stiffness in hinged.items():
-        joint = next(k for k, item in enumerate(stations) if node in item.joint)
-        hinges.append(Hinge(len(stations), joint, stiffness))
-        stations.append(
-            stations[joint].turning(numbers.free(), ends=(node,), load=resultants.get(node, _NOTHING))
-        )
-    return stations, hinges
+    return stations, joints

@@ -118,7 +118,7 @@ class Equilibrium(Frozen):
         layout, found = self.layout, dict[str, Array]()
         unit = layout.force * np.array([1.0, 1.0, layout.length])
         for support in self.scene.all_supports:
-            numbers = layout.stations[layout.joint(support.node)].numbers
+            numbers = layout.stations[layout.joints[support.node]].numbers
             given = [value is not None for value in support.motion]
             found[support.node] = np.where(given, unit * self.system.held[np.minimum(numbers, NONE)], 0.0)
         return found
@@ -128,9 +128,8 @@ class Equilibrium(Frozen):
         """Positions (2,) of the beams' ends, by names such as ``upper.end``."""
         layout, moved = self.layout, self.layout.motions(self.z)
         return {
-            end: np.array(self.scene.beams[0].start) + layout.length * (station.reference + moved[k, :2])
-            for k, station in enumerate(layout.stations)
-            for end in station.joint
+            end: self.scene.beams[0].start + layout.length * (layout.references[k] + moved[k, :2])
+            for end, k in layout.joints.items()
         }
 
     @property
