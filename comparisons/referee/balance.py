@@ -158,7 +158,7 @@ def _acting(response: Response, scene: Scene) -> tuple[list[Action], list[Action
         acting, (first, last) = np.array([history.at(t) for t in times]).reshape(-1, 3), load.span
         if load.force_per_length is not None:
             parts, extents = first + (last - first) * _PARTS, (last - first) * beam.length * _WEIGHTS
-            actions.append(_inside(response, beam, parts, extents, acting * (1.0, 1.0, 0.0)))
+            actions.append(_inside(response, beam, parts, extents, acting))
         elif load.at is not None:
             actions.append(_inside(response, beam, np.array([load.at]), np.ones(1), acting))
         else:

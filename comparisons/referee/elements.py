@@ -116,8 +116,8 @@ def elements(mesh: Mesh, z: Array) -> tuple[Array, Array, Array]:
     to, steps = mesh.to, at_gauss(mesh, z)[..., None] + 1j * STEP * np.eye(6)[:, None, None]
     given = steps.reshape(6, len(to), -1)
     found = _at_points(mesh.layout.pieces(mesh.part), given).reshape(7, *steps.shape[1:])
-    first, second = found[:6, ..., 0].real.transpose(1, 2, 0), found[:6].imag.transpose(1, 2, 0, 3) / STEP
-    gradient = np.einsum("egi,egis->es", first * WEIGHTS[:, None], to)
+    first, second = found[:6, ..., 0].real, found[:6].imag.transpose(1, 2, 0, 3) / STEP
+    gradient = np.einsum("ieg,egis->es", first * WEIGHTS, to)
     rows, weighted = (len(to), -1, to.shape[-1]), second * WEIGHTS[:, None, None]
     hessian = to.reshape(rows).swapaxes(1, 2) @ (weighted @ to).reshape(rows)
     return gradient, hessian, found[6, ..., 0].real @ WEIGHTS

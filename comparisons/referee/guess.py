@@ -157,8 +157,19 @@ def _rotation(layout: Layout, answer: AnswerState, own: list[tuple[Part, Array]]
 
 def _balance(layout: Layout, answer: AnswerState, z: Array) -> None:
     """Set the forces of the parts by a least-squares balance with the answer's contact forces, reactions and loads."""
-    acting, known = _acting(layout, answer, z)
+    _, loads, stiffness = layout.tables
+    acting = loads[:, :2] - (stiffness @ layout.motions(z).ravel()).reshape(loads.shape)[:, :2]
     joined = {end: joint for end, joint, _ in layout.hinges}
+    for end, joint in joined.items():
+        acting[joint] += acting[end]
+    for node, (x, y, _) in answer.reactions.items():
+        acting[layout.joints[node]] += np.array([x, y]) / layout.force
+    for touch in layout.touches:
+        force = np.nan_to_num(np.array(answer.forces[touch.spec.pair])) / layout.force
+        acting[touch.station] += force
+        if touch.spec.node in layout.joints:
+            acting[layout.joints[touch.spec.node]] -= force
+    known = {layout.joints[node] for node in answer.reactions}
     balance = np.zeros((len(layout.stations), len(layout.parts)))
     for n, part in enumerate(layout.parts):
         for number, sign in zip(part.stations, (-1.0, 1.0), strict=True):
@@ -169,19 +180,3 @@ def _balance(layout: Layout, answer: AnswerState, z: Array) -> None:
             for k, item in enumerate(layout.stations)
         ]
         z[forces] = np.linalg.lstsq(balance[stated], acting[stated, axis], rcond=None)[0]
-
-
-def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[int]]:
-    """External forces (stations, 2), of ends behind a hinge at the joint, and the stations whose reactions the answer has."""
-    _, loads, stiffness = layout.tables
-    acting = loads[:, :2] - (stiffness @ layout.motions(z).ravel()).reshape(loads.shape)[:, :2]
-    for end, joint, _ in layout.hinges:
-        acting[joint] += acting[end]
-    for node, (x, y, _) in answer.reactions.items():
-        acting[layout.joints[node]] += np.array([x, y]) / layout.force
-    for touch in layout.touches:
-        force = np.nan_to_num(np.array(answer.forces[touch.spec.pair])) / layout.force
-        acting[touch.station] += force
-        if "." in touch.spec.node:
-            acting[layout.joints[touch.spec.node]] -= force
-    return acting, {layout.joints[node] for node in answer.reactions}

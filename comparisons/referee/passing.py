@@ -189,10 +189,8 @@ def _followed(response: Response, scene: Scene, k: int) -> list[Equilibrium]:
         return equilibrium(scene, replace(answer_state(response, scene, n), grips=grips))
 
     try:
-        begin, end = at(k - 1), at(k)
-        held = history.around if history else None
-        found = begin.found and end.found
-        way = way_to(response, begin, end.load_parameter, held, _STEPS) if found else []
+        begin, end, held = at(k - 1), at(k), history.around if history else None
+        way = way_to(response, begin, end.load_parameter, held, _STEPS) if end.found else []
     except UnknownFrictionError:
         return []
     return way if way and same(way[-1], end) else []

@@ -95,18 +95,16 @@ def tangent(now: Equilibrium, little: float) -> Array:
 def departures(response: Response, states: Mapping[int, Equilibrium]) -> Iterator[str]:
     """Yield reasons why equilibria, by number, are not on the path from rest, which is followed from each to the next through the events."""
     # not where a contact slips off, or friction changes its direction
-    closed = [
-        {pair for pair, item in response.contacts.items() if item.force[k] != 0.0}
-        for k in range(len(response.load_parameter))
-    ]
     now, begin = None, 0
     for k, there in states.items():
         now = now or at_rest(there.scene)
-        stated = response.events is not None or all(own == now.closed.keys() for own in closed[begin : k + 1])
+        stated = response.events is not None or all(
+            np.all((item.force[begin : k + 1] != 0.0) == (pair in now.closed))
+            for pair, item in response.contacts.items()
+        )
         for way in way_to(response, now, there.load_parameter, steps=0)[-1:] if stated else ():
-            # beyond an event that is stated within an allowance only, a path that is not found tells nothing
-            if _alike(way, there) and (way is now or not _followed(way, there.load_parameter, there)[1]):
-                yield from _departs(way, there)
+            if _alike(way, there):
+                yield from _departs(way, there, beyond=way is not now)
         now, begin = there, k
 
 
@@ -205,14 +203,16 @@ def at_rest(scene: Scene) -> Equilibrium:
     return correct(undeformed(lay_out(scene, 0.0, {})), 6)
 
 
-def _departs(first: Equilibrium, last: Equilibrium) -> Iterator[str]:
-    """Yield the reason why the path from `first` does not lead to `last` with the same contacts."""
+def _departs(first: Equilibrium, last: Equilibrium, *, beyond: bool) -> Iterator[str]:
+    """Yield the reason why the path from `first`, or from `beyond` an event, does not lead to `last` with the same contacts."""
     start, end = first.load_parameter, last.load_parameter
     there, stopped = _followed(first, end, last)
     if not stopped:
         off = _apart(there, last)
         if not off < _SAME:
             yield f"the path from load parameter {start:.6g} ends on another branch at {end:.6g}, {off:.2g} L away"
+    # beyond an event that is stated within an allowance only, a path that is not found tells nothing
+    if not stopped or beyond:
         return
     # where it ends at a bifurcation, all stable branches that lead back to it are right
     back, stopped = _followed(last, start)

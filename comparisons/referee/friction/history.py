@@ -218,9 +218,9 @@ class History:
         """Return an equilibrium with given contacts and state, at a load parameter of the answer that is near t."""
         times = self.response.load_parameter
         after = int(np.searchsorted(times, t))
-        for k in (after - 1, after, after + 1):
-            answer = answer_state(self.response, self.scene, k) if 0 <= k < len(times) else None
-            if answer is None or not closed <= answer.arcs.keys():
+        for k in range(max(after - 1, 0), min(after + 2, len(times))):
+            answer = answer_state(self.response, self.scene, k)
+            if not closed <= answer.arcs.keys():
                 continue
             kept = {pair: arc for pair, arc in answer.arcs.items() if pair in closed}
             # far from t there may be no equilibrium in this state, while frictionless contacts lead to t

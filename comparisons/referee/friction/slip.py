@@ -45,9 +45,8 @@ _SWEEPS, _LEAST = 30, 1e-4
 def _rates(now: Equilibrium, behind: bool) -> Array:
     """Rates of the unknowns ahead, or behind, up to the next of the `corners`."""
     scene, sign = now.layout.scene, -1.0 if behind else 1.0
-    apart = [sign * (corner - now.load_parameter) for corner in corners(scene)]
-    little = [part / 2.0 for part in apart if part > _CORNER]
-    ahead = sign * min([_AHEAD, *little])
+    apart = (sign * (corner - now.load_parameter) for corner in corners(scene))
+    ahead = sign * min([_AHEAD, *(part / 2.0 for part in apart if part > _CORNER)])
     return 2.0 * tangent(now, ahead / 2.0) - tangent(now, ahead)
 
 
