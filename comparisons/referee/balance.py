@@ -8,6 +8,7 @@ import numpy as np
 from comparisons.answer import Array, Ints, Response
 from comparisons.answer.axis import place_of
 from comparisons.answer.round_off import force_round_off, least_force, residual_force
+from comparisons.referee.path import SAME
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import BeamSpec, Scene
 
@@ -16,8 +17,6 @@ BALANCE = 1e-6
 
 _FEWEST = 8
 """Fewest load parameters up to which the work is compared with the strain energy."""
-_SAME = 1e-9
-"""Distance of load parameters that are one."""
 _NODES, _OWN = np.polynomial.legendre.leggauss(4)
 _PARTS = ((np.arange(20)[:, None] + (_NODES + 1.0) / 2.0) / 20).ravel()
 _WEIGHTS = np.tile(_OWN / 2.0, 20) / 20
@@ -97,7 +96,7 @@ def unpaid(
         return
     unknown = [event.load_parameter for event in response.events if event.released]
     corners = (t for pin in scene.pins for t in pin.corners)
-    unknown += [t for t in corners if np.abs(response.load_parameter - t).min() > _SAME]
+    unknown += [t for t in corners if np.abs(response.load_parameter - t).min() > SAME]
     springs, actions = _acting(response, scene)
     outer = _sum(response, [*springs, *actions])
     if outer.any() and np.argmax(np.hypot(*outer.T)) == 0:

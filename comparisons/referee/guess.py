@@ -73,8 +73,7 @@ def idle_at_an_end(contact: ContactHistory, scene: Scene, spec: ContactSpec, k: 
 def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, Seen]:
     """Return the unknowns of the layout, and what an answer shows of its beams."""
     z = np.zeros(layout.unknowns)
-    for touch in layout.touches:
-        z[touch.arc] = answer.arcs[touch.spec.pair] / layout.length
+    z[layout.arcs] = [answer.arcs[touch.spec.pair] / layout.length for touch in layout.touches]
     for _ in range(2):  # the shear follows from the forces
         turns = _rotations(layout, answer, z)
 

@@ -216,23 +216,10 @@ def misstated(
         if event.kind == PASSES or any(spec.friction for spec in scene.contacts):
             continue
         for k in (after - 1, after)[: 1 if event.kind in OPENS else 2]:
-            there = _beside(response, event, found.get(k))
-            wrong = "" if there is None else _wrong(specs[event.pair], event, there, found[k], allowed)
-            if wrong:
+            for wrong in _wrong(response, specs[event.pair], event, found[k], allowed) if k in found else ():
                 yield f"{event.kind} of {event.pair} at load parameter {t:.6g}: {wrong}"
     for spec in scene.contacts:
         yield from _disorder(response, spec)
-
-
-def _beside(response: Response, event: ContactEvent, near: Equilibrium | None) -> Equilibrium | None:
-    """Return the equilibrium at an event that follows from one beside it, if nothing else changes in between."""
-    if near is None:
-        return None
-    low, high = sorted((event.load_parameter, near.load_parameter))
-    if any(low <= one.load_parameter <= high for one in changes_of(response) if one is not event):
-        return None
-    found = reach(near, event.load_parameter, near.layout.grips, halvings=2)
-    return found if found.found else None
 
 
 def _disorder(response: Response, spec: ContactSpec) -> Iterator[str]:
@@ -250,16 +237,29 @@ def _disorder(response: Response, spec: ContactSpec) -> Iterator[str]:
 
 
 def _wrong(
-    spec: ContactSpec, event: ContactEvent, there: Equilibrium, beside: Equilibrium, allowed: float
-) -> str:
-    """Return what an event states otherwise than the equilibrium there, whose force may vanish; empty if it states the same."""
-    length, contact = there.scene.beam(spec.beam).length, there.contacts.get(spec.pair)
+    response: Response, spec: ContactSpec, event: ContactEvent, beside: Equilibrium, allowed: float
+) -> Iterator[str]:
+    """Yield what an event states otherwise than the equilibrium there, whose force may vanish, if nothing else changes from the one beside it."""
+    low, high = sorted((event.load_parameter, beside.load_parameter))
+    if any(low <= one.load_parameter <= high for one in changes_of(response) if one is not event):
+        return
+    there = reach(beside, event.load_parameter, beside.layout.grips, halvings=2)
+    length, contact, closes = (
+        there.scene.beam(spec.beam).length,
+        there.contacts.get(spec.pair),
+        event.kind in CLOSES,
+    )
+    if not there.found:
+        return
     if contact is None:
-        off = gap_off(there, spec, 0.0) / length if event.kind in CLOSES else 0.0
-        return "" if off <= allowed else f"the node is {off:.2g} L away"
+        off = gap_off(there, spec, 0.0) / length if closes else 0.0
+        if not off <= allowed:
+            yield f"the node is {off:.2g} L away"
+        return
     off = abs(contact.arc_position - event.arc_position) / length
+    force = 0.0 if closes else math.hypot(*contact.force)
+    lost = abs(force - event.force) / max(largest_force(there), largest_force(beside))
     if not off <= allowed:
-        return f"arc position off by {off:.2g}"
-    force = 0.0 if event.kind in CLOSES else math.hypot(*contact.force)
-    off = abs(force - event.force) / max(largest_force(there), largest_force(beside))
-    return "" if off <= allowed else f"contact force off by {off:.2g}"
+        yield f"arc position off by {off:.2g}"
+    elif not lost <= allowed:
+        yield f"contact force off by {lost:.2g}"

@@ -49,6 +49,8 @@ _PLACES = np.linspace(0.0, 1.0, 33)
 """Fractions of a part at which rotations are compared."""
 _LEAVING = 1e-3
 """Part of the way to the next change, behind which a contact that touches has a force, and two that pass each other are apart."""
+SAME = 1e-9
+"""Distance of load parameters that are one."""
 CLOSES, OPENS, STAYS, PASSES = ("touch",), ("release", "slip-off"), ("slip", "stick"), "pass-through"
 """Kinds of events at which a contact closes, opens, by a slip-off with a jump, stays closed, and at which nothing changes."""
 

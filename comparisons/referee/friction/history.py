@@ -13,12 +13,12 @@ from typing import TypeVar
 import numpy as np
 
 from comparisons.answer import Response
-from comparisons.referee.friction.phases import OPEN, SAME, UNKNOWN, Phase, phases, states
+from comparisons.referee.friction.phases import OPEN, UNKNOWN, Phase, phases, states
 from comparisons.referee.friction.slip import place, relative_slip_rate, roll, slip_rate
 from comparisons.referee.grip import LOOSE, Grip, Hold, UnknownFrictionError
 from comparisons.referee.guess import answer_state
 from comparisons.referee.newton import equilibrium
-from comparisons.referee.path import corners, reach
+from comparisons.referee.path import SAME, corners, reach
 from comparisons.referee.rod import face_of, units_of
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import ContactSpec, Scene

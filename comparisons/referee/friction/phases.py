@@ -6,7 +6,7 @@ import numpy as np
 
 from comparisons.answer import Array, ContactEvent, ContactHistory, Ints, Response
 from comparisons.frozen import Frozen
-from comparisons.referee.path import changes_of
+from comparisons.referee.path import SAME, changes_of
 from comparisons.scene import ContactSpec, Scene
 
 OPEN, UNKNOWN = 9, 8
@@ -15,8 +15,6 @@ _EDGE = 0.05
 """Distance of a force from the edge of the cone, over the cone, up to which an answer without states of friction slips."""
 _MOVED = 1e-3
 """Change of an arc position between two load parameters, over the length, from which such an answer slips."""
-SAME = 1e-9
-"""Load parameters of one event."""
 
 
 class Phase(Frozen):

@@ -14,7 +14,7 @@ from comparisons.referee.friction.phases import OPEN, UNKNOWN
 from comparisons.referee.friction.slip import place, relative_slip_rate, slip_rate
 from comparisons.referee.grip import Hold, UnknownFrictionError
 from comparisons.referee.layout import Touch
-from comparisons.referee.path import corners, reach
+from comparisons.referee.path import SAME, corners, reach
 from comparisons.referee.rod import largest, units_of
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import ContactSpec, Scene
@@ -119,7 +119,7 @@ def _law(response: Response, allowed: float) -> float:
 
 def _backwards(exact: Equilibrium, touch: Touch) -> float:
     """Slip rate against the sign of the slip, over the speed; at a corner of a pin's path the smaller of those before and behind it."""
-    corner = any(abs(exact.load_parameter - t) < 1e-9 for t in corners(exact.scene))
+    corner = any(abs(exact.load_parameter - t) < SAME for t in corners(exact.scene))
     return min(-relative_slip_rate(exact, touch, behind=behind) for behind in (False, True)[: 1 + corner])
 
 

@@ -16,21 +16,18 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from comparisons.answer import Array
-from comparisons.referee.equations import element_before
+from comparisons.referee.equations import element_before, rows, wrapped
 from comparisons.referee.grip import Grip, Hold
 from comparisons.referee.layout import Touch
-from comparisons.referee.path import corners, reach, tangent
+from comparisons.referee.path import SAME, corners, reach, tangent
 from comparisons.referee.rod import largest
 from comparisons.referee.state import Equilibrium
-from comparisons.referee.touching import rows, wrapped
 
 Sticks = Mapping[str, tuple[Hold, Hold]]
 """Where contacts began to stick, and the places up to which they were followed."""
 
 _AHEAD = 1e-4
 """Load parameters over which rates are differences, of second order, since the equations are not linear in prescribed rotations."""
-_CORNER = 1e-9
-"""Distance from a corner, in load parameters, that counts as none."""
 _PLACES = (1.0 - np.cos(np.pi * np.arange(9) / 8.0)) / 2.0
 """Load parameters in an interval from 0 to 1."""
 _APART = 1e-9
@@ -46,7 +43,7 @@ def _rates(now: Equilibrium, behind: bool) -> Array:
     """Rates of the unknowns ahead, or behind, up to the next of the `corners`."""
     scene, sign = now.layout.scene, -1.0 if behind else 1.0
     apart = (sign * (corner - now.load_parameter) for corner in corners(scene))
-    ahead = sign * min([_AHEAD, *(part / 2.0 for part in apart if part > _CORNER)])
+    ahead = sign * min([_AHEAD, *(part / 2.0 for part in apart if part > SAME)])
     return 2.0 * tangent(now, ahead / 2.0) - tangent(now, ahead)
 
 
