@@ -9,6 +9,7 @@ from comparisons.answer import Array, Ints, Response
 from comparisons.answer.axis import place_of
 from comparisons.answer.round_off import force_round_off, least_force, residual_force
 from comparisons.referee.path import SAME
+from comparisons.referee.rod import largest
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import BeamSpec, Scene
 
@@ -63,10 +64,10 @@ def balance_failures(response: Response, scene: Scene, allowed: float = BALANCE)
     length = max(beam.length for beam in scene.beams)
     # a least value keeps the solvers' residuals within balance where nothing acts
     forces = [*(item.force for item in actions), *(moment / length for moment in moments)]
-    largest = max([least_force(scene), *(float(np.abs(x).max(initial=0.0)) for x in (magnitude, *forces))])
+    size = max([least_force(scene), *map(largest, (magnitude, *forces))])
     # a sum of forces has the residuals of all nodes of a beam
     residual = residual_force(scene) * max(beam.divisions for beam in scene.beams)
-    scale = allowed * largest + max(force_round_off(scene, largest), residual, response.round_off)
+    scale = allowed * size + max(force_round_off(scene, size), residual, response.round_off)
     off = np.where(
         pushing <= 1, np.abs(np.hypot(*force.T) - magnitude), np.hypot(*_sum(response, [*actions, *pins]).T)
     )
@@ -110,11 +111,11 @@ def unpaid(
         fine, coarse = (np.sum([item.work(x) for item in actions], axis=0) for x in (states, second))
         pairs = np.diff(np.append(0.0, np.cumsum(fine))[second])
         error = 3.0 * np.abs(pairs - coarse).sum() + (abs(fine[0]) if k % 2 == 0 else 0.0)
-        missing, largest = abs(np.sum(fine) - exact.strain_energy), max(np.abs(fine).sum(), least)
-        if not missing <= allowed * largest + error:
+        missing, most = abs(np.sum(fine) - exact.strain_energy), max(np.abs(fine).sum(), least)
+        if not missing <= allowed * most + error:
             yield (
                 f"the work of supports, pins and loads is not the strain energy at load parameter {response.load_parameter[k]:.6g}, "
-                f"off by {missing / largest:.2g}"
+                f"off by {missing / most:.2g}"
             )
             return
 

@@ -16,6 +16,7 @@ from comparisons.referee.certificate import Certificate, Judgement, Verdict
 from comparisons.referee.judge import Trial, compared, impossible, judged
 from comparisons.referee.passing import Passage, changes, history_of, misstated, passages
 from comparisons.referee.path import changes_of, departures
+from comparisons.referee.rod import largest
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import Scene
 
@@ -170,12 +171,10 @@ def _unsound(
     if response.continuum:
         return
     forces = material_forces(response, scene)
-    largest = max(
-        (float(np.max(item.force, initial=0.0)) for item in response.contacts.values()), default=0.0
-    )
+    acting = max([least_force(scene), *(largest(item.force) for item in response.contacts.values())])
     for beam, force in response.material_force.items():
-        off = np.abs(force - forces[beam]) if beam in forces else np.full(len(steps), np.inf)
-        if not np.all(off <= allowed * max(largest, least_force(scene))):
+        off = np.abs(force - forces.get(beam, np.nan))
+        if not np.all(off <= allowed * acting):
             t = response.load_parameter[np.argmax(np.nan_to_num(off, nan=np.inf))]
             yield f"the material force of {beam} is not that of its reactions at load parameter {t:.6g}"
 

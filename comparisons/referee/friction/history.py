@@ -106,7 +106,7 @@ class History:
                 solution = self.begin(phase)
                 begin = place(solution, solution.layout.touch(spec.pair))
             self._sticks[phase] = begin, begin
-        if spec.surface == "face" or self.scene.radius(spec):
+        if self.scene.offset(spec):
             for first, last in pairwise(self._cuts):
                 if phase.begin <= first + SAME and first < until - SAME:
                     self._roll(phase, first, last)
