@@ -149,8 +149,7 @@ def _misspent(history: History, k: int, exact: Equilibrium, tolerance: float) ->
     for pair, own in dissipated(history, k, exact).items():
         friction = response.contacts[pair].friction
         if friction is not None:
-            spent = friction.dissipated
-            missing = float(spent[k] - (spent[k - 1] if k else 0.0)) - own
+            missing = float(np.diff(friction.dissipated, prepend=0.0)[k]) - own
             if abs(missing) > tolerance * largest:
                 t = response.load_parameter[k]
                 yield f"the dissipation of {pair} up to load parameter {t:.6g} is off by {missing / largest:.2g} of the work"
@@ -181,9 +180,10 @@ def _least_energy(scene: Scene) -> float:
 def _falls(history: History, spec: ContactSpec) -> Iterator[str]:
     """Yield the first load parameter at which the dissipation of a contact is smaller than before."""
     response, friction = history.response, history.response.contacts[spec.pair].friction
-    spent = np.zeros(1) if friction is None else np.append(0.0, friction.dissipated)
-    largest = np.abs(np.append(spent, () if response.work is None else response.work)).max()
-    falls = np.diff(spent) < -FALL * max(largest, _least_energy(history.scene))
+    if friction is None:
+        return
+    sizes = [largest(x) for x in (friction.dissipated, response.work) if x is not None]
+    falls = np.diff(friction.dissipated, prepend=0.0) < -FALL * max(*sizes, _least_energy(history.scene))
     if falls.any():
         yield f"the dissipation of {spec.pair} falls up to load parameter {response.load_parameter[np.argmax(falls)]:.6g}"
 
