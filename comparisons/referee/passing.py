@@ -63,9 +63,7 @@ def passages(response: Response, scene: Scene) -> Iterator[Passage]:
     """Yield every open pair whose node passed through the beam, or may have."""
     follow = cache(lambda k: _followed(response, scene, k))
     for spec in scene.contacts:
-        through = _Pair(response, scene, spec, follow).passed_through()
-        if through is not None:
-            yield through
+        yield from _Pair(response, scene, spec, follow).passed_through()
 
 
 def changes(response: Response, scene: Scene) -> Iterator[str]:
@@ -75,11 +73,7 @@ def changes(response: Response, scene: Scene) -> Iterator[str]:
     times = np.concatenate([[0.0], response.load_parameter])
     for spec in scene.contacts:
         contact = response.contacts[spec.pair]
-        own = [
-            event
-            for event in response.events
-            if event.pair == spec.pair and event.kind not in (*STAYS, PASSES)
-        ]
+        own = [event for event in changes_of(response, spec.pair) if event.kind not in STAYS]
         if np.isfinite(contact.slip_off) and not any(event.kind == "slip-off" for event in own):
             yield f"{spec.pair} slips off at load parameter {contact.slip_off:.6g} without an event"
         closed = contact.force != 0.0
@@ -99,10 +93,10 @@ class _Pair:
         self.response, self.scene, self.spec, self.follow = response, scene, spec, follow
         self.near, self.face = 1e-6 * scene.beam(spec.beam).length, face_of(scene, spec)
 
-    def passed_through(self) -> Passage | None:
-        """The first passage of the open node that is certain, or one that is not; None without one, and after a slip-off."""
+    def passed_through(self) -> Iterator[Passage]:
+        """Yield the first passage of the open node that is certain, or one that is not; none after a slip-off."""
         # axes and ends move in straight lines; where a node gets behind the beam, along the path that is followed
-        pair, unsure, moment = self.spec.pair, None, cache(self.moment)
+        pair, unsure, moment = self.spec.pair, "", cache(self.moment)
         contact = self.response.contacts[pair]
         closed, stated = np.append(False, contact.force > 0.0), self.response.events is not None
         for k, t in enumerate(map(float, self.response.load_parameter)):
@@ -117,14 +111,15 @@ class _Pair:
             way = self.follow(k)
             if self.passes(way, held) if way else depth > _UNSURE and not held:
                 words = f"{pair} is open and its node goes through the beam up to load parameter {t:.6g}"
-                return Passage(words, certain=True)
+                yield Passage(words, certain=True)
+                return
             if not way:
-                words = (
+                unsure = unsure or (
                     f"the path up to load parameter {t:.6g} is not found, on which the node of {pair} "
                     "gets behind the beam, through it or past its end"
                 )
-                unsure = unsure or Passage(words, certain=False)
-        return unsure
+        if unsure:
+            yield Passage(unsure, certain=False)
 
     def passes(self, way: list[Equilibrium], before: bool) -> bool:
         """Whether the node, first at the pair's side or closed, passes through the beam on a way, and does not return."""
