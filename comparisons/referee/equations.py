@@ -71,7 +71,7 @@ def assemble(mesh: Mesh, z: Array) -> System:
     energy = float(stored.sum()) + _add_springs_and_loads(layout, z, g, k)
     held = g[mesh.unknowns :].copy()
     np.add.at(g, local, -np.einsum("eij,ej->ei", across, shift))
-    for touch in layout.touches:
+    for touch in layout.touches.values():
         if touch.grip is not None:
             e = element_before(mesh, touch)
             numbers, (row, couple, direction, *_), derivatives = rows(layout, touch, z, own_gradient[e, 1])
@@ -198,7 +198,10 @@ def orientation_of(system: System) -> int:
 
 def directions(mesh: Mesh, z: Array) -> Array:
     """Admissible variations as columns; the angles phi follow with the directions of the faces."""
-    turned, free = [item for item in mesh.layout.touches if item.angle != NONE], np.eye(mesh.unknowns)
+    turned, free = (
+        [item for item in mesh.layout.touches.values() if item.angle != NONE],
+        np.eye(mesh.unknowns),
+    )
     for touch in turned:
         numbers, _, derivatives = rows(mesh.layout, touch, z, 0.0)
         change = np.zeros(len(free) + 1)

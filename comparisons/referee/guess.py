@@ -73,7 +73,7 @@ def idle_at_an_end(contact: ContactHistory, scene: Scene, spec: ContactSpec, k: 
 def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, Seen]:
     """Return the unknowns of the layout, and what an answer shows of its beams."""
     z = np.zeros(layout.unknowns)
-    z[layout.arcs] = [answer.arcs[touch.spec.pair] / layout.length for touch in layout.touches]
+    z[layout.arcs] = [answer.arcs[pair] / layout.length for pair in layout.touches]
     for _ in range(2):  # the shear follows from the forces
         turns = _rotations(layout, answer, z)
 
@@ -163,8 +163,8 @@ def _balance(layout: Layout, answer: AnswerState, z: Array) -> None:
         acting[joint] += acting[end]
     for node, (x, y, _) in answer.reactions.items():
         acting[layout.joints[node]] += np.array([x, y]) / layout.force
-    for touch in layout.touches:
-        force = np.nan_to_num(np.array(answer.forces[touch.spec.pair])) / layout.force
+    for pair, touch in layout.touches.items():
+        force = np.nan_to_num(np.array(answer.forces[pair])) / layout.force
         acting[touch.station] += force
         if touch.spec.node in layout.joints:
             acting[layout.joints[touch.spec.node]] -= force

@@ -192,6 +192,6 @@ def _least_gap(exact: Equilibrium, spec: ContactSpec) -> tuple[float, float]:
     arcs, away = feet(exact, spec) if face.start else (np.empty(0), np.empty(0))
     gaps = np.abs(away) - face.reach(arcs)
     if contact is not None:
-        half = angle(*exact.tangents(exact.layout.touch(spec.pair))) / 2.0
+        half = angle(*exact.tangents(exact.layout.touches[spec.pair])) / 2.0
         gaps = np.where(away > 0.0, gaps + half * np.abs(arcs - contact.arc_position), np.inf)
     return min(zip(gaps.tolist(), arcs.tolist(), strict=True), default=(math.inf, math.nan))

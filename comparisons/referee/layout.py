@@ -94,14 +94,14 @@ class Layout(Frozen):
     unknowns: int  #: Number of unknowns without the rotations inside the parts.
 
     @cached_property
-    def touches(self) -> list[Touch]:
-        """The closed contacts."""
-        return [item.touch for item in self.stations if item.touch is not None]
+    def touches(self) -> dict[str, Touch]:
+        """The closed contacts by pair."""
+        return {item.touch.spec.pair: item.touch for item in self.stations if item.touch is not None}
 
     @cached_property
     def arcs(self) -> Ints:
         """Numbers of the arc positions of the contacts."""
-        return np.array([touch.arc for touch in self.touches], dtype=np.int64)
+        return np.array([touch.arc for touch in self.touches.values()], dtype=np.int64)
 
     @cached_property
     def forces(self) -> Ints:
@@ -145,11 +145,7 @@ class Layout(Frozen):
     @property
     def grips(self) -> dict[str, Grip]:
         """How friction holds the contacts, by pair; none without friction."""
-        return {touch.spec.pair: touch.grip for touch in self.touches if touch.grip is not None}
-
-    def touch(self, pair: str) -> Touch:
-        """Return the closed contact of a pair."""
-        return next(item for item in self.touches if item.spec.pair == pair)
+        return {pair: touch.grip for pair, touch in self.touches.items() if touch.grip is not None}
 
     def beside(self, touch: Touch) -> tuple[Part, Part]:
         """Return the parts before and behind a contact."""
@@ -167,7 +163,7 @@ class Layout(Frozen):
     def shifts(self, z: Array) -> Array:
         """Ways (stations, 2) of the axis from the references."""
         ways = self.motions(z)[:, :2]
-        for touch in self.touches:
+        for touch in self.touches.values():
             if touch.angle != NONE:
                 phi, away = z[touch.angle], touch.face.left * touch.face.reach(z[touch.arc])
                 ways[touch.station] -= away * np.array([-np.sin(phi), np.cos(phi)])
@@ -180,18 +176,14 @@ class Layout(Frozen):
 
     def extents(self, z: Array) -> Array:
         """Arc positions (parts, 2) at the starts and the ends of all parts."""
-        return self.full(z)[self._ends]
-
-    @cached_property
-    def _ends(self) -> Ints:
-        return np.array([part.arcs for part in self.parts])
+        return self.full(z)[self.sides[0][:, 4]].reshape(-1, 2)
 
     @cached_property
     def chords(self) -> tuple[Ints, Array, Array]:
         """Numbers (2, parts) of the stations at both ends of the parts, ways (parts, 2) between these, and whether a contact is there (parts, 1)."""
         ends = np.array([part.stations for part in self.parts]).T
         first, last = self.references[ends]
-        touched = np.isin(ends, [touch.station for touch in self.touches])
+        touched = np.isin(ends, [touch.station for touch in self.touches.values()])
         return ends, last - first, (touched[0] | touched[1])[:, None]
 
     @cached_property

@@ -75,7 +75,7 @@ def switched(now: Equilibrium, arcs: Mapping[str, float], grips: Mapping[str, Gr
     """Return the equilibrium next to another one at load parameter t, with contacts at the arc positions `arcs`, held by `grips`."""
     layout, before = lay_out(now.scene, t, arcs, grips), now.layout
     z = np.zeros(layout.unknowns)
-    z[layout.arcs] = [arcs[touch.spec.pair] / layout.length for touch in layout.touches]
+    z[layout.arcs] = [arcs[pair] / layout.length for pair in layout.touches]
 
     def seen(beam: str, s: Array) -> tuple[Array, Array]:
         there = now.shape(beam, s * layout.length)

@@ -148,7 +148,7 @@ def _passed(now: Equilibrium, end: float) -> Equilibrium | None:
     layout, left = now.layout, end - now.load_parameter
     ahead = now.z + _LEAVING * left * tangent(now, _LITTLE * left)
     if np.diff(layout.extents(ahead)).min() < 0.0 and largest((ahead - now.z)[layout.arcs]) < _MEETING:
-        arcs = {touch.spec.pair: float(ahead[touch.arc]) * layout.length for touch in layout.touches}
+        arcs = {pair: float(ahead[touch.arc]) * layout.length for pair, touch in layout.touches.items()}
         behind = switched(now, arcs, layout.grips, now.load_parameter + _LEAVING * left)
         return behind if behind.found and _kind(behind) == _kind(now) else None
     return None
@@ -179,7 +179,7 @@ def _changed(now: Equilibrium, event: ContactEvent, grips: Mapping[str, Grip], a
 def _pushed(now: Equilibrium) -> Equilibrium:
     """Return a guess with a little more force at the contacts; without any the direction of a face is stationary at every place."""
     z = now.z.copy()
-    for touch in now.layout.touches:
+    for touch in now.layout.touches.values():
         if touch.angle >= 0:
             force, phi = now.layout.beside(touch)[0].force, z[touch.angle]
             z[force : force + 2] += _LITTLE * touch.face.left * np.array([np.sin(phi), -np.cos(phi)])

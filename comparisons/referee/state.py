@@ -92,7 +92,9 @@ class Equilibrium(Frozen):
     @cached_property
     def closed(self) -> dict[str, float]:
         """Arc positions of the closed contacts, by pair."""
-        return {item.spec.pair: float(self.z[item.arc]) * self.layout.length for item in self.layout.touches}
+        return {
+            pair: float(self.z[touch.arc]) * self.layout.length for pair, touch in self.layout.touches.items()
+        }
 
     @cached_property
     def system(self) -> System:
@@ -103,10 +105,10 @@ class Equilibrium(Frozen):
     def contacts(self) -> dict[str, Contact]:
         """Closed contacts, by pair."""
         found, layout = dict[str, Contact](), self.layout
-        for touch in layout.touches:
+        for pair, touch in layout.touches.items():
             before, behind = layout.beside(touch)
             force = layout.force * (before.constant(self.z) - behind.constant(self.z))[:, 0]
-            mean, pair = np.sum(self.tangents(touch), axis=0), touch.spec.pair
+            mean = np.sum(self.tangents(touch), axis=0)
             size = np.hypot(*mean)
             push, drag = float(-touch.face.left * cross(mean, force) / size), float(mean @ force / size)
             found[pair] = Contact(force=force, push=push, drag=drag, arc_position=self.closed[pair])

@@ -103,8 +103,7 @@ class History:
         if phase not in self._sticks:
             begin = at_rest(self.scene, spec)
             if phase.before is not None:
-                solution = self.begin(phase)
-                begin = place(solution, solution.layout.touch(spec.pair))
+                begin = place(self.begin(phase), spec.pair)
             self._sticks[phase] = begin, begin
         if self.scene.offset(spec):
             for first, last in pairwise(self._cuts):
@@ -144,7 +143,7 @@ class History:
             state = {**around, pair: Grip(friction=phase.spec.friction, slip=sign)}
             with suppress(UnknownFrictionError):
                 now = reach(self.near(t, closed, state), t, state)
-                if now.found and sign * slip_rate(now, now.layout.touch(pair)) > 0.0:
+                if now.found and sign * slip_rate(now, pair) > 0.0:
                     return sign
         raise UnknownFrictionError(f"{pair} slips between two load parameters, and its sign is not stated")
 
@@ -266,10 +265,10 @@ def at_rest(scene: Scene, spec: ContactSpec) -> Hold:
 
 def _margin(now: Equilibrium, phase: Phase, own: Grip) -> float:
     """A dimensionless number that is zero where a state ends: push at a touch or release, slip rate in slip, distance from the cone in stick."""
-    touch, opens = now.layout.touch(phase.spec.pair), phase.slip == OPEN
+    pair, opens = phase.spec.pair, phase.slip == OPEN
     if own.friction and own.slip and not opens:
-        return relative_slip_rate(now, touch)
-    contact = now.contacts[touch.spec.pair]
+        return relative_slip_rate(now, pair)
+    contact = now.contacts[pair]
     if opens or not own.friction:
         return contact.push / now.layout.force
     return (own.friction * contact.push - abs(contact.drag)) / now.layout.force

@@ -47,24 +47,24 @@ def _rates(now: Equilibrium, behind: bool) -> Array:
     return 2.0 * tangent(now, ahead / 2.0) - tangent(now, ahead)
 
 
-def slip_rate(now: Equilibrium, touch: Touch, *, behind: bool = False) -> float:
+def slip_rate(now: Equilibrium, pair: str, *, behind: bool = False) -> float:
     """Slip rate of a contact with friction, ahead or behind, in units of the layout: the derivative of the row of a stick that begins here."""
-    held = replace(touch, grip=Grip(friction=0.0, slip=0, hold=place(now, touch)))
-    numbers, _, derivatives = _rows(now, held)
+    grip = Grip(friction=0.0, slip=0, hold=place(now, pair))
+    numbers, _, derivatives = _rows(now, replace(now.layout.touches[pair], grip=grip))
     return float(derivatives[0] @ np.append(_rates(now, behind), 0.0)[numbers])
 
 
-def relative_slip_rate(now: Equilibrium, touch: Touch, *, behind: bool = False) -> float:
+def relative_slip_rate(now: Equilibrium, pair: str, *, behind: bool = False) -> float:
     """Slip rate in the direction of the slip, over the largest rate of a position."""
-    assert touch.grip is not None, "only a contact with friction slips"
     rate = _rates(now, behind)[now.layout.moving]
     pins = (np.hypot(*np.diff(pin.points, axis=0).T).sum() for pin in now.layout.scene.pins)
     speed = max([largest(rate), *(float(x) / now.layout.length for x in pins), 1e-300])
-    return touch.grip.slip * slip_rate(now, touch, behind=behind) / speed
+    return now.layout.grips[pair].slip * slip_rate(now, pair, behind=behind) / speed
 
 
-def place(now: Equilibrium, touch: Touch) -> Hold:
+def place(now: Equilibrium, pair: str) -> Hold:
     """The place of a contact with friction, at which it may begin to stick."""
+    touch = now.layout.touches[pair]
     _, (*_, stretch, shear), _ = _rows(now, touch)
     return Hold(
         load_parameter=now.load_parameter, arc_position=float(now.z[touch.arc]), stretch=stretch, shear=shear,
@@ -108,15 +108,14 @@ def roll(
         before = areas
         areas = {pair: change + sticks[pair][0].area(first) for pair, change in changes.items()}
         if all(np.abs((areas[pair] - before[pair])(times)).max() <= _SAME for pair in sticks):
-            end = found[-1]
-            return {pair: (hold, place(end, end.layout.touch(pair))) for pair, hold in own.items()}
+            return {pair: (hold, place(found[-1], pair)) for pair, hold in own.items()}
     return None
 
 
 def _trail(stick: tuple[Hold, Hold], found: list[Equilibrium], pair: str) -> Array:
     """Changes (4, n) of s, A, psi and the lever since the stick began, at the begin of an interval and at equilibria."""
-    face = found[0].layout.touch(pair).face
-    places = [*stick, *(place(item, item.layout.touch(pair)) for item in found)]
+    face = found[0].layout.touches[pair].face
+    places = [*stick, *(place(item, pair) for item in found)]
     values = [[item.arc_position, item.stretch, item.shear, face.lever(item.arc_position)] for item in places]
     trail = np.array(values[1:]).T - np.array(values[:1]).T
     trail[2] = wrapped(trail[2])

@@ -67,7 +67,9 @@ def test_the_hessian_is_the_derivative_of_the_gradient(name):
     mesh = mesh_of(layout, [np.linspace(0.0, 1.0, 2) for _ in layout.parts])
     random = np.random.default_rng(1)
     z = 0.1 * random.normal(size=mesh.unknowns)
-    for touch, arc in zip(layout.touches, (0.45, 0.6) if name == "every key" else (0.72,), strict=True):
+    for touch, arc in zip(
+        layout.touches.values(), (0.45, 0.6) if name == "every key" else (0.72,), strict=True
+    ):
         z[touch.arc] = arc / layout.length
     bubbles = 0.02 * random.normal(size=(len(mesh.part), DEGREE - 1))
 
@@ -90,7 +92,7 @@ def test_the_hessian_is_the_derivative_of_the_gradient(name):
 def test_the_direction_of_a_face_follows_the_variations_of_the_axis():
     """The angle phi is no unknown of its own where the index is counted: it changes as ``nu . (r'_- + r'_+)/2 = -offset'`` says."""
     exact = nearest(on_its_face())
-    layout, z, touch = exact.layout, exact.z, exact.layout.touches[0]
+    layout, z, touch = exact.layout, exact.z, next(iter(exact.layout.touches.values()))
 
     def phi(z: np.ndarray) -> float:
         x, y = sum(replace(exact, z=z).tangents(touch)) / 2.0
