@@ -153,7 +153,7 @@ def solve_rods(scene: Scene, watch: Watch) -> Response:
             for beam in scene.beams
         },
         newton_iterations=np.array([state.iterations for state in states], dtype=np.int64),
-        unknowns=max((len(state.z) for state in states), default=0),
+        unknowns=max((state.mesh.unknowns for state in states), default=0),
         axis_line=axis_line,
         critical=followed.critical,
         sections=lambda beam, k: _sections(scene, beam, states[k]),

@@ -197,7 +197,7 @@ CHECKS: dict[str, Check] = {
     "round pins outside": _inside,
     "clear ends": _overlapping,
     "sides of beams": lambda response, scene: (
-        str(item) for item in passages(response, scene) if item.certain
+        item.sentence for item in passages(response, scene) if item.certain
     ),
     "balance": lambda response, scene: iter(() if response.outside else balance_failures(response, scene)),
     "bend of elements": _deformed(

@@ -8,6 +8,8 @@ import numpy as np
 from comparisons.answer import Array, Ints, Response
 from comparisons.answer.axis import place_of
 from comparisons.answer.round_off import force_round_off, least_force, residual_force
+from comparisons.referee.path import SAME
+from comparisons.referee.rod import largest
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import BeamSpec, Scene
 
@@ -16,8 +18,6 @@ BALANCE = 1e-6
 
 _FEWEST = 8
 """Fewest load parameters up to which the work is compared with the strain energy."""
-_SAME = 1e-9
-"""Distance of load parameters that are one."""
 _NODES, _OWN = np.polynomial.legendre.leggauss(4)
 _PARTS = ((np.arange(20)[:, None] + (_NODES + 1.0) / 2.0) / 20).ravel()
 _WEIGHTS = np.tile(_OWN / 2.0, 20) / 20
@@ -55,18 +55,19 @@ def balance_failures(response: Response, scene: Scene, allowed: float = BALANCE)
     without the moment of a spring that has one, moments are not compared. Where a single pin pushes, the force that balances all others
     is compared with the stated contact force by its magnitude.
     """
-    actions = [*_supports(response, scene), *_springs(response, scene), *_loads(response, scene)]
-    force, origin = _sum(response, actions), np.array(scene.beams[0].start)
+    springs, others = _acting(response, scene)
+    actions, origin = [*springs, *others], np.array(scene.beams[0].start)
+    force = _sum(response, actions)
     pushing, magnitude, pins = _pins(response, scene, force)
     moments = [item.moment(origin) for item in actions]
     whole_moment = np.sum([0.0 * magnitude, *moments, *(item.moment(origin) for item in pins)], axis=0)
     length = max(beam.length for beam in scene.beams)
     # a least value keeps the solvers' residuals within balance where nothing acts
     forces = [*(item.force for item in actions), *(moment / length for moment in moments)]
-    largest = max([least_force(scene), *(float(np.abs(x).max(initial=0.0)) for x in (magnitude, *forces))])
+    size = max([least_force(scene), *map(largest, (magnitude, *forces))])
     # a sum of forces has the residuals of all nodes of a beam
     residual = residual_force(scene) * max(beam.divisions for beam in scene.beams)
-    scale = allowed * largest + max(force_round_off(scene, largest), residual, response.round_off)
+    scale = allowed * size + max(force_round_off(scene, size), residual, response.round_off)
     off = np.where(
         pushing <= 1, np.abs(np.hypot(*force.T) - magnitude), np.hypot(*_sum(response, [*actions, *pins]).T)
     )
@@ -96,9 +97,9 @@ def unpaid(
         return
     unknown = [event.load_parameter for event in response.events if event.released]
     corners = (t for pin in scene.pins for t in pin.corners)
-    unknown += [t for t in corners if np.abs(response.load_parameter - t).min() > _SAME]
-    actions = [*_supports(response, scene), *_loads(response, scene)]
-    outer = _sum(response, [*actions, *_springs(response, scene)])
+    unknown += [t for t in corners if np.abs(response.load_parameter - t).min() > SAME]
+    springs, actions = _acting(response, scene)
+    outer = _sum(response, [*springs, *actions])
     if outer.any() and np.argmax(np.hypot(*outer.T)) == 0:
         return
     actions += _pins(response, scene, outer)[2]
@@ -106,18 +107,15 @@ def unpaid(
     for k, exact in found.items():
         if k + 1 < _FEWEST or any(t <= response.load_parameter[k] for t in unknown):
             continue
-        fine, coarse = (
-            np.sum([item.work(np.array([0, *range(1 + k % step, k + 2, step)])) for item in actions], axis=0)
-            for step in (1, 2)
-        )
-        pairs = np.add.reduceat(fine, np.arange(-(k % 2 == 0), len(fine), 2).clip(0))
-        alone = abs(fine[0]) if k % 2 == 0 else 0.0
-        error = 3.0 * np.abs(pairs - coarse).sum() + alone
-        missing, largest = abs(np.sum(fine) - exact.strain_energy), max(np.abs(fine).sum(), least)
-        if not missing <= allowed * largest + error:
+        states, second = np.arange(k + 2), np.array([0, *range(1 + k % 2, k + 2, 2)])
+        fine, coarse = (np.sum([item.work(x) for item in actions], axis=0) for x in (states, second))
+        pairs = np.diff(np.append(0.0, np.cumsum(fine))[second])
+        error = 3.0 * np.abs(pairs - coarse).sum() + (abs(fine[0]) if k % 2 == 0 else 0.0)
+        missing, most = abs(np.sum(fine) - exact.strain_energy), max(np.abs(fine).sum(), least)
+        if not missing <= allowed * most + error:
             yield (
                 f"the work of supports, pins and loads is not the strain energy at load parameter {response.load_parameter[k]:.6g}, "
-                f"off by {missing / largest:.2g}"
+                f"off by {missing / most:.2g}"
             )
             return
 
@@ -130,46 +128,37 @@ def _sum(response: Response, actions: list[Action]) -> Array:
 
 def _places(response: Response, scene: Scene, node: str) -> Array:
     """Places (s + 1, 2) of a beam's end, rest first: prescribed if its support holds it, else as the response states it."""
-    beam, end = node.split(".")
-    rest = np.array(scene.place(node))
-    for support in scene.supports_of(beam):
-        if support.end == end and {"x", "y"}.issubset(support.held):
-            motion = scene.prescribed_motions[node]
-            moved = [motion.at(t)[:2] for t in response.load_parameter.tolist()]
-            return rest + np.array([(0.0, 0.0), *moved], dtype=np.float64)
+    (beam, end), motion = node.split("."), scene.prescribed_motions.get(node)
+    if motion and None not in motion.at(0.0)[:2]:
+        moved = [motion.at(t)[:2] for t in (0.0, *response.load_parameter.tolist())]
+        return scene.place(node) + np.array(moved, dtype=np.float64)
     if end == scene.tip(beam):
-        return np.vstack([rest, response.tips[beam]])
-    steps = range(-1, len(response.load_parameter))
-    return np.array([place_of(response, scene, node, k) for k in steps])
+        return np.vstack([scene.place(node), response.tips[beam]])
+    return _ways(response, scene, node)
 
 
-def _supports(response: Response, scene: Scene) -> list[Action]:
-    times, motions = (0.0, *response.load_parameter.tolist()), scene.prescribed_motions
-    turns = {node: np.array([motion.at(t)[2] or 0.0 for t in times]) for node, motion in motions.items()}
-    return [
-        Action(history.force, _places(response, scene, node), history.moment, turns.get(node))
-        for node, history in response.supports.items()
-    ]
+def _ways(response: Response, scene: Scene, node: str) -> Array:
+    """Places (s + 1, 2) of a node, rest first, as the response states them."""
+    return np.array([place_of(response, scene, node, k) for k in range(-1, len(response.load_parameter))])
 
 
-def _springs(response: Response, scene: Scene) -> list[Action]:
-    return [
-        Action(-np.array(spring.stiffness) * (places[1:] - places[0]), places, own.moment if own else 0.0)
-        for spring in scene.springs
-        for places in [_places(response, scene, spring.node)]
-        for own in [response.springs.get(spring.node)]
-    ]
-
-
-def _loads(response: Response, scene: Scene) -> list[Action]:
-    """Return the dead loads and the weights; those along a beam and inside it act on the axis that the response states."""
-    times, actions = response.load_parameter.tolist(), []
+def _acting(response: Response, scene: Scene) -> tuple[list[Action], list[Action]]:
+    """Return the springs; supports, dead loads and weights, those along a beam and inside it on the axis that the response states."""
+    times, springs, actions = response.load_parameter.tolist(), [], list[Action]()
+    for spring in scene.springs:
+        places, own = _places(response, scene, spring.node), response.springs.get(spring.node)
+        force = -np.array(spring.stiffness) * (places[1:] - places[0])
+        springs.append(Action(force, places, own.moment if own else 0.0))
+    for node, held in response.supports.items():
+        motion = scene.prescribed_motions.get(node)
+        turn = np.array([motion.at(t)[2] or 0.0 for t in (0.0, *times)]) if motion else None
+        actions.append(Action(held.force, _places(response, scene, node), held.moment, turn))
     for history in scene.load_histories:
         load, beam = history.load, scene.beam(history.load.beam)
         acting, (first, last) = np.array([history.at(t) for t in times]).reshape(-1, 3), load.span
         if load.force_per_length is not None:
             parts, extents = first + (last - first) * _PARTS, (last - first) * beam.length * _WEIGHTS
-            actions.append(_inside(response, beam, parts, extents, acting * (1.0, 1.0, 0.0)))
+            actions.append(_inside(response, beam, parts, extents, acting))
         elif load.at is not None:
             actions.append(_inside(response, beam, np.array([load.at]), np.ones(1), acting))
         else:
@@ -179,7 +168,7 @@ def _loads(response: Response, scene: Scene) -> list[Action]:
         if beam.density is not None:
             masses = beam.length * _WEIGHTS * [beam.mass_per_length(part) for part in _PARTS]
             actions.append(_inside(response, beam, _PARTS, masses, gravity))
-    return actions
+    return springs, actions
 
 
 def _inside(response: Response, beam: BeamSpec, parts: Array, weights: Array, acting: Array) -> Action:
@@ -188,9 +177,9 @@ def _inside(response: Response, beam: BeamSpec, parts: Array, weights: Array, ac
 
     lines = [response.axis_line(beam.name, k) for k in range(len(response.load_parameter))]
     places = [CubicSpline(arc, line)(parts * beam.length) for arc, line in lines]
-    centre = np.average(np.reshape(places, (-1, len(parts), 2)), axis=1, weights=weights)
-    rest = np.average([beam.place(part) for part in parts], axis=0, weights=weights)
-    return Action(acting[:, :2] * weights.sum(), np.vstack([rest, centre]), acting[:, 2] * weights.sum())
+    ways = np.array([[beam.place(part) for part in parts], *places])
+    centre = np.average(ways, axis=1, weights=weights)
+    return Action(acting[:, :2] * weights.sum(), centre, acting[:, 2] * weights.sum())
 
 
 def _pins(response: Response, scene: Scene, outer: Array) -> tuple[Ints, Array, list[Action]]:
@@ -199,7 +188,6 @@ def _pins(response: Response, scene: Scene, outer: Array) -> tuple[Ints, Array, 
     forces = np.array([np.zeros(len(response.load_parameter)), *(item.force for _, item in touching)])
     pushing, actions = np.sum(forces > 0.0, axis=0), []
     for spec, history in touching:
-        places = [place_of(response, scene, spec.node, k) for k in range(-1, len(outer))]
         vector = np.full_like(outer, np.nan) if history.vector is None else history.vector
         force = np.where((pushing <= 1)[:, None], -outer, vector)
         force = np.where((history.force > 0.0)[:, None], force, 0.0)
@@ -208,5 +196,5 @@ def _pins(response: Response, scene: Scene, outer: Array) -> tuple[Ints, Array, 
             # the tangential force acts on the surface, a radius and a gap away from the pin's centre
             lever = scene.radius(spec) + np.where(history.force > 0.0, history.gap, 0.0)
             rolling = (1.0 if spec.side == "left" else -1.0) * lever * history.friction.tangential
-        actions.append(Action(force, np.array(places), rolling))
+        actions.append(Action(force, _ways(response, scene, spec.node), rolling))
     return pushing, forces.sum(axis=0), actions

@@ -1,6 +1,6 @@
 """The certificate of an answer: judgements at load parameters, and checks of the path between them."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from time import perf_counter
@@ -14,8 +14,9 @@ from comparisons.answer.round_off import least_force
 from comparisons.referee.balance import BALANCE, balance_failures, unpaid
 from comparisons.referee.certificate import Certificate, Judgement, Verdict
 from comparisons.referee.judge import Trial, compared, impossible, judged
-from comparisons.referee.passing import changes, history_of, misstated, passages
+from comparisons.referee.passing import Passage, changes, history_of, misstated, passages
 from comparisons.referee.path import changes_of, departures
+from comparisons.referee.rod import largest
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import Scene
 
@@ -55,48 +56,45 @@ def certify(
     contradictions = [sentence for k in range(steps) for sentence in impossible(response, scene, k)]
     history = None if contradictions else history_of(response, scene)
     states = _judged(Trial(response, scene, allowed, history), numbers)
-    found = {k: item.exact for k, item in zip(numbers, states, strict=True) if item.exact is not None}
-    unsound = [*_unsound(response, scene, allowed, contradictions)] or [
-        *unpaid(response, scene, found, allowed)
-    ]
-    passed = [] if unsound or not steps else [*passages(response, scene)]
-    path = [str(item) for item in passed if item.certain]
-    path += [] if unsound else _path(response, scene, found, allowed)
+    found = {k: item.exact for k, item in states.items() if item.exact is not None}
+    unsound = [*_unsound(response, scene, allowed, contradictions)]
+    unsound = unsound or [*unpaid(response, scene, found, allowed)]
+    passed, path = list[Passage](), list[str]()
+    if steps and not unsound:
+        passed = [*passages(response, scene)]
+        path = [item.sentence for item in passed if item.certain]
+        path += _path(response, scene, found, allowed)
     if history is not None:
         from comparisons.referee.friction import rubs_wrongly_on_the_way
 
-        apart = max((item.distance.largest[1] for item in states if item.distance is not None), default=0.0)
+        apart = max((item.distance.largest[1] for item in states.values() if item.distance), default=0.0)
         path += rubs_wrongly_on_the_way(history, found, apart, allowed)
-    verdict, reason = _worst(states, unsound, path)
+    verdict, reason = _worst(states.values(), unsound, path)
     if verdict is Verdict.CERTIFIED:
-        verdict, reason = _sound(response, scene, numbers, states)
-    gone = next(departures(response, found), "") if verdict is Verdict.CERTIFIED else ""
-    verdict, reason = (Verdict.UNSTABLE, gone) if gone else (verdict, reason)
-    if verdict is Verdict.CERTIFIED and passed:
-        verdict, reason = Verdict.NOT_JUDGED, str(passed[0])
+        verdict, reason = _sound(response, scene, states, found, passed)
     if history is not None and history.taken:
         reason = f"{reason}; {history.taken}"
     return Certificate(
-        verdict=verdict, reason=reason, allowance=allowed, judged=tuple(states), path=(*unsound, *path),
-        seconds=perf_counter() - began,
+        verdict=verdict, reason=reason, allowance=allowed, judged=tuple(states.values()),
+        path=(*unsound, *path), seconds=perf_counter() - began,
     )  # fmt: skip
 
 
-def _judged(trial: Trial, numbers: Sequence[int]) -> list[Judgement]:
+def _judged(trial: Trial, numbers: Sequence[int]) -> dict[int, Judgement]:
     """Return the judgements; an equilibrium is sought from the one at the load parameter before, where that was judged."""
-    states: list[Judgement] = []
-    for n, k in enumerate(numbers):
-        states.append(judged(trial, k, states[-1].exact if n and numbers[n - 1] == k - 1 else None))
-    sizes = [item.distance.scales for item in states if item.distance is not None]
-    for n, (k, item) in enumerate(zip(numbers, states, strict=True)):
+    states: dict[int, Judgement] = {}
+    for k in numbers:
+        states[k] = judged(trial, k, states[k - 1].exact if k - 1 in states else None)
+    sizes = [item.distance.scales for item in states.values() if item.distance]
+    for k, item in states.items():
         if item.verdict is Verdict.NOT_AN_EQUILIBRIUM and item.exact is not None:
             # a moment that changes its sign is small, and a difference relative to it alone is large
-            force, moment, moved = (max(column) for column in zip(*sizes, strict=True))
-            states[n] = compared(trial, k, item.exact, (force, moment, moved))
+            force, moment, moved = map(max, *sizes, (0.0, 0.0, 0.0))
+            states[k] = compared(trial, k, item.exact, (force, moment, moved))
     return states
 
 
-def _worst(states: Sequence[Judgement], unsound: Sequence[str], path: Sequence[str]) -> tuple[Verdict, str]:
+def _worst(states: Collection[Judgement], unsound: Sequence[str], path: Sequence[str]) -> tuple[Verdict, str]:
     """Return the most serious verdict and its reason."""
     if not states:
         return Verdict.NOT_JUDGED, "no load parameter was reached or asked for"
@@ -138,16 +136,22 @@ def _hardest(response: Response) -> tuple[int, ...]:
 
 
 def _sound(
-    response: Response, scene: Scene, numbers: Sequence[int], states: Sequence[Judgement]
-) -> tuple[Verdict, str]:
-    """Return the verdict on an answer in which nothing is wrong, and its reason."""
-    if max((item.distance.scales[0] for item in states if item.distance), default=0.0) <= least_force(scene):
+    response: Response, scene: Scene, states: Mapping[int, Judgement], found: Mapping[int, Equilibrium],
+    passed: Sequence[Passage],
+) -> tuple[Verdict, str]:  # fmt: skip
+    """Return the verdict on an answer in whose states nothing is wrong, and its reason."""
+    distances = [item.distance for item in states.values() if item.distance]
+    if max((item.scales[0] for item in distances), default=0.0) <= least_force(scene):
         return Verdict.NOT_JUDGED, "nothing to judge: no load, support or contact carries a force"
-    worst = max((item.distance for item in states if item.distance), key=lambda item: item.largest[1])
-    stable = "stable" if all(item.index == 0 for item in states) else "stability not judged (friction)"
+    for gone in departures(response, found):
+        return Verdict.UNSTABLE, gone
+    if passed:
+        return Verdict.NOT_JUDGED, passed[0].sentence
+    worst = max(distances, key=lambda item: item.largest[1])
+    stable = "stability not judged (friction)" if any(item.index for item in states.values()) else "stable"
     count = f"{len(states)} of {len(scene.times)} load parameters"
     for k in _hardest(response):
-        if k in numbers and len(states) < len(scene.times):
+        if k in states and len(states) < len(scene.times):
             count += f", the largest contact force (at {response.load_parameter[k]:.6g}) among them"
     return Verdict.CERTIFIED, f"{worst.line()}, admissible, {stable}; judged at {count}"
 
@@ -167,12 +171,10 @@ def _unsound(
     if response.continuum:
         return
     forces = material_forces(response, scene)
-    largest = max(
-        (float(np.max(item.force, initial=0.0)) for item in response.contacts.values()), default=0.0
-    )
+    acting = max([least_force(scene), *(largest(item.force) for item in response.contacts.values())])
     for beam, force in response.material_force.items():
-        off = np.abs(force - forces[beam]) if beam in forces else np.full(len(steps), np.inf)
-        if not np.all(off <= allowed * max(largest, least_force(scene))):
+        off = np.abs(force - forces.get(beam, np.nan))
+        if not np.all(off <= allowed * acting):
             t = response.load_parameter[np.argmax(np.nan_to_num(off, nan=np.inf))]
             yield f"the material force of {beam} is not that of its reactions at load parameter {t:.6g}"
 
@@ -181,8 +183,6 @@ def _path(
     response: Response, scene: Scene, found: Mapping[int, Equilibrium], allowed: float
 ) -> Iterator[str]:
     """Yield violations between load parameters."""
-    if not len(response.load_parameter):
-        return
     yield from changes(response, scene)
     yield from misstated(response, scene, found, allowed)
     for spec in scene.contacts:

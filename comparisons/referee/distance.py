@@ -12,7 +12,6 @@ from comparisons.answer import Array, Response
 from comparisons.answer.axis import place_of
 from comparisons.answer.round_off import (
     LAST_PLACES,
-    LEAST,
     RESIDUAL,
     UNRESOLVED,
     force_round_off,
@@ -22,7 +21,7 @@ from comparisons.frozen import Value
 from comparisons.referee.guess import SHORTEST
 from comparisons.referee.rod import angle, axis_at_rest, cross, face_of
 from comparisons.referee.state import Equilibrium
-from comparisons.scene import BeamSpec, ContactSpec, Scene
+from comparisons.scene import BeamSpec, ContactSpec
 
 Scales = tuple[float, float, float]
 """Largest force, moment and displacement."""
@@ -144,9 +143,8 @@ def _contact_differences(response: Response, k: int, exact: Equilibrium) -> Iter
         contact, stated = exact.contacts.get(pair), response.contacts[pair]
         if contact is not None:
             # without its direction, a force has the exact one
-            off = abs(np.hypot(*contact.force) - stated.force[k])
-            if stated.vector is not None:
-                off = np.hypot(*(contact.force - stated.vector[k]))
+            size, vector = np.hypot(*contact.force), stated.vector
+            off = abs(size - stated.force[k]) if vector is None else np.hypot(*(contact.force - vector[k]))
             yield "force", pair, _beyond(float(off), largest, force_round_off(exact.scene, largest))
             yield "arc_position", pair, abs(contact.arc_position - float(stated.arc_position[k])) / length
         if contact is not None or math.isfinite(stated.gap[k]):
@@ -155,17 +153,16 @@ def _contact_differences(response: Response, k: int, exact: Equilibrium) -> Iter
 
 def _holds(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple[str, Array, Any]]:
     """Yield the supports and the springs that the answer states, with the exact force and moment and the stated ones."""
-    for end, total in exact.reactions.items():
-        own = response.supports[end]
-        yield end, total, (*own.force[k], own.moment[k])
+    held = [(end, total, response.supports[end]) for end, total in exact.reactions.items()]
     for spring in exact.scene.springs:
         node = spring.node
         if node in response.springs:
-            own = response.springs[node]
-            way = np.array(spring.stiffness) * (exact.ends[node] - np.array(exact.scene.place(node)))
-            turn = exact.layout.motions(exact.z)[exact.layout.joint(node), 2]
+            way = np.array(spring.stiffness) * (exact.ends[node] - exact.scene.place(node))
+            turn = exact.layout.motions(exact.z)[exact.layout.joints[node], 2]
             total = -np.append(way, spring.rotation * turn)
-            yield f"the spring at {node}", total, (*own.force[k], own.moment[k])
+            held.append((f"the spring at {node}", total, response.springs[node]))
+    for name, total, own in held:
+        yield name, total, (*own.force[k], own.moment[k])
 
 
 def feet(exact: Equilibrium, spec: ContactSpec) -> tuple[Array, Array]:
@@ -243,24 +240,19 @@ def largest_force(exact: Equilibrium) -> float:
 
 def _forces(exact: Equilibrium) -> tuple[float, float]:
     """Return the largest force and the largest moment; without a considerable moment the force times the longest beam."""
-    acting = np.array([*exact.reactions.values(), *_loads(exact.scene, exact.load_parameter)]).reshape(-1, 3)
-    moments = np.abs(acting[:, 2]).tolist()
-    length = max(beam.length for beam in exact.scene.beams)
-    forces = [*np.hypot(*acting[:, :2].T).tolist(), *(moment / length for moment in moments)]
-    size = max(largest_force(exact), *forces)
-    considerable = max(moments, default=0.0) > 1e-3 * size * length
-    return size, max(size * length * LEAST, *moments) if considerable else size * length
-
-
-def _loads(scene: Scene, t: float) -> Iterator[tuple[float, float, float]]:
-    """Yield the forces and moments of the dead loads at load parameter t, and the weights of the beams."""
+    scene, t = exact.scene, exact.load_parameter
+    acting = [
+        *exact.reactions.values(),
+        *((*np.multiply(scene.gravity_at(t), beam.mass), 0.0) for beam in scene.beams),
+    ]
     for item in scene.load_histories:
         along, (first, last) = item.load.force_per_length is not None, item.load.span
-        x, y, moment = item.at(t)
         span = (last - first) * scene.beam(item.load.beam).length if along else 1.0
-        yield x * span, y * span, 0.0 if along else moment
-    x, y = scene.gravity_at(t)
-    yield from ((beam.mass * x, beam.mass * y, 0.0) for beam in scene.beams)
+        acting.append(np.multiply(item.at(t), span))
+    x, y, moments = np.array(acting).T
+    length, moment = max(beam.length for beam in scene.beams), float(np.abs(moments).max())
+    size = max(largest_force(exact), float(np.hypot(x, y).max()), moment / length)
+    return size, moment if moment > 1e-3 * size * length else size * length
 
 
 def _misplaced(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple[str, float, float]]:
@@ -270,10 +262,8 @@ def _misplaced(response: Response, k: int, exact: Equilibrium) -> Iterator[tuple
         if spec.pair in exact.contacts:
             arc = float(response.contacts[spec.pair].arc_position[k])
             place, cut = _on_axis(*response.axis_line(spec.beam, k), arc)
-            apart = abs(
-                math.hypot(*(place - place_of(response, scene, spec.node, k)))
-                - face_of(scene, spec).reach(arc)
-            )
+            far = math.hypot(*(place - place_of(response, scene, spec.node, k)))
+            apart = abs(far - face_of(scene, spec).reach(arc))
             yield spec.pair, max(0.0, apart - cut), scene.beam(spec.beam).length
     for support in scene.all_supports:
         way = (place_of(response, scene, support.node, k) - scene.place(support.node)).tolist()
@@ -287,12 +277,7 @@ def _on_axis(arcs: Array, line: Array, arc: float) -> tuple[Array, float]:
     """Point of the answer's axis, and a bound of the chord's distance from a smooth axis: the triangle with its neighbours' directions."""
     k = int(np.clip(np.searchsorted(arcs, arc) - 1, 0, len(arcs) - 2))
     part = (arc - arcs[k]) / (arcs[k + 1] - arcs[k])
-    first, last = max(k - 1, 0), min(k + 2, len(arcs) - 1)
-    way = line[k + 1] - line[k]
-    before, behind = (
-        line[k] - line[first] if first < k else way,
-        line[last] - line[k + 1] if last > k + 1 else way,
-    )
-    turn = min(max(angle(before, way), angle(way, behind)), _SHARPEST)
-    cut = 0.5 * math.hypot(*way) * math.tan(turn)
-    return (1.0 - part) * line[k] + part * line[k + 1], cut
+    chords = np.diff(line, axis=0)
+    way, beside = chords[k], chords[max(k - 1, 0) : k + 2]
+    turn = min(max(angle(way, chord) for chord in beside), _SHARPEST)
+    return line[k] + part * way, 0.5 * math.hypot(*way) * math.tan(turn)

@@ -60,6 +60,7 @@ def up_to(xi: Array) -> Array:
 class Mesh(NamedTuple):
     """Elements of all parts, in order."""
 
+    layout: Layout
     grids: list[Array]  #: Their ends as fractions of every part, from 0 to 1.
     part: Ints
     start: Array
@@ -76,13 +77,11 @@ def mesh_of(layout: Layout, grids: list[Array]) -> Mesh:
     local: list[tuple[int, ...]] = []
     count = layout.unknowns
     for item, grid in zip(layout.parts, grids, strict=True):
-        begin, end = (int(layout.stations[k].numbers[2]) for k in (item.first, item.last))
+        begin, end = (int(layout.stations[k].numbers[2]) for k in item.stations)
         chain = [begin, *range(count, count + len(grid) - 2), end]
         local += [(*ends, item.force, item.force + 1, *item.arcs) for ends in pairwise(chain)]
         count += len(grid) - 2
-    start, share = (
-        np.concatenate(items) for items in zip(*((grid[:-1], np.diff(grid)) for grid in grids), strict=True)
-    )
+    start, share = np.concatenate([[grid[:-1], np.diff(grid)] for grid in grids], axis=1)
     half = share[:, None] / 2.0
     points = start[:, None] + half * (1.0 + GAUSS)
     to = np.zeros((*points.shape, 6, OUTER + DEGREE - 1))
@@ -90,30 +89,36 @@ def mesh_of(layout: Layout, grids: list[Array]) -> Mesh:
     to[..., 2, 2] = to[..., 3, 3] = 1.0
     to[..., 4, 4], to[..., 4, 5], to[..., 5, 4], to[..., 5, 5] = -half, half, 1.0 - points, points
     return Mesh(
-        grids=grids,
+        layout=layout, grids=grids,
         part=np.repeat(np.arange(len(grids)), [len(grid) - 1 for grid in grids]),
         start=start, share=share, local=np.array(local), unknowns=count, points=points, to=to,
     )  # fmt: skip
 
 
-def rotations(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> Array:
-    """Coefficients (e, p + 1) of the rotation in the shape functions."""
-    return np.column_stack([layout.full(z)[mesh.local[:, :2]], bubbles])
+def rotations(mesh: Mesh, z: Array) -> Array:
+    """Coefficients (e, p + 1) of the rotation in the shape functions; those of the bubbles stand behind the other unknowns."""
+    bubbles = z[mesh.unknowns :].reshape(-1, DEGREE - 1)
+    return np.column_stack([mesh.layout.full(z)[mesh.local[:, :2]], bubbles])
 
 
-def elements(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> tuple[Array, Array, Array]:
-    """Gradient (e, p + 5) and Hessian of the energy in `theta_a, theta_b, c_x, c_y, s_a, s_b` and the bubbles; strain energy (e,)."""
-    ends, x, to = layout.extents(z)[mesh.part], mesh.points, mesh.to
-    coefficients = rotations(layout, mesh, z, bubbles)
-    extent, given = np.diff(ends), np.empty((6, *x.shape))
+def at_gauss(mesh: Mesh, z: Array) -> Array:
+    """Theta, theta_xi, c_x, c_y, half and s (6, e, g) at the Gauss points."""
+    ends, coefficients = mesh.layout.extents(z)[mesh.part], rotations(mesh, z)
+    extent, given = np.diff(ends), np.empty((6, *mesh.points.shape))
     given[0], given[1] = coefficients @ VALUES.T, coefficients @ SLOPES.T
     given[2:4] = z[mesh.local[:, 2:4]].T[..., None]
-    given[4], given[5] = mesh.share[:, None] * extent / 2.0, ends[:, :1] + extent * x
-    steps = given[..., None] + 1j * STEP * np.eye(6)[:, None, None]
-    found = _at_points(layout.pieces(mesh.part), steps.reshape(6, len(x), -1)).reshape(7, *steps.shape[1:])
-    first, second = found[:6, ..., 0].real.transpose(1, 2, 0), found[:6].imag.transpose(1, 2, 0, 3) / STEP
-    gradient = np.einsum("egi,egis->es", first * WEIGHTS[:, None], to)
-    rows, weighted = (len(x), -1, to.shape[-1]), second * WEIGHTS[:, None, None]
+    given[4], given[5] = mesh.share[:, None] * extent / 2.0, ends[:, :1] + extent * mesh.points
+    return given
+
+
+def elements(mesh: Mesh, z: Array) -> tuple[Array, Array, Array]:
+    """Gradient (e, p + 5) and Hessian of the energy in `theta_a, theta_b, c_x, c_y, s_a, s_b` and the bubbles; strain energy (e,)."""
+    to, steps = mesh.to, at_gauss(mesh, z)[..., None] + 1j * STEP * np.eye(6)[:, None, None]
+    given = steps.reshape(6, len(to), -1)
+    found = _at_points(mesh.layout.pieces(mesh.part), given).reshape(7, *steps.shape[1:])
+    first, second = found[:6, ..., 0].real, found[:6].imag.transpose(1, 2, 0, 3) / STEP
+    gradient = np.einsum("ieg,egis->es", first * WEIGHTS, to)
+    rows, weighted = (len(to), -1, to.shape[-1]), second * WEIGHTS[:, None, None]
     hessian = to.reshape(rows).swapaxes(1, 2) @ (weighted @ to).reshape(rows)
     return gradient, hessian, found[6, ..., 0].real @ WEIGHTS
 
@@ -122,7 +127,7 @@ def _at_points(pieces: Piece, given: Any) -> Any:
     """Gradient of the energy in theta, theta_xi, c_x, c_y, half and s, and the strain energy, at complex values (6, ...) of these."""
     theta, bent, *c, half, s = given
     EI, a, b, N, Q, n, way = pieces.strained(np.array(c), s, theta)
-    EI_s, EA_s, GA_s, *load = value(polyder(pieces.coefficients), s)
+    EA_s, GA_s, EI_s, *load = value(polyder(pieces.coefficients), s)
     stored, moment = (a * N**2 + b * Q**2) / 2.0, EI * bent / half
     f = (n * way).sum(axis=0) - stored
     f_s = pieces.curvature * (way[0] * n[1] - way[1] * n[0]) - load[0] * way[0] - load[1] * way[1]

@@ -15,6 +15,8 @@ from comparisons.scene import BeamSpec, ContactSpec, Scene
 
 Rotations = tuple[Array, Array]
 """Arc positions from one end of a beam to the other, and rotations of its sections there, linear in between; in units of `Layout`."""
+Seen = Callable[[str, Array], tuple[Array, Array]]
+"""Positions (m, 2) in the scene's units and rotations (m,) that are seen at arc positions of a beam in those of `Layout`."""
 
 PULL = 1e-9
 """Largest contact force that is round-off, over EI/L^2 of the touched beam, for the models' contacts at a release."""
@@ -38,16 +40,17 @@ class AnswerState(Frozen):
 
 def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
     """Return the state at load parameter number k; a contact whose force is round-off is open at an end of its beam, but its force counts."""
-    pushing = {pair: item for pair, item in response.contacts.items() if item.force[k] != 0.0}
-    specs = [spec for spec in scene.contacts if spec.pair in pushing]
-    idle = {spec.pair for spec in specs if idle_at_an_end(pushing[spec.pair], scene, spec, k)}
+    arcs, forces = dict[str, float](), dict[str, Sequence[float]]()
+    for spec in scene.contacts:
+        item = response.contacts[spec.pair]
+        if item.force[k] != 0.0:
+            forces[spec.pair] = (math.nan, math.nan) if item.vector is None else item.vector[k].tolist()
+            if not idle_at_an_end(item, scene, spec, k):
+                arcs[spec.pair] = float(item.arc_position[k])
     return AnswerState(
         load_parameter=float(response.load_parameter[k]),
-        arcs={pair: float(item.arc_position[k]) for pair, item in pushing.items() if pair not in idle},
-        forces={
-            pair: (math.nan, math.nan) if item.vector is None else item.vector[k].tolist()
-            for pair, item in pushing.items()
-        },
+        arcs=arcs,
+        forces=forces,
         axes={beam.name: response.axis_line(beam.name, k) for beam in scene.beams},
         reactions={
             node: (*item.force[k].tolist(), float(item.moment[k])) for node, item in response.supports.items()
@@ -67,29 +70,28 @@ def idle_at_an_end(contact: ContactHistory, scene: Scene, spec: ContactSpec, k: 
     return abs(float(contact.force[k])) <= pull_allowed(beam) and abs(inside) <= SHORTEST
 
 
-def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotations]]:
-    """Return the unknowns of the layout and the beams' rotations from an answer."""
+def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, Seen]:
+    """Return the unknowns of the layout, and what an answer shows of its beams."""
     z = np.zeros(layout.unknowns)
-    for touch in layout.touches:
-        z[touch.arc] = answer.arcs[touch.spec.pair] / layout.length
+    z[layout.arcs] = [answer.arcs[pair] / layout.length for pair in layout.touches]
     for _ in range(2):  # the shear follows from the forces
         turns = _rotations(layout, answer, z)
 
-        def seen(beam: int, s: float, turns: list[Rotations] = turns) -> tuple[Array, float]:
-            axis, line = answer.axes[layout.scene.beams[beam].name]
-            place = np.array([np.interp(s * layout.length, axis, way) for way in line.T])
-            return place, float(np.interp(s, *turns[beam]))
+        def seen(beam: str, s: Array, turns: dict[str, Rotations] = turns) -> tuple[Array, Array]:
+            axis, line = answer.axes[beam]
+            places = np.transpose([np.interp(s * layout.length, axis, way) for way in line.T])
+            return places, np.interp(s, *turns[beam])
 
         put(layout, z, seen)
         _balance(layout, answer, z)
-    return z, turns
+    return z, seen
 
 
-def put(layout: Layout, z: Array, seen: Callable[[int, float], tuple[Array, float]]) -> None:
-    """Set the stations' motions, and the directions of contacts, from the position and the rotation seen at an arc position of a beam."""
+def put(layout: Layout, z: Array, seen: Seen) -> None:
+    """Set the stations' motions, and the directions of contacts, from what is seen of the beams."""
     for part, arcs in zip(layout.parts, layout.extents(z), strict=True):
-        for number, s in zip((part.first, part.last), arcs.tolist(), strict=True):
-            station, (place, theta) = layout.stations[number], seen(part.beam, s)
+        for number, s, place, theta in zip(part.stations, arcs, *seen(part.beam, arcs), strict=True):
+            station = layout.stations[number]
             moved = (place - layout.scene.beams[0].start) / layout.length - station.reference
             free = (station.numbers >= 0) & [station.touch is None, station.touch is None, True]
             z[station.numbers[free]] = np.append(moved, theta)[free]
@@ -97,27 +99,26 @@ def put(layout: Layout, z: Array, seen: Callable[[int, float], tuple[Array, floa
                 z[station.touch.angle] = part.piece.angle(s)[0] + theta + math.asin(station.touch.face.tilt)
 
 
-def _rotations(layout: Layout, answer: AnswerState, z: Array) -> list[Rotations]:
+def _rotations(layout: Layout, answer: AnswerState, z: Array) -> dict[str, Rotations]:
     """Rotations of all beams, with multiples of 2 pi, so that beams agree with prescribed rotations and, at joints, with each other."""
     known: dict[int, float] = {
         k: float(layout.given[item.numbers[2]])
         for k, item in enumerate(layout.stations)
         if item.numbers[2] < 0
     }
-    own: list[list[tuple[Part, Array]]] = [[] for _ in layout.scene.beams]
+    own: dict[str, list[tuple[Part, Array]]] = {beam.name: [] for beam in layout.scene.beams}
     for part, extent in zip(layout.parts, layout.extents(z), strict=True):
         own[part.beam].append((part, extent))
-    turns = [_rotation(layout, answer, parts, z) for parts in own]
-    ends = [(parts[0][0].first, parts[-1][0].last) for parts in own]
-    left = list(range(len(turns)))
-    while left:
-        number = next((b for b in left if any(k in known for k in ends[b])), left[0])
-        left.remove(number)
-        arc, theta = turns[number]
-        both = list(zip(ends[number], (theta[0], theta[-1]), strict=True))
+    turns = {}
+    while own:
+        joined = (b for b in own if {own[b][0][0].stations[0], own[b][-1][0].stations[1]} & known.keys())
+        beam = next(joined, next(iter(own)))
+        parts = own.pop(beam)
+        arc, theta = _rotation(layout, answer, parts, z)
+        both = [(parts[0][0].stations[0], theta[0]), (parts[-1][0].stations[1], theta[-1])]
         shift = next((known[k] - turn for k, turn in both if k in known), 0.0)
         whole = 2.0 * math.pi * round(shift / (2.0 * math.pi))
-        turns[number] = arc, theta + whole
+        turns[beam] = arc, theta + whole
         for k, turn in both:
             known.setdefault(k, float(turn + whole))
     return turns
@@ -129,8 +130,8 @@ def _rotation(layout: Layout, answer: AnswerState, own: list[tuple[Part, Array]]
     ``r' = d1 + (N/EA) d1 + (Q/GA) d2`` gives ``r' - n/GA = (1 + N/EA - N/GA) d1``. In strong shear the factor of d1 is negative; its
     sign is the one that agrees with N.
     """
-    part = own[0][0]
-    length, (arc, line) = part.rod.length, answer.axes[layout.scene.beams[part.beam].name]
+    part, length = own[0][0], own[-1][1][1]
+    arc, line = answer.axes[part.beam]
     chords, extents = np.diff(line, axis=0) @ (1.0, 1.0j), np.diff(arc)
     long = (np.abs(chords) > 0.0) & (extents > 0.0)
     if not long.any():
@@ -139,8 +140,8 @@ def _rotation(layout: Layout, answer: AnswerState, own: list[tuple[Part, Array]]
     way, back = chords[long] / extents[long], np.exp(-1.0j * part.piece.angle(s))
     theta = np.angle(way * back)
     for part, (first, last) in own:
-        _, EA, GA, *_ = value(part.piece.coefficients, s)
-        force = np.array([1.0, 1.0j]) @ part.piece.force(part.constant(z), s)
+        EA, GA, _, *W = value(part.piece.coefficients, s)
+        force = np.array([1.0, 1.0j]) @ (part.constant(z) - W)
         along = way - force / GA
         size = np.abs(along)
         d1 = along / np.where(size > 0.0, size, 1.0)
@@ -155,11 +156,22 @@ def _rotation(layout: Layout, answer: AnswerState, own: list[tuple[Part, Array]]
 
 def _balance(layout: Layout, answer: AnswerState, z: Array) -> None:
     """Set the forces of the parts by a least-squares balance with the answer's contact forces, reactions and loads."""
-    acting, known = _acting(layout, answer, z)
-    joined = {hinge.end: hinge.joint for hinge in layout.hinges}
+    _, loads, stiffness = layout.tables
+    acting = loads[:, :2] - (stiffness @ layout.motions(z).ravel()).reshape(loads.shape)[:, :2]
+    joined = {end: joint for end, joint, _ in layout.hinges}
+    for end, joint in joined.items():
+        acting[joint] += acting[end]
+    for node, (x, y, _) in answer.reactions.items():
+        acting[layout.joints[node]] += np.array([x, y]) / layout.force
+    for pair, touch in layout.touches.items():
+        force = np.nan_to_num(np.array(answer.forces[pair])) / layout.force
+        acting[touch.station] += force
+        if touch.spec.node in layout.joints:
+            acting[layout.joints[touch.spec.node]] -= force
+    known = {layout.joints[node] for node in answer.reactions}
     balance = np.zeros((len(layout.stations), len(layout.parts)))
     for n, part in enumerate(layout.parts):
-        for number, sign in ((part.first, -1.0), (part.last, 1.0)):
+        for number, sign in zip(part.stations, (-1.0, 1.0), strict=True):
             balance[joined.get(number, number), n] += sign
     for axis, forces in enumerate(layout.forces.reshape(-1, 2).T):
         stated = [
@@ -167,19 +179,3 @@ def _balance(layout: Layout, answer: AnswerState, z: Array) -> None:
             for k, item in enumerate(layout.stations)
         ]
         z[forces] = np.linalg.lstsq(balance[stated], acting[stated, axis], rcond=None)[0]
-
-
-def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[int]]:
-    """External forces (stations, 2), of ends behind a hinge at the joint, and the stations whose reactions the answer has."""
-    _, loads, stiffness = layout.tables
-    acting = loads[:, :2] - (stiffness @ layout.motions(z).ravel()).reshape(loads.shape)[:, :2]
-    for hinge in layout.hinges:
-        acting[hinge.joint] += acting[hinge.end]
-    for end, (x, y, _) in answer.reactions.items():
-        acting[layout.joint(end)] += np.array([x, y]) / layout.force
-    for k, touch in layout.touched:
-        force = np.nan_to_num(np.array(answer.forces[touch.spec.pair])) / layout.force
-        acting[k] += force
-        if "." in touch.spec.node:
-            acting[layout.joint(touch.spec.node)] -= force
-    return acting, {layout.joint(end) for end in answer.reactions}

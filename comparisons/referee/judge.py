@@ -51,7 +51,12 @@ def judged(trial: Trial, k: int, before: Equilibrium | None) -> Judgement:
     def refused(verdict: Verdict, reason: str) -> Judgement:
         return Judgement(load_parameter=t, verdict=verdict, reason=reason)
 
-    contradiction = next(impossible(response, scene, k), "") or next(_not_finite(response, scene, k), "")
+    lost = (
+        f"the position of {beam.name} is not finite"
+        for beam in scene.beams
+        if not np.isfinite([*response.axis_line(beam.name, k)[1], response.tips[beam.name][k]]).all()
+    )
+    contradiction = next(impossible(response, scene, k), "") or next(lost, "")
     if contradiction:
         return refused(Verdict.NOT_AN_EQUILIBRIUM, contradiction)
     answer = answer_state(response, scene, k)
@@ -92,9 +97,8 @@ def compared(trial: Trial, k: int, exact: Equilibrium, largest: Scales = (0.0, 0
     if verdict is Verdict.CERTIFIED and history is not None:
         from comparisons.referee.friction import rubs_wrongly
 
-        for violation in rubs_wrongly(history, k, exact, allowed):
-            verdict, reason = Verdict.INADMISSIBLE, violation
-            break
+        violation = next(rubs_wrongly(history, k, exact, allowed), "")
+        verdict, reason = (Verdict.INADMISSIBLE, violation) if violation else (verdict, reason)
     return Judgement(
         load_parameter=exact.load_parameter, verdict=verdict, reason=reason, distance=differences, exact=exact
     )
@@ -118,14 +122,6 @@ def _verdict(stated: int, exact: Equilibrium, differences: Distance, allowed: fl
     if stated not in (-1, exact.index) and exact.index >= 0:
         return Verdict.NOT_AN_EQUILIBRIUM, f"index {stated} is stated, the equilibrium has {exact.index}"
     return Verdict.CERTIFIED, differences.line()
-
-
-def _not_finite(response: Response, scene: Scene, k: int) -> Iterator[str]:
-    """Yield beams whose positions are not finite."""
-    for beam in scene.beams:
-        places = [*response.axis_line(beam.name, k)[1], response.tips[beam.name][k]]
-        if not np.all(np.isfinite(places)):
-            yield f"the position of {beam.name} is not finite"
 
 
 def impossible(response: Response, scene: Scene, k: int) -> Iterator[str]:
@@ -196,6 +192,6 @@ def _least_gap(exact: Equilibrium, spec: ContactSpec) -> tuple[float, float]:
     arcs, away = feet(exact, spec) if face.start else (np.empty(0), np.empty(0))
     gaps = np.abs(away) - face.reach(arcs)
     if contact is not None:
-        half = angle(*exact.tangents(exact.layout.touch(spec.pair))) / 2.0
+        half = angle(*exact.tangents(exact.layout.touches[spec.pair])) / 2.0
         gaps = np.where(away > 0.0, gaps + half * np.abs(arcs - contact.arc_position), np.inf)
     return min(zip(gaps.tolist(), arcs.tolist(), strict=True), default=(math.inf, math.nan))

@@ -12,16 +12,18 @@ from dataclasses import field
 from functools import cached_property
 from itertools import pairwise
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from comparisons.answer import Array, Ints
 from comparisons.frozen import Frozen, Value
 from comparisons.referee.grip import Grip
-from comparisons.referee.rod import Face, Piece, Rod, face_of, rod_of, trimmed, units_of
+from comparisons.referee.rod import Face, Piece, face_of, rod_of, trimmed, units_of, value
 from comparisons.scene import ContactSpec, Scene
 
+Rod = tuple[list[float], list[Piece]]
+"""Pieces of a beam behind the arc positions of their ends."""
 NONE = -1
 """Number of a quantity that is zero."""
 _FREE: Mapping[str, Grip] = MappingProxyType({})
@@ -39,6 +41,7 @@ class Touch(Value):
     """
 
     spec: ContactSpec
+    station: int  #: Number of the station.
     arc: int  #: Number of the arc position.
     angle: int  #: Number of phi; `NONE` without offset.
     face: Face
@@ -55,32 +58,19 @@ class Station(Frozen):
     #: Stiffnesses (3,) against displacement and rotation.
     springs: Array = field(default_factory=lambda: np.zeros(3))
     touch: Touch | None = None
-    ends: tuple[str, ...] = ()  #: Ends of beams that are rigidly attached.
-    #: Ends of all beams at a joint, with those behind a hinge; empty for other stations.
-    joint: tuple[str, ...] = ()
 
     def turning(self, rotation: int, **more: Any) -> "Station":
         """Return a station at the same place with a rotation of its own."""
         return Station(reference=self.reference, numbers=np.append(self.numbers[:2], rotation), **more)
 
 
-class Hinge(NamedTuple):
-    """A hinge between the stations `end`, of the beam's end, and `joint`, with a rotational spring."""
-
-    end: int
-    joint: int
-    stiffness: float
-
-
 class Part(Frozen):
     """A rod between two stations of a beam."""
 
-    beam: int
-    first: int
-    last: int
+    beam: str
+    stations: tuple[int, int]  #: Numbers of both stations.
     arcs: tuple[int, int]  #: Numbers of the arc positions of both stations.
     force: int  #: Number of the first of the two components of c.
-    rod: Rod
     piece: Piece
 
     def constant(self, z: Array) -> Array:
@@ -95,37 +85,34 @@ class Layout(Frozen):
     load_parameter: float
     length: float
     force: float
-    stations: tuple[Station, ...]
-    parts: tuple[Part, ...]
-    hinges: tuple[Hinge, ...]
+    stations: list[Station]
+    parts: list[Part]
+    joints: dict[str, int]  #: Numbers of the joints to which the beams' ends belong.
+    #: Numbers of the stations of a beam's end behind a hinge and of its joint, and the stiffness of the spring in between.
+    hinges: list[tuple[int, int, float]]
     given: Array  #: Prescribed quantities.
     unknowns: int  #: Number of unknowns without the rotations inside the parts.
 
     @cached_property
-    def touched(self) -> list[tuple[int, Touch]]:
-        """The closed contacts with the numbers of their stations."""
-        return [(k, item.touch) for k, item in enumerate(self.stations) if item.touch is not None]
-
-    @property
-    def touches(self) -> tuple[Touch, ...]:
-        """The closed contacts."""
-        return tuple(touch for _, touch in self.touched)
+    def touches(self) -> dict[str, Touch]:
+        """The closed contacts by pair."""
+        return {item.touch.spec.pair: item.touch for item in self.stations if item.touch is not None}
 
     @cached_property
     def arcs(self) -> Ints:
         """Numbers of the arc positions of the contacts."""
-        return np.array([touch.arc for touch in self.touches], dtype=np.int64)
+        return np.array([touch.arc for touch in self.touches.values()], dtype=np.int64)
 
     @cached_property
     def forces(self) -> Ints:
         """Numbers (2 parts,) of the components of c."""
-        return np.array([k for part in self.parts for k in (part.force, part.force + 1)], dtype=np.int64)
+        return np.arange(self.parts[0].force, self.unknowns)
 
     @cached_property
     def moving(self) -> Ints:
         """Numbers of the displacements and arc positions."""
-        moved = [k for item in self.stations for k in item.numbers[:2] if k >= 0]
-        return np.array([*moved, *self.arcs], dtype=np.int64)
+        moved = self.tables[0][:, :2]
+        return np.append(moved[moved >= 0], self.arcs)
 
     @cached_property
     def tables(self) -> tuple[Ints, Array, Array]:
@@ -150,23 +137,20 @@ class Layout(Frozen):
         table, *others = (np.concatenate(item, axis=-1) for item in zip(*pieces, strict=True))
         return Piece(trimmed(table), *others)
 
+    def softest(self, z: Array) -> Array:
+        """Smallest EA, GA and EI (3, parts), which are at an end of a part."""
+        stiffness = self.pieces(np.arange(len(self.parts))).coefficients[:, :3]
+        return np.asarray(value(stiffness, self.extents(z)).min(axis=-1))
+
     @property
     def grips(self) -> dict[str, Grip]:
         """How friction holds the contacts, by pair; none without friction."""
-        return {touch.spec.pair: touch.grip for touch in self.touches if touch.grip is not None}
-
-    def touch(self, pair: str) -> Touch:
-        """Return the closed contact of a pair."""
-        return next(item for item in self.touches if item.spec.pair == pair)
-
-    def joint(self, end: str) -> int:
-        """Return the number of the joint to which a beam's end belongs."""
-        return next(k for k, item in enumerate(self.stations) if end in item.joint)
+        return {pair: touch.grip for pair, touch in self.touches.items() if touch.grip is not None}
 
     def beside(self, touch: Touch) -> tuple[Part, Part]:
         """Return the parts before and behind a contact."""
-        before = next(part for part in self.parts if part.arcs[1] == touch.arc)
-        return before, next(part for part in self.parts if part.arcs[0] == touch.arc)
+        k = next(k for k, part in enumerate(self.parts) if part.arcs[1] == touch.arc)
+        return self.parts[k], self.parts[k + 1]
 
     def full(self, z: Array) -> Array:
         """Unknowns and prescribed quantities."""
@@ -179,10 +163,10 @@ class Layout(Frozen):
     def shifts(self, z: Array) -> Array:
         """Ways (stations, 2) of the axis from the references."""
         ways = self.motions(z)[:, :2]
-        for k, touch in self.touched:
+        for touch in self.touches.values():
             if touch.angle != NONE:
                 phi, away = z[touch.angle], touch.face.left * touch.face.reach(z[touch.arc])
-                ways[k] -= away * np.array([-np.sin(phi), np.cos(phi)])
+                ways[touch.station] -= away * np.array([-np.sin(phi), np.cos(phi)])
         return ways
 
     @cached_property
@@ -192,18 +176,14 @@ class Layout(Frozen):
 
     def extents(self, z: Array) -> Array:
         """Arc positions (parts, 2) at the starts and the ends of all parts."""
-        return self.full(z)[self._ends]
-
-    @cached_property
-    def _ends(self) -> Ints:
-        return np.array([part.arcs for part in self.parts])
+        return self.full(z)[self.sides[0][:, 4]].reshape(-1, 2)
 
     @cached_property
     def chords(self) -> tuple[Ints, Array, Array]:
         """Numbers (2, parts) of the stations at both ends of the parts, ways (parts, 2) between these, and whether a contact is there (parts, 1)."""
-        ends = np.array([(part.first, part.last) for part in self.parts]).T
+        ends = np.array([part.stations for part in self.parts]).T
         first, last = self.references[ends]
-        touched = np.isin(ends, [k for k, _ in self.touched])
+        touched = np.isin(ends, [touch.station for touch in self.touches.values()])
         return ends, last - first, (touched[0] | touched[1])[:, None]
 
     @cached_property
@@ -211,10 +191,10 @@ class Layout(Frozen):
         """Numbers (2 parts, 6) of c, displacement, arc position and phi at both ends of the parts; sign, and left, start and slope of the face."""
         numbers, sizes = [], []
         for part in self.parts:
-            for end, sign in enumerate((-1.0, 1.0)):
-                there = self.stations[(part.first, part.last)[end]]
-                phi, face = (NONE, _AXIS) if there.touch is None else (there.touch.angle, there.touch.face)
-                numbers.append((part.force, part.force + 1, *there.numbers[:2], part.arcs[end], phi))
+            for station, arc, sign in zip(part.stations, part.arcs, (-1.0, 1.0), strict=True):
+                there = self.stations[station]
+                phi, face = (there.touch.angle, there.touch.face) if there.touch else (NONE, _AXIS)
+                numbers.append((part.force, part.force + 1, *there.numbers[:2], arc, phi))
                 sizes.append((sign, *face[:3]))
         return np.array(numbers), np.array(sizes).T
 
@@ -225,9 +205,10 @@ class _Numbers:
     def __init__(self) -> None:
         self.unknowns, self.given = 0, [0.0]
 
-    def free(self, count: int) -> list[int]:
+    def free(self, count: int = 1) -> int:
+        """Add unknowns, and return the number of the first one."""
         self.unknowns += count
-        return list(range(self.unknowns - count, self.unknowns))
+        return self.unknowns - count
 
     def fixed(self, value: float) -> int:
         self.given.append(value)
@@ -240,49 +221,57 @@ def lay_out(
     """Return the layout with contacts at the arc positions `closed`, which order them, and held by friction as `grips` say."""
     length, force = units_of(scene)
     unit = np.array([force, force, force * length])
-    rods = [rod_of(scene, beam, load_parameter, (length, force)) for beam in scene.beams]
+    rods = {beam.name: rod_of(scene, beam, load_parameter) for beam in scene.beams}
     numbers = _Numbers()
-    stations, hinges = _joints(scene, load_parameter, rods, length, unit, numbers)
-    at = {end: station for station in stations for end in station.joint}
+    stations, joints = _joints(scene, load_parameter, unit, numbers)
+    ends, hinges = dict(joints), []
+    for hinge in scene.hinges:
+        ends[hinge.node] = len(stations)
+        hinges.append((len(stations), joints[hinge.node], hinge.stiffness / unit[2]))
+        stations.append(stations[joints[hinge.node]].turning(numbers.free()))
     on_beam: dict[str, list[tuple[float, int, int]]] = {beam.name: [] for beam in scene.beams}
     for spec in (item for item in scene.contacts if item.pair in closed):
         face = face_of(scene, spec, length)
-        turn, arc, angle = *numbers.free(2), numbers.free(1)[0] if face.start else NONE
-        touch = Touch(spec=spec, arc=arc, angle=angle, face=face, grip=grips.get(spec.pair))
-        node = at.get(spec.node) or Station(
-            reference=_place(scene, scene.pin(spec.node).position(load_parameter), length),
-            numbers=np.full(3, NONE),
+        turn, arc, angle = numbers.free(), numbers.free(), numbers.free() if face.start else NONE
+        touch = Touch(
+            spec=spec, station=len(stations), arc=arc, angle=angle, face=face, grip=grips.get(spec.pair)
         )
+        if spec.node in joints:
+            node = stations[joints[spec.node]]
+        else:
+            place = _place(scene, scene.pin(spec.node).position(load_parameter))
+            node = Station(reference=place, numbers=np.full(3, NONE))
         on_beam[spec.beam].append((closed[spec.pair], len(stations), arc))
         stations.append(node.turning(turn, touch=touch))
-    for beam, rod in zip(scene.beams, rods, strict=True):
-        inside = [item for item in scene.load_histories if item.load.beam == beam.name and item.load.at]
-        for s in rod.breaks[1:-1]:
-            here = (item for item in inside if (item.load.at or 0.0) * rod.length == s)
-            loads = _total(item.at(load_parameter) for item in here)
-            on_beam[beam.name].append((s * length, len(stations), numbers.fixed(s)))
-            place = _place(scene, beam.place(s / rod.length), length)
-            stations.append(Station(reference=place, numbers=np.array(numbers.free(3)), load=loads / unit))
-    ends = {end: number for number, station in enumerate(stations) for end in station.ends}
+    for name, (breaks, _) in rods.items():
+        for s in breaks[1:-1]:
+            here = (item for item in scene.load_histories if item.load.beam == name)
+            loads = _total(
+                item.at(load_parameter) for item in here if (item.load.at or 0.0) * breaks[-1] == s
+            )
+            on_beam[name].append((s * length, len(stations), numbers.fixed(s)))
+            place = _place(scene, scene.beam(name).place(s / breaks[-1]))
+            moved = numbers.free(3) + np.arange(3)
+            stations.append(Station(reference=place, numbers=moved, load=loads / unit))
     parts: list[Part] = []
-    for number, (beam, rod) in enumerate(zip(scene.beams, rods, strict=True)):
-        begin, end = (0.0, ends[f"{beam.name}.start"], NONE), ends[f"{beam.name}.end"]
-        chain = [begin, *sorted(on_beam[beam.name]), (beam.length, end, numbers.fixed(rod.length))]
+    for name, (breaks, pieces) in rods.items():
+        begin, end = (0.0, ends[f"{name}.start"], NONE), ends[f"{name}.end"]
+        stations[end].load[:2] += value(pieces[-1].coefficients[:, 3:, 0], breaks[-1])
+        chain = [begin, *sorted(on_beam[name]), (breaks[-1], end, numbers.fixed(breaks[-1]))]
         piece = 0
         for (_, first, arc), (_, last, arc_after) in pairwise(chain):
             piece += arc < NONE  # a place inside the beam, whose arc position is prescribed
-            between: dict[str, Any] = {"beam": number, "first": first, "last": last, "arcs": (arc, arc_after)}
-            parts.append(Part(**between, force=numbers.free(2)[0], rod=rod, piece=rod.pieces[piece]))
+            arcs, c = (arc, arc_after), numbers.free(2)
+            parts.append(Part(beam=name, stations=(first, last), arcs=arcs, force=c, piece=pieces[piece]))
     return Layout(
-        scene=scene, load_parameter=load_parameter, length=length, force=force, stations=tuple(stations),
-        parts=tuple(parts), hinges=tuple(hinges), given=np.array(numbers.given[::-1]),
-        unknowns=numbers.unknowns,
+        scene=scene, load_parameter=load_parameter, length=length, force=force, stations=stations, parts=parts,
+        joints=joints, hinges=hinges, given=np.array(numbers.given[::-1]), unknowns=numbers.unknowns,
     )  # fmt: skip
 
 
-def _place(scene: Scene, point: tuple[float, float], length: float) -> Array:
+def _place(scene: Scene, point: tuple[float, float]) -> Array:
     """Position from the first beam's start."""
-    return np.asarray((np.array(point) - scene.beams[0].start) / length)
+    return np.asarray((np.array(point) - scene.beams[0].start) / units_of(scene)[0])
 
 
 def _total(amounts: Iterable[Any]) -> Array:
@@ -290,38 +279,25 @@ def _total(amounts: Iterable[Any]) -> Array:
     return np.asarray(np.sum([_NOTHING, *amounts], axis=0))
 
 
-def _joints(
-    scene: Scene, t: float, rods: list[Rod], length: float, unit: Array, numbers: _Numbers
-) -> tuple[list[Station], list[Hinge]]:
-    """Return the stations of joints and ends with the numbers of their free components, those behind hinges last, and the hinges."""
-    names: dict[tuple[float, float], list[str]] = {}
-    resultants: dict[str, Array] = {}
-    for beam, rod in zip(scene.beams, rods, strict=True):
-        names.setdefault(beam.start, []).append(f"{beam.name}.start")
-        names.setdefault(beam.end, []).append(f"{beam.name}.end")
-        resultants[f"{beam.name}.end"] = np.append(-rod.pieces[-1].force(0.0, rod.length), 0.0)
-    hinged = {hinge.node: hinge.stiffness / unit[2] for hinge in scene.hinges}
-    stations: list[Station] = []
-    for point, ends in names.items():
-        own = tuple(end for end in ends if end not in hinged)
-        held = [support.node for support in scene.all_supports if support.node in ends]
-        motion = scene.prescribed_motions[held[-1]].at(t) if held else (None, None, None)
+def _joints(scene: Scene, t: float, unit: Array, numbers: _Numbers) -> tuple[list[Station], dict[str, int]]:
+    """Return the stations of joints with the numbers of their free components, and the numbers of the joints by the beams' ends."""
+    stations, joints = list[Station](), dict[str, int]()
+    hinged = {hinge.node: hinge.stiffness for hinge in scene.hinges}
+    size = np.array([units_of(scene)[0]] * 2 + [1.0])
+    for point, meeting in scene.meeting.items():
+        ends = [f"{beam.name}.{end}" for beam, end in meeting]
+        joints |= dict.fromkeys(ends, len(stations))
+        held = (motion.at(t) for node, motion in scene.prescribed_motions.items() if node in ends)
+        motion = next(held, (None, None, None))
         springs = _total((*item.stiffness, item.rotation) for item in scene.springs if item.node in ends)
-        turns = bool(own or springs[2] or any(hinged.get(end) for end in ends))
+        turns = springs[2] or any(hinged.get(end, True) for end in ends)
         loads = _total(item.at(t) for item in scene.load_histories if item.load.node in ends)
-        along = _total(resultants[end] for end in own if end in resultants)
         given = [
-            numbers.free(1)[0] if way is None and free else numbers.fixed((way or 0.0) / size)
-            for way, size, free in zip(motion, (length, length, 1.0), (1, 1, turns), strict=True)
+            numbers.free() if way is None and free else numbers.fixed((way or 0.0) / one)
+            for way, one, free in zip(motion, size, (True, True, turns), strict=True)
         ]
         stations.append(Station(
-            reference=_place(scene, point, length), numbers=np.array(given), load=loads / unit + along,
-            springs=springs * (length, length, 1.0) / unit, ends=own, joint=tuple(ends),
+            reference=_place(scene, point), numbers=np.array(given), load=loads / unit,
+            springs=springs * size / unit,
         ))  # fmt: skip
-    hinges: list[Hinge] = []
-    for node, stiffness in hinged.items():
-        joint = next(k for k, item in enumerate(stations) if node in item.joint)
-        hinges.append(Hinge(len(stations), joint, stiffness))
-        (turn,) = numbers.free(1)
-        stations.append(stations[joint].turning(turn, ends=(node,), load=resultants.get(node, _NOTHING)))
-    return stations, hinges
+    return stations, joints

@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 
 from comparisons.answer import Array, Ints
-from comparisons.referee.elements import AMPLITUDE, DEGREE, GAUSS, VALUES, Mesh, mesh_of
+from comparisons.referee.elements import AMPLITUDE, GAUSS, VALUES, Mesh, mesh_of
 from comparisons.referee.equations import scales
 from comparisons.referee.grip import Grip
-from comparisons.referee.guess import SHORTEST, AnswerState, first_guess, put
+from comparisons.referee.guess import SHORTEST, AnswerState, Seen, first_guess, put
 from comparisons.referee.layout import Layout, lay_out
 from comparisons.referee.rod import largest
-from comparisons.referee.state import Change, Equilibrium, SearchStatus, Shape, located, tails
+from comparisons.referee.state import Equilibrium, SearchStatus
 from comparisons.scene import Scene
 
 _RESOLVED = 3e-14
@@ -28,7 +28,6 @@ _ROUND_OFF = 1e-10
 """Correction below which a correction that no longer decreases is round-off."""
 _LAST_PLACES = 10.0 * float(np.finfo(float).eps)
 """Round-off of a force over EA, since forces follow from stretches."""
-_AT_ONE_PLACE = "two contacts on a beam, or a contact and an end, come to one place"
 _MOST_ELEMENTS = 400
 """Largest number of elements of a part."""
 _FIT = np.asarray(np.linalg.pinv(VALUES[:, 2:]), dtype=np.float64)
@@ -56,12 +55,11 @@ def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
     ('2.288274307175e-03', 0)
     """
     layout = lay_out(scene, answer.load_parameter, answer.arcs, answer.grips)
-    z, turns = first_guess(layout, answer)
+    z, seen = first_guess(layout, answer)
     reason = _reason_not_to_judge(layout, z)
     if reason:
-        return replace(undeformed(layout, 1), z=z, status=SearchStatus.NOT_JUDGED, message=reason)
-    mesh = mesh_of(layout, _first_grids(layout, z))
-    start = _seen(layout, mesh, z, lambda beam, s: np.interp(s, *turns[beam]), _FIT_LOW)
+        return replace(undeformed(layout), status=SearchStatus.NOT_JUDGED, reason=reason)
+    start = _seen(layout, z, seen, _FIT_LOW)
     best = correct(start, _ITERATIONS)
     # arc positions of contacts and forces of parts are more accurate in an answer than rotations
     for held in (layout.arcs, np.array(sorted({*layout.arcs, *layout.forces}), dtype=int)):
@@ -77,15 +75,11 @@ def switched(now: Equilibrium, arcs: Mapping[str, float], grips: Mapping[str, Gr
     """Return the equilibrium next to another one at load parameter t, with contacts at the arc positions `arcs`, held by `grips`."""
     layout, before = lay_out(now.scene, t, arcs, grips), now.layout
     z = np.zeros(layout.unknowns)
-    for touch in layout.touches:
-        z[touch.arc] = arcs[touch.spec.pair] / layout.length
+    z[layout.arcs] = [arcs[pair] / layout.length for pair in layout.touches]
 
-    def shape(beam: int, s: Array) -> Shape:
-        return now.shape(now.scene.beams[beam].name, s * layout.length)
-
-    def seen(beam: int, s: float) -> tuple[Array, float]:
-        there = shape(beam, np.array([s]))
-        return there.position[0], float(there.rotation[0])
+    def seen(beam: str, s: Array) -> tuple[Array, Array]:
+        there = now.shape(beam, s * layout.length)
+        return there.position, there.rotation
 
     put(layout, z, seen)
     ends = before.extents(now.z)[:, 1]
@@ -94,15 +88,12 @@ def switched(now: Equilibrium, arcs: Mapping[str, float], grips: Mapping[str, Gr
         # behind a contact at the tip, a part without length is of the last one
         old = next((old for end, old in own if end > extent.mean()), own[-1][1])
         z[part.force : part.force + 2] = old.constant(now.z)[:, 0]
-    mesh = mesh_of(layout, _first_grids(layout, z))
-    return correct(_seen(layout, mesh, z, lambda beam, s: shape(beam, s).rotation, _FIT), _ITERATIONS)
+    return correct(_seen(layout, z, seen, _FIT), _ITERATIONS)
 
 
-def undeformed(layout: Layout, elements: int) -> Equilibrium:
-    """Return the guess that nothing moves, with a number of elements of every part."""
-    mesh = mesh_of(layout, [np.linspace(0.0, 1.0, elements + 1)] * len(layout.parts))
-    bubbles = np.zeros((len(mesh.part), DEGREE - 1))
-    return Equilibrium(layout=layout, mesh=mesh, z=np.zeros(mesh.unknowns), bubbles=bubbles)
+def undeformed(layout: Layout) -> Equilibrium:
+    """Return the guess that nothing moves."""
+    return _seen(layout, np.zeros(layout.unknowns), lambda _, s: (s, 0.0 * s), _FIT)
 
 
 def _is_near(z: Array, found: Equilibrium) -> bool:
@@ -120,7 +111,7 @@ def correct(guess: Equilibrium, iterations: int) -> Equilibrium:
     for _ in range(_ROUNDS):
         found = _newton(guess, iterations)
         spent += found.iterations
-        coarse = tails(found.bubbles) > _RESOLVED
+        coarse = found.tails > _RESOLVED
         if not found.found or not coarse.any():
             return replace(found, iterations=spent)
         grids = [
@@ -130,10 +121,8 @@ def correct(guess: Equilibrium, iterations: int) -> Equilibrium:
         if max(map(len, grids)) > _MOST_ELEMENTS:
             break
         finer = mesh_of(layout, grids)
-        seen = located(found, finer.part[:, None], _places(finer))[2]
-        guess = _fitted(layout, finer, found.z[: layout.unknowns], seen, _FIT)
-    status = SearchStatus.NOT_RESOLVED
-    return replace(found, status=status, message=status.value, iterations=spent)
+        guess = _fitted(finer, found.z[: layout.unknowns], lambda *at, now=found: now.located(*at)[2], _FIT)
+    return replace(found, status=SearchStatus.NOT_RESOLVED, iterations=spent)
 
 
 def _rotations_corrected(guess: Equilibrium, held: Ints) -> Equilibrium:
@@ -141,11 +130,10 @@ def _rotations_corrected(guess: Equilibrium, held: Ints) -> Equilibrium:
     # the first correction of inaccurate rotations could move a contact beyond an end, or lead to another equilibrium near GA EA/(EA - GA)
     for _ in range(_HOLDING):
         change = newton_step(guess, held)
-        if change is None:
+        if not np.isfinite(change).all():
             break
-        turns = change[0][guess.layout.unknowns :]
-        turn = max(largest(turns), largest(change[1]))
-        guess = guess.plus(change, min(1.0, _LARGEST_ROTATION / max(turn, 1e-300)))
+        turn = largest(change[guess.layout.unknowns :])
+        guess = guess.plus(min(1.0, _LARGEST_ROTATION / max(turn, 1e-300)) * change)
     return guess
 
 
@@ -158,97 +146,87 @@ def _reason_not_to_judge(layout: Layout, z: Array) -> str:
         return f"the stiffest beam is {max(stiffness) / min(stiffness):.1g} times as stiff as the most flexible one"
     for part, extent in zip(layout.parts, np.diff(layout.extents(z)), strict=True):
         if extent <= SHORTEST:
-            beam = layout.scene.beams[part.beam].name
-            return (
-                f'two contacts on beam "{beam}", or a contact and an end, are at one place or beyond the end'
-            )
+            return f'two contacts on beam "{part.beam}", or a contact and an end, are at one place or beyond the end'
     return ""
 
 
 def _first_grids(layout: Layout, z: Array) -> list[Array]:
     """About one element for 1.5 of the length sqrt(EI/n) over which the deflection varies, at most 50."""
-    EI, stretch, shear = np.array([part.rod.softest for part in layout.parts]).T
+    EA, GA, EI = layout.softest(z)
     n = np.hypot(*z[layout.forces].reshape(-1, 2).T)
-    rate = np.sqrt(n * (1.0 + n * np.abs(stretch - shear)) / EI)
+    rate = np.sqrt(n * (1.0 + n * np.abs(1.0 / EA - 1.0 / GA)) / EI)
     counts = np.clip(np.ceil(np.diff(layout.extents(z))[:, 0] * rate / 1.5), 1, 50)
     return [np.linspace(0.0, 1.0, int(count) + 1) for count in counts]
 
 
-def _places(mesh: Mesh) -> Array:
-    """Fractions (e, g + 2) of the parts at the Gauss points and the ends of the elements."""
-    return np.asarray(mesh.start[:, None] + mesh.share[:, None] * _PLACES)
+def _seen(layout: Layout, z: Array, seen: Seen, fit: Array) -> Equilibrium:
+    """Return the guess with the rotations of the beams that are seen; z are the unknowns without the rotations inside the parts."""
+
+    def turned(part: Ints, x: Array) -> Array:
+        first, last = np.moveaxis(layout.extents(z)[part], -1, 0)
+        arcs = zip(part[:, 0], first + (last - first) * x, strict=True)
+        return np.array([seen(layout.parts[k].beam, s)[1] for k, s in arcs])
+
+    return _fitted(mesh_of(layout, _first_grids(layout, z)), z, turned, fit)
 
 
-def _seen(
-    layout: Layout, mesh: Mesh, z: Array, rotation: Callable[[int, Array], Array], fit: Array
-) -> Equilibrium:
-    """Return the guess with the rotations of the beams at arc positions; z are the unknowns without the rotations inside the parts."""
-    first, last = layout.extents(z)[mesh.part].T[..., None]
-    arcs = first + (last - first) * _places(mesh)
-    turns = [rotation(layout.parts[k].beam, s) for k, s in zip(mesh.part, arcs, strict=True)]
-    return _fitted(layout, mesh, z, np.array(turns), fit)
-
-
-def _fitted(layout: Layout, mesh: Mesh, z: Array, rotation: Array, fit: Array) -> Equilibrium:
-    """Return the guess with rotations at `_places`."""
-    whole, at = np.append(z, np.zeros(mesh.unknowns - len(z))), mesh.local[:, 0]
-    whole[at[at >= len(z)]] = rotation[at >= len(z), -2]
-    bubbles: Array = (rotation[:, :-2] - rotation[:, -2:] @ VALUES[:, :2].T) @ fit.T
-    return Equilibrium(layout=layout, mesh=mesh, z=whole, bubbles=bubbles)
+def _fitted(mesh: Mesh, z: Array, turned: Callable[[Ints, Array], Array], fit: Array) -> Equilibrium:
+    """Return the guess with the rotations at fractions (e, g + 2) of the parts (e, 1): Gauss points and ends of the elements."""
+    rotation = turned(mesh.part[:, None], mesh.start[:, None] + mesh.share[:, None] * _PLACES)
+    inside = rotation[mesh.local[:, 0] >= len(z), -2]
+    bubbles = (rotation[:, :-2] - rotation[:, -2:] @ VALUES[:, :2].T) @ fit.T
+    return Equilibrium(mesh=mesh, z=np.concatenate([z, inside, bubbles.ravel()]))
 
 
 def _newton(now: Equilibrium, iterations: int) -> Equilibrium:
     """Iterate until the corrections are round-off."""
     layout, last, error = now.layout, np.inf, np.inf
-    most = [part.rod.softest for part in layout.parts]
-    least = _LAST_PLACES / (_ROUND_OFF * min(min(stretch, shear or np.inf) for _, stretch, shear in most))
-    turning = np.ones(now.mesh.unknowns, bool)
-    turning[layout.forces] = turning[layout.moving] = False
-    status, message = SearchStatus.NO_EQUILIBRIUM, SearchStatus.NO_EQUILIBRIUM.value
+    least = _LAST_PLACES / _ROUND_OFF * layout.softest(now.z)[:2].max()
+    turning = np.append(np.ones(now.mesh.unknowns), np.tile(AMPLITUDE, len(now.mesh.part)))
+    turning[layout.forces] = turning[layout.moving] = 0.0
+    status, reason = SearchStatus.NO_EQUILIBRIUM, ""
     for iteration in range(1, iterations + 1):  # noqa: B007, the number of the last one is told
         error = np.inf
         if np.diff(layout.extents(now.z)).min() <= 0.0:
-            message = _AT_ONE_PLACE
+            reason = "two contacts on a beam, or a contact and an end, come to one place"
             break
-        step = newton_step(now)
-        if step is None:
-            message = "the equations are singular"
+        change = newton_step(now)
+        if np.isnan(change).all():
+            reason = "the equations are singular"
             break
-        change, inside = step
-        turn = max(largest(change[turning]), float((np.abs(inside) * AMPLITUDE).max()))
-        moved = largest(change[layout.moving])
+        turn, moved = largest(turning * change), largest(change[layout.moving])
         scale, forced = (largest(x[layout.forces]) for x in (now.z, change))
         size = max(turn, moved, forced / (scale + 1e-6 + least))
         error = max(turn, moved, forced / (scale + 1e-6))
         part = min(1.0, _LARGEST_ROTATION / max(turn, 1e-300), _damping(layout, now.z, change))
-        now = now.plus(step, part)
+        now = now.plus(part * change)
         if not np.isfinite(size):
             break
         if part == 1.0 and (size < 1e-15 or (size < _ROUND_OFF and size >= 0.25 * last)):
-            status, message = SearchStatus.FOUND, SearchStatus.FOUND.value
+            status = SearchStatus.FOUND
             break
         last = size if part == 1.0 else np.inf
-    return replace(now, status=status, message=message, iterations=iteration, correction=error)
+    return replace(now, status=status, reason=reason, iterations=iteration, correction=error)
 
 
-def newton_step(guess: Equilibrium, held: Ints | None = None) -> Change | None:
-    """Newton correction with the unknowns `held` fixed; None if singular."""
-    system = guess.system
+def newton_step(guess: Equilibrium, held: Ints | None = None) -> Array:
+    """Newton correction with the unknowns `held` fixed; nan if singular."""
+    system, none = guess.system, np.full_like(guess.z, np.nan)
     hessian, gradient = system.hessian, system.gradient
     if held is not None:
         hessian, gradient = hessian.copy(), gradient.copy()
         hessian[held], hessian[:, held], gradient[held] = 0.0, 0.0, 0.0
         hessian[held, held] = 1.0
     if not np.all(np.isfinite(hessian)) or not np.all(np.any(hessian, axis=1)):
-        return None
+        return none
     # EI, EA and forces differ by orders of magnitude
     scale = scales(hessian)
     try:
         change: Array = -scale * np.linalg.solve(scale[:, None] * hessian * scale, scale * gradient)
     except np.linalg.LinAlgError:
-        return None
+        return none
     moved = np.append(change, 0.0 * guess.layout.given)[guess.mesh.local]
-    return change, np.asarray(-(system.shift + np.einsum("eij,ej->ei", system.lever, moved)))
+    return np.append(change, -(system.shift + np.einsum("eij,ej->ei", system.lever, moved)))
 
 
 def _damping(layout: Layout, z: Array, change: Array) -> float:

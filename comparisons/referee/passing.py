@@ -39,27 +39,14 @@ and those of a followed path do not of a node that ends beyond it."""
 
 
 class Passage(NamedTuple):
-    """A node that gets behind a beam up to a load parameter: through it, if that is certain."""
+    """A sentence on a node that gets behind a beam: through it, if that is certain."""
 
-    pair: str
-    load_parameter: float
+    sentence: str
     certain: bool
 
-    def __str__(self) -> str:
-        if self.certain:
-            return f"{self.pair} is open and its node goes through the beam up to load parameter {self.load_parameter:.6g}"
-        return (
-            f"the path up to load parameter {self.load_parameter:.6g} is not found, on which the node of {self.pair} "
-            "gets behind the beam, through it or past its end"
-        )
 
-
-class _Moment(NamedTuple):
-    """A load parameter, with the axis of a beam and the place of a node."""
-
-    t: float
-    line: Array
-    node: Array
+Moment = tuple[float, Array, Array]
+"""A load parameter, with the axis of a beam and the place of a node."""
 
 
 @lru_cache(maxsize=1)
@@ -76,9 +63,7 @@ def passages(response: Response, scene: Scene) -> Iterator[Passage]:
     """Yield every open pair whose node passed through the beam, or may have."""
     follow = cache(lambda k: _followed(response, scene, k))
     for spec in scene.contacts:
-        through = _Pair(response, scene, spec, follow).passed_through()
-        if through is not None:
-            yield through
+        yield from _Pair(response, scene, spec, follow).passed_through()
 
 
 def changes(response: Response, scene: Scene) -> Iterator[str]:
@@ -88,11 +73,7 @@ def changes(response: Response, scene: Scene) -> Iterator[str]:
     times = np.concatenate([[0.0], response.load_parameter])
     for spec in scene.contacts:
         contact = response.contacts[spec.pair]
-        own = [
-            event
-            for event in response.events
-            if event.pair == spec.pair and event.kind not in (*STAYS, PASSES)
-        ]
+        own = [event for event in changes_of(response, spec.pair) if event.kind not in STAYS]
         if np.isfinite(contact.slip_off) and not any(event.kind == "slip-off" for event in own):
             yield f"{spec.pair} slips off at load parameter {contact.slip_off:.6g} without an event"
         closed = contact.force != 0.0
@@ -112,10 +93,11 @@ class _Pair:
         self.response, self.scene, self.spec, self.follow = response, scene, spec, follow
         self.near, self.face = 1e-6 * scene.beam(spec.beam).length, face_of(scene, spec)
 
-    def passed_through(self) -> Passage | None:
-        """The first passage of the open node that is certain, or one that is not; None without one, and after a slip-off."""
+    def passed_through(self) -> Iterator[Passage]:
+        """Yield the first passage of the open node that is certain, or one that is not; none after a slip-off."""
         # axes and ends move in straight lines; where a node gets behind the beam, along the path that is followed
-        contact, unsure, moment = self.response.contacts[self.spec.pair], None, cache(self.moment)
+        pair, unsure, moment = self.spec.pair, "", cache(self.moment)
+        contact = self.response.contacts[pair]
         closed, stated = np.append(False, contact.force > 0.0), self.response.events is not None
         for k, t in enumerate(map(float, self.response.load_parameter)):
             if t >= contact.slip_off:
@@ -128,16 +110,22 @@ class _Pair:
                 continue
             way = self.follow(k)
             if self.passes(way, held) if way else depth > _UNSURE and not held:
-                return Passage(self.spec.pair, t, certain=True)
+                words = f"{pair} is open and its node goes through the beam up to load parameter {t:.6g}"
+                yield Passage(words, certain=True)
+                return
             if not way:
-                unsure = unsure or Passage(self.spec.pair, t, certain=False)
-        return unsure
+                unsure = unsure or (
+                    f"the path up to load parameter {t:.6g} is not found, on which the node of {pair} "
+                    "gets behind the beam, through it or past its end"
+                )
+        if unsure:
+            yield Passage(unsure, certain=False)
 
     def passes(self, way: list[Equilibrium], before: bool) -> bool:
         """Whether the node, first at the pair's side or closed, passes through the beam on a way, and does not return."""
         beam, node, through = self.spec.beam, self.spec.node, False
         arcs = self.response.axis_line(beam, 0)[0]
-        steps = [_Moment(one.load_parameter, one.shape(beam, arcs).position, one.place(node)) for one in way]
+        steps = [(one.load_parameter, one.shape(beam, arcs).position, one.place(node)) for one in way]
         for begin, end in pairwise(steps):
             gap, inside = self.place(end)
             through = through or self.depth(begin, end, before) >= (_NEARLY if inside < 0.0 else 0.0)
@@ -145,49 +133,40 @@ class _Pair:
             through = through and not before
         return through
 
-    def depth(self, begin: _Moment, end: _Moment, before: bool) -> float:
+    def depth(self, begin: Moment, end: Moment, before: bool) -> float:
         """How far inside the beam's ends the node gets from `before` the beam behind it, over its path; -inf if it does not."""
-        gap, _ = self.place(begin)
         if self.place(end)[0] >= -self.near:
             return -math.inf
-        parts, touched = np.linspace(0.0, 1.0, SAMPLES), np.concatenate([begin.line, end.line])
-        nodes = (1.0 - parts)[:, None] * begin.node + parts[:, None] * end.node
-        if "." not in self.spec.node:
-            pin = self.scene.pin(self.spec.node)
-            nodes = np.array([pin.position(float((1.0 - u) * begin.t + u * end.t)) for u in parts])
-        moved = (nodes[-1] - nodes[0]) - (end.line - begin.line)
-        way = np.hypot(*moved[[0, -1]].T).max() + self.near
-        apart = np.maximum(nodes.min(axis=0) - touched.max(axis=0), touched.min(axis=0) - nodes.max(axis=0))
-        widest = max(self.face.reach(arc) for arc in (0.0, self.scene.beam(self.spec.beam).length))
-        if apart.max() > widest + _UNSURE * way:
-            return -math.inf
-        # a node whose nearest point becomes another one does not cross the beam
-        most = (
-            np.hypot(*np.diff(nodes, axis=0).T).max() + np.hypot(*(end.line - begin.line).T).max() / SAMPLES
+        parts = np.linspace(0.0, 1.0, SAMPLES)
+        times, lines, nodes = (
+            [(1.0 - u) * a + u * b for u in parts] for a, b in zip(begin, end, strict=True)
         )
-        deep, before = -math.inf, before or gap >= -self.near
-        for u, node in zip(parts[1:], nodes[1:], strict=True):
-            last, (gap, inside) = gap, self.place(_Moment(u, (1.0 - u) * begin.line + u * end.line, node))
-            behind = gap < -self.near
-            if before and behind and gap >= min(last, 0.0) - 2.0 * most:
-                deep = max(deep, inside / way)
-            before = not behind
-        return deep
+        if "." not in self.spec.node:
+            nodes = [np.array(self.scene.pin(self.spec.node).position(float(t))) for t in times]
+        moved = lines[-1] - lines[0]
+        way = np.hypot(*(nodes[-1] - nodes[0] - moved[[0, -1]]).T).max() + self.near
+        gaps, insides = np.transpose([self.place(item) for item in zip(times, lines, nodes, strict=True)])
+        # a node whose nearest point becomes another one does not cross the beam
+        most = np.hypot(*np.diff(nodes, axis=0).T).max() + np.hypot(*moved.T).max() / SAMPLES
+        ahead = gaps >= -self.near
+        ahead[0] |= before
+        through = ahead[:-1] & ~ahead[1:] & (gaps[1:] >= np.minimum(gaps[:-1], 0.0) - 2.0 * most)
+        return float(np.max(insides[1:][through] / way, initial=-math.inf))
 
-    def moment(self, k: int) -> _Moment:
+    def moment(self, k: int) -> Moment:
         """The beam and the node at load parameter k; undeformed for k = -1."""
         arc, line = self.response.axis_line(self.spec.beam, max(k, 0))
         node = place_of(self.response, self.scene, self.spec.node, k)
         if k < 0:
-            return _Moment(0.0, axis_at_rest(self.scene.beam(self.spec.beam), arc), node)
-        return _Moment(float(self.response.load_parameter[k]), line, node)
+            return 0.0, axis_at_rest(self.scene.beam(self.spec.beam), arc), node
+        return float(self.response.load_parameter[k]), line, node
 
-    def place(self, now: _Moment) -> tuple[float, float]:
+    def place(self, now: Moment) -> tuple[float, float]:
         """Gap of the node from the curve of touching nodes, which goes on straight beyond the ends, and distance inside the nearer end."""
-        line = now.line
-        nearest = int(np.argmin(np.hypot(*(line - now.node).T)))
+        _, line, node = now
+        nearest = int(np.argmin(np.hypot(*(line - node).T)))
         first, last = max(nearest - 1, 0), min(nearest + 1, len(line) - 1)
-        tangent, away = line[last] - line[first], now.node - line[nearest]
+        tangent, away = line[last] - line[first], node - line[nearest]
         tangent = tangent / np.hypot(*tangent)
         arcs = np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))
         arc = float(arcs[nearest] + tangent @ away)
@@ -205,10 +184,8 @@ def _followed(response: Response, scene: Scene, k: int) -> list[Equilibrium]:
         return equilibrium(scene, replace(answer_state(response, scene, n), grips=grips))
 
     try:
-        begin, end = at(k - 1), at(k)
-        held = history.around if history else None
-        found = begin.found and end.found
-        way = way_to(response, begin, end.load_parameter, held, _STEPS) if found else []
+        begin, end, held = at(k - 1), at(k), history.around if history else None
+        way = way_to(response, begin, end.load_parameter, held, _STEPS) if end.found else []
     except UnknownFrictionError:
         return []
     return way if way and same(way[-1], end) else []
@@ -234,23 +211,10 @@ def misstated(
         if event.kind == PASSES or any(spec.friction for spec in scene.contacts):
             continue
         for k in (after - 1, after)[: 1 if event.kind in OPENS else 2]:
-            there = _beside(response, event, found.get(k))
-            wrong = "" if there is None else _wrong(specs[event.pair], event, there, found[k], allowed)
-            if wrong:
+            for wrong in _wrong(response, specs[event.pair], event, found[k], allowed) if k in found else ():
                 yield f"{event.kind} of {event.pair} at load parameter {t:.6g}: {wrong}"
     for spec in scene.contacts:
         yield from _disorder(response, spec)
-
-
-def _beside(response: Response, event: ContactEvent, near: Equilibrium | None) -> Equilibrium | None:
-    """Return the equilibrium at an event that follows from one beside it, if nothing else changes in between."""
-    if near is None:
-        return None
-    low, high = sorted((event.load_parameter, near.load_parameter))
-    if any(low <= one.load_parameter <= high for one in changes_of(response) if one is not event):
-        return None
-    found = reach(near, event.load_parameter, near.layout.grips, halvings=2)
-    return found if found.found else None
 
 
 def _disorder(response: Response, spec: ContactSpec) -> Iterator[str]:
@@ -268,16 +232,29 @@ def _disorder(response: Response, spec: ContactSpec) -> Iterator[str]:
 
 
 def _wrong(
-    spec: ContactSpec, event: ContactEvent, there: Equilibrium, beside: Equilibrium, allowed: float
-) -> str:
-    """Return what an event states otherwise than the equilibrium there, whose force may vanish; empty if it states the same."""
-    length, contact = there.scene.beam(spec.beam).length, there.contacts.get(spec.pair)
+    response: Response, spec: ContactSpec, event: ContactEvent, beside: Equilibrium, allowed: float
+) -> Iterator[str]:
+    """Yield what an event states otherwise than the equilibrium there, whose force may vanish, if nothing else changes from the one beside it."""
+    low, high = sorted((event.load_parameter, beside.load_parameter))
+    if any(low <= one.load_parameter <= high for one in changes_of(response) if one is not event):
+        return
+    there = reach(beside, event.load_parameter, beside.layout.grips, halvings=2)
+    length, contact, closes = (
+        there.scene.beam(spec.beam).length,
+        there.contacts.get(spec.pair),
+        event.kind in CLOSES,
+    )
+    if not there.found:
+        return
     if contact is None:
-        off = gap_off(there, spec, 0.0) / length if event.kind in CLOSES else 0.0
-        return "" if off <= allowed else f"the node is {off:.2g} L away"
+        off = gap_off(there, spec, 0.0) / length if closes else 0.0
+        if not off <= allowed:
+            yield f"the node is {off:.2g} L away"
+        return
     off = abs(contact.arc_position - event.arc_position) / length
+    force = 0.0 if closes else math.hypot(*contact.force)
+    lost = abs(force - event.force) / max(largest_force(there), largest_force(beside))
     if not off <= allowed:
-        return f"arc position off by {off:.2g}"
-    force = 0.0 if event.kind in CLOSES else math.hypot(*contact.force)
-    off = abs(force - event.force) / max(largest_force(there), largest_force(beside))
-    return "" if off <= allowed else f"contact force off by {off:.2g}"
+        yield f"arc position off by {off:.2g}"
+    elif not lost <= allowed:
+        yield f"contact force off by {lost:.2g}"

@@ -14,7 +14,7 @@ from comparisons.referee.grip import LOOSE, Grip
 from comparisons.referee.layout import lay_out
 from comparisons.referee.newton import correct, newton_step, switched, undeformed
 from comparisons.referee.rod import largest
-from comparisons.referee.state import Change, Equilibrium, located
+from comparisons.referee.state import Equilibrium
 from comparisons.scene import Scene
 
 Held = Callable[[float], Mapping[str, Grip]]
@@ -49,14 +49,15 @@ _PLACES = np.linspace(0.0, 1.0, 33)
 """Fractions of a part at which rotations are compared."""
 _LEAVING = 1e-3
 """Part of the way to the next change, behind which a contact that touches has a force, and two that pass each other are apart."""
+SAME = 1e-9
+"""Distance of load parameters that are one."""
 CLOSES, OPENS, STAYS, PASSES = ("touch",), ("release", "slip-off"), ("slip", "stick"), "pass-through"
 """Kinds of events at which a contact closes, opens, by a slip-off with a jump, stays closed, and at which nothing changes."""
 
 
 def changes_of(response: Response, pair: str = "") -> list[ContactEvent]:
     """Return the events at which a contact, or any one, changes; at a pass-through none does."""
-    events = [event for event in response.events or () if event.kind != PASSES]
-    return [event for event in events if pair in ("", event.pair)]
+    return [one for one in response.events or () if one.kind != PASSES and pair in ("", one.pair)]
 
 
 def corners(scene: Scene) -> tuple[float, ...]:
@@ -68,13 +69,14 @@ def corners(scene: Scene) -> tuple[float, ...]:
 def moved(now: Equilibrium, t: float, grips: Mapping[str, Grip]) -> Equilibrium:
     """Return the guess at load parameter t with the contacts of an equilibrium and its unknowns."""
     layout = lay_out(now.layout.scene, t, now.closed, grips)
-    return Equilibrium(layout=layout, mesh=mesh_of(layout, now.mesh.grids), z=now.z, bubbles=now.bubbles)
+    return Equilibrium(mesh=mesh_of(layout, now.mesh.grids), z=now.z)
 
 
 def reach(near: Equilibrium, t: float, grips: Mapping[str, Grip], halvings: int = _HALVINGS) -> Equilibrium:
     """Return the equilibrium at load parameter t with the same contacts, held by `grips`, by steps from `near`."""
     there = correct(moved(near, t, grips), _ITERATIONS)
-    turning = [k for k in (item.numbers[2] for item in there.layout.stations) if k >= 0]
+    turning = there.layout.tables[0][:, 2]
+    turning = turning[turning >= 0]
     turned = largest(there.z[turning] - near.z[turning])
     if (there.found and turned < _TURN) or not halvings or near.load_parameter == t:
         return there
@@ -82,32 +84,29 @@ def reach(near: Equilibrium, t: float, grips: Mapping[str, Grip], halvings: int 
     return reach(middle, t, grips, halvings - 1) if middle.found else middle
 
 
-def tangent(now: Equilibrium, little: float) -> Change:
-    """Rates of the unknowns and bubbles per load parameter, by a difference over `little`."""
-    nothing = np.zeros_like(now.z), np.zeros_like(now.bubbles)
+def tangent(now: Equilibrium, little: float) -> Array:
+    """Rates of the unknowns per load parameter, by a difference over `little`."""
     if little == 0.0:
-        return nothing
-    ahead = newton_step(moved(now, now.load_parameter + little, now.layout.grips)) or nothing
+        return np.zeros_like(now.z)
+    ahead = np.nan_to_num(newton_step(moved(now, now.load_parameter + little, now.layout.grips)))
     # in a stage that changes nothing the difference is round-off alone, which the correction here has too
-    here = (newton_step(now) or nothing) if now.layout.scene.stages else nothing
-    return (ahead[0] - here[0]) / little, (ahead[1] - here[1]) / little
+    here = np.nan_to_num(newton_step(now)) if now.scene.stages else 0.0
+    return np.asarray((ahead - here) / little)
 
 
 def departures(response: Response, states: Mapping[int, Equilibrium]) -> Iterator[str]:
     """Yield reasons why equilibria, by number, are not on the path from rest, which is followed from each to the next through the events."""
     # not where a contact slips off, or friction changes its direction
-    closed = [
-        {pair for pair, item in response.contacts.items() if item.force[k] != 0.0}
-        for k in range(len(response.load_parameter))
-    ]
     now, begin = None, 0
     for k, there in states.items():
         now = now or at_rest(there.scene)
-        stated = response.events is not None or all(own == now.closed.keys() for own in closed[begin : k + 1])
+        stated = response.events is not None or all(
+            np.all((item.force[begin : k + 1] != 0.0) == (pair in now.closed))
+            for pair, item in response.contacts.items()
+        )
         for way in way_to(response, now, there.load_parameter, steps=0)[-1:] if stated else ():
-            # beyond an event that is stated within an allowance only, a path that is not found tells nothing
-            if _alike(way, there) and (way is now or not _followed(way, there.load_parameter, there)[1]):
-                yield from filter(None, [departs(way, there)])
+            if _alike(way, there):
+                yield from _departs(way, there, beyond=way is not now)
         now, begin = there, k
 
 
@@ -147,9 +146,9 @@ def way_to(
 def _passed(now: Equilibrium, end: float) -> Equilibrium | None:
     """Return the equilibrium behind the place where two contacts pass each other on a beam; None where they do not."""
     layout, left = now.layout, end - now.load_parameter
-    ahead = now.z + _LEAVING * left * tangent(now, _LITTLE * left)[0]
+    ahead = now.z + _LEAVING * left * tangent(now, _LITTLE * left)
     if np.diff(layout.extents(ahead)).min() < 0.0 and largest((ahead - now.z)[layout.arcs]) < _MEETING:
-        arcs = {touch.spec.pair: float(ahead[touch.arc]) * layout.length for touch in layout.touches}
+        arcs = {pair: float(ahead[touch.arc]) * layout.length for pair, touch in layout.touches.items()}
         behind = switched(now, arcs, layout.grips, now.load_parameter + _LEAVING * left)
         return behind if behind.found and _kind(behind) == _kind(now) else None
     return None
@@ -180,7 +179,7 @@ def _changed(now: Equilibrium, event: ContactEvent, grips: Mapping[str, Grip], a
 def _pushed(now: Equilibrium) -> Equilibrium:
     """Return a guess with a little more force at the contacts; without any the direction of a face is stationary at every place."""
     z = now.z.copy()
-    for touch in now.layout.touches:
+    for touch in now.layout.touches.values():
         if touch.angle >= 0:
             force, phi = now.layout.beside(touch)[0].force, z[touch.angle]
             z[force : force + 2] += _LITTLE * touch.face.left * np.array([np.sin(phi), -np.cos(phi)])
@@ -192,7 +191,7 @@ def _alike(one: Equilibrium, other: Equilibrium) -> bool:
     if not one.found or one.closed.keys() != other.closed.keys():
         return False
     slips = [{pair: grip.slip for pair, grip in item.layout.grips.items()} for item in (one, other)]
-    orders = [[(part.beam, part.first, part.last) for part in item.layout.parts] for item in (one, other)]
+    orders = [[(part.beam, part.stations) for part in item.layout.parts] for item in (one, other)]
     return slips[0] == slips[1] and orders[0] == orders[1]
 
 
@@ -203,26 +202,26 @@ def same(one: Equilibrium, other: Equilibrium) -> bool:
 
 def at_rest(scene: Scene) -> Equilibrium:
     """Return the undeformed state of a scene with all contacts open."""
-    return correct(undeformed(lay_out(scene, 0.0, {}), 3), 6)
+    return correct(undeformed(lay_out(scene, 0.0, {})), 6)
 
 
-def departs(first: Equilibrium, last: Equilibrium) -> str:
-    """Return the reason why the path from `first` does not lead to `last` with the same contacts; empty if it does."""
+def _departs(first: Equilibrium, last: Equilibrium, *, beyond: bool) -> Iterator[str]:
+    """Yield the reason why the path from `first`, or from `beyond` an event, does not lead to `last` with the same contacts."""
     start, end = first.load_parameter, last.load_parameter
     there, stopped = _followed(first, end, last)
     if not stopped:
         off = _apart(there, last)
-        words = (
-            f"the path from load parameter {start:.6g} ends on another branch at {end:.6g}, {off:.2g} L away"
-        )
-        return "" if off < _SAME else words
+        if not off < _SAME:
+            yield f"the path from load parameter {start:.6g} ends on another branch at {end:.6g}, {off:.2g} L away"
+    # beyond an event that is stated within an allowance only, a path that is not found tells nothing
+    if not stopped or beyond:
+        return
     # where it ends at a bifurcation, all stable branches that lead back to it are right
     back, stopped = _followed(last, start)
     met, t = back.load_parameter, there.load_parameter
-    if stopped and abs(met - t) < _MEET * (end - start) and _apart(there, back) < _MEETING:
-        return ""
-    kind = "" if first.index < 0 else f" of index {first.index}"
-    return f"no continuous path{kind} leads on beyond load parameter {t:.6g}"
+    if not stopped or abs(met - t) >= _MEET * (end - start) or _apart(there, back) >= _MEETING:
+        kind = "" if first.index < 0 else f" of index {first.index}"
+        yield f"no continuous path{kind} leads on beyond load parameter {t:.6g}"
 
 
 def _followed(first: Equilibrium, end: float, last: Equilibrium | None = None) -> tuple[Equilibrium, bool]:
@@ -240,7 +239,7 @@ def _followed(first: Equilibrium, end: float, last: Equilibrium | None = None) -
             return now, False
         stop = sign * next(t for t in stops if t > sign * here)
         left = abs(stop - here)
-        rate = rate or tangent(now, sign * _LITTLE * left)
+        rate = tangent(now, sign * _LITTLE * left) if rate is None else rate
         t = here + sign * step if step < left - _ROUND_OFF * ways else stop
         if t == here:
             return now, True
@@ -248,7 +247,7 @@ def _followed(first: Equilibrium, end: float, last: Equilibrium | None = None) -
         if last and t == end:
             off, behind = _unexplained(now, rate, last, index)
         if off >= _NEAR:
-            there = correct(moved(now, t, now.layout.grips).plus(rate, t - here), _ITERATIONS)
+            there = correct(moved(now, t, now.layout.grips).plus((t - here) * rate), _ITERATIONS)
             off, behind = _unexplained(now, rate, there, index)
         step = min(step, abs(t - here)) * float(np.clip(_AIM / max(off, 1e-300), 0.25, 3.0))
         if off < _NEAR:
@@ -258,9 +257,7 @@ def _followed(first: Equilibrium, end: float, last: Equilibrium | None = None) -
     return now, True
 
 
-def _unexplained(
-    now: Equilibrium, rate: Change, there: Equilibrium, index: int
-) -> tuple[float, Change | None]:
+def _unexplained(now: Equilibrium, rate: Array, there: Equilibrium, index: int) -> tuple[float, Array | None]:
     """Largest part of a step that the tangents at its ends do not explain, and the tangent at its end; infinite off the branch."""
     if not there.found or _kind(there) != index:
         return np.inf, None
@@ -276,10 +273,10 @@ def _kind(now: Equilibrium) -> int:
     return orientation_of(now.system) if now.layout.grips else now.index
 
 
-def _off(now: Equilibrium, rate: Change, there: Equilibrium) -> float:
+def _off(now: Equilibrium, rate: Array, there: Equilibrium) -> float:
     """Error of a prediction along a tangent over the change from one state to another; infinite for a large error."""
-    guess = replace(now, layout=there.layout, mesh=mesh_of(there.layout, now.mesh.grids))
-    off = _apart(guess.plus(rate, there.load_parameter - now.load_parameter), there)
+    guess = replace(now, mesh=mesh_of(there.layout, now.mesh.grids))
+    off = _apart(guess.plus((there.load_parameter - now.load_parameter) * rate), there)
     return off / (_apart(now, there) + _ROUND_OFF) if off < _SHORT else np.inf
 
 
@@ -292,4 +289,4 @@ def _state(now: Equilibrium) -> Array:
     """Displacements, arc positions and directions of the stations, and the rotations along all parts."""
     layout = now.layout
     rest = np.delete(now.z[: layout.unknowns], layout.forces)
-    return np.append(rest, located(now, np.arange(len(layout.parts))[:, None], _PLACES)[2])
+    return np.append(rest, now.located(np.arange(len(layout.parts))[:, None], _PLACES)[2])

@@ -18,17 +18,14 @@ import numpy as np
 from numpy.polynomial.polynomial import polyint, polymul, polyval
 
 from comparisons.answer import Array
-from comparisons.frozen import Frozen
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 
-Units = tuple[float, float]
-"""Units of length and force."""
 _TERMS = 5
 """Number of coefficients of a polynomial: a tapered width times the cube of a tapered height has most."""
 
 
-def units_of(scene: Scene) -> Units:
-    """Return the longest beam's length, and the largest EI over its square."""
+def units_of(scene: Scene) -> tuple[float, float]:
+    """Return the units of length and force: the longest beam's length, and the largest EI over its square."""
     length = max(beam.length for beam in scene.beams)
     return length, max(beam.EI for beam in scene.beams) / length**2
 
@@ -54,12 +51,12 @@ class Strained(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """A piece of a rod with a polynomial load, shape (1,), or an array (...) of pieces, in `Units`.
+    """A piece of a rod with a polynomial load, shape (1,), or an array (...) of pieces, in the units of `units_of`.
 
     Arc positions and rotations are arrays that broadcast against the pieces, and may be complex.
     """
 
-    #: Coefficients (5, 5, ...) of EI, EA, GA, W_x and W_y as polynomials in the arc position, ascending.
+    #: Coefficients (5, 5, ...) of EA, GA, EI, W_x and W_y as polynomials in the arc position, ascending.
     coefficients: Array
     curvature: Array
     start_angle: Array  #: Angle of the undeformed axis at the start of the rod.
@@ -68,23 +65,15 @@ class Piece(NamedTuple):
         """Angle beta of the undeformed axis."""
         return self.curvature * s + self.start_angle
 
-    def EI(self, s: Any) -> Any:
-        """Return the bending stiffness."""
-        return value(self.coefficients[:, 0], s)
-
     def between(self, a: Any, b: Any) -> Array:
         """Vector (2, ...) between two points of the undeformed axis."""
         angle = self.angle((a + b) / 2.0)
         chord = (b - a) * np.sinc(self.curvature * (b - a) / (2.0 * math.pi))
         return np.array([chord * np.cos(angle), chord * np.sin(angle)])
 
-    def force(self, c: Any, s: Any) -> Any:
-        """Force ``c - W`` (2, ...)."""
-        return c - value(self.coefficients[:, 3:], s)
-
     def strained(self, c: Any, s: Any, theta: Any) -> Strained:
         """Return the forces, and ``r' = (1 + N/EA) d1 + (Q/GA) d2`` minus the undeformed tangent, without cancellation."""
-        EI, EA, GA, *W = value(self.coefficients, s)
+        EA, GA, EI, *W = value(self.coefficients, s)
         stretch, shear, n, half = 1.0 / EA, 1.0 / GA, c - W, theta / 2.0
         angle, chord = theta + self.angle(s), 2.0 * np.sin(half)
         x, y = np.cos(angle), np.sin(angle)
@@ -100,52 +89,36 @@ class Piece(NamedTuple):
         return self.strained(c, s, theta).way + np.array([np.cos(self.angle(s)), np.sin(self.angle(s))])
 
 
-class Rod(Frozen):
-    """A beam in the units of a layout."""
-
-    length: float
-    softest: tuple[float, float, float]  #: Smallest EI, largest 1/EA and largest 1/GA along the beam.
-    pieces: tuple[Piece, ...]
-    #: Arc positions of the ends of pieces: the beam's ends, ends of line loads, and point loads inside.
-    breaks: list[float]
-
-    @property
-    def curvature(self) -> float:
-        """Curvature kappa0 of the undeformed axis."""
-        return float(self.pieces[0].curvature[0])
-
-
 def trimmed(table: Array) -> Array:
     """Coefficients (k, 5, ...) without the highest powers, if these are zero."""
     return table[: 1 + np.flatnonzero(np.any(table, axis=(1, 2)))[-1]]
 
 
-def rod_of(scene: Scene, beam: BeamSpec, t: float, units: Units) -> Rod:
-    """Return a beam as a rod with the load along it at load parameter t."""
-    length, force = units
+def rod_of(scene: Scene, beam: BeamSpec, t: float) -> tuple[list[float], list[Piece]]:
+    """Return a beam as pieces, and the arc positions of their ends: the beam's ends, ends of line loads, and point loads inside."""
+    length, force = units_of(scene)
     extent = beam.length / length
     width, height = (_linear(given, extent) for given in (beam.width, beam.height))
-    EA, GA, EI = beam.stiffness(0.0)
     area: Any = np.ones(1)
     second = area
     if beam.tapers:
         area, second = polymul(width, height), polymul(polymul(width, height), polymul(height, height))
-    stiffness = np.zeros((_TERMS, 3))
-    for k, (size, shape) in enumerate(
-        ((EI / (force * length**2), second), (EA / force, area), (GA / force, area))
-    ):
-        stiffness[: len(shape), k] = size * shape / shape[0]
-    EI, EA, GA = np.minimum(stiffness[0], polyval(extent, stiffness)).tolist()
-    spans = [(item.load.span, item) for item in scene.load_histories if item.load.beam == beam.name]
+    stiffness, sizes = (
+        np.zeros((_TERMS, 3)),
+        np.array(beam.stiffness(0.0)) / (force, force, force * length**2),
+    )
+    for column, size, shape in zip(stiffness.T, sizes, (area, area, second), strict=True):
+        column[: len(shape)] = size * shape / shape[0]
+    loads = [item for item in scene.load_histories if item.load.beam == beam.name]
     densities = [
-        (a * extent, b * extent, np.array([item.at(t)[:2]]) * length / force)
-        for (a, b), item in spans
+        (item.load.span[0] * extent, item.load.span[1] * extent, np.array([item.at(t)[:2]]) * length / force)
+        for item in loads
         if item.load.force_per_length is not None
     ]
     if beam.density:
         weight = beam.density * beam.section(0.0)[0] * length / force * area / area[0]
         densities.append((0.0, extent, np.outer(weight, scene.gravity_at(t))))
-    breaks = {item.load.at * extent for _, item in spans if item.load.at is not None}
+    breaks = {item.load.at * extent for item in loads if item.load.at is not None}
     places = sorted({0.0, extent, *breaks, *(s for a, b, _ in densities for s in (a, b))})
     axis = np.array([beam.turn / extent]), np.array([math.atan2(*beam.direction[::-1]) - beam.turn / 2.0])
     before: Any = np.zeros(2)
@@ -159,12 +132,12 @@ def rod_of(scene: Scene, beam: BeamSpec, t: float, units: Units) -> Rod:
         W[0] += before
         before = polyval(b, W)
         pieces.append(Piece(np.hstack([stiffness, W])[..., None], *axis))
-    return Rod(length=extent, softest=(EI, 1.0 / EA, 1.0 / GA), pieces=tuple(pieces), breaks=places)
+    return places, pieces
 
 
 def _linear(given: float | tuple[float, float] | None, extent: float) -> Array:
     """Coefficients of a dimension along the beam."""
-    first, last = given if isinstance(given, tuple) else (given or 0.0, given or 0.0)
+    first, last = np.broadcast_to(given or 0.0, 2)
     return np.array([first, (last - first) / extent])
 
 
@@ -193,19 +166,15 @@ class Face(NamedTuple):
 def face_of(scene: Scene, spec: ContactSpec, unit: float = 1.0) -> Face:
     """Return where the node of a pair touches, in units of length."""
     beam, left, radius = scene.beam(spec.beam), 1.0 if spec.side == "left" else -1.0, scene.radius(spec)
-    steep = (beam.height_at(1.0) - beam.height_at(0.0)) / (2.0 * beam.length)
-    if spec.surface == "axis" or not steep:
-        return Face(left, scene.offset(spec) / unit, 0.0, radius / unit)
+    first, last = (scene.offset(spec, part) - radius for part in (0.0, 1.0))
+    steep = (last - first) / beam.length
     slope = steep / math.hypot(1.0, steep)
-    start = radius + beam.height_at(0.0) / 2.0 * math.sqrt(1.0 - slope**2)
-    return Face(left, start / unit, slope, radius / unit)
+    return Face(left, (radius + first * math.sqrt(1.0 - slope**2)) / unit, slope, radius / unit)
 
 
 def axis_at_rest(beam: BeamSpec, arcs: Array) -> Array:
-    """Undeformed positions (m, 2) of points of a beam's axis, exactly in a line where it is straight."""
-    if beam.turn:
-        return np.array([beam.place(part) for part in (arcs / beam.length).tolist()])
-    return np.asarray(np.array(beam.start) + np.outer(arcs, beam.direction))
+    """Undeformed positions (m, 2) of points of a beam's axis."""
+    return np.array([beam.place(part) for part in (arcs / beam.length).tolist()])
 
 
 def cross(a: Array, b: Array) -> Any:

@@ -13,12 +13,12 @@ from typing import TypeVar
 import numpy as np
 
 from comparisons.answer import Response
-from comparisons.referee.friction.phases import OPEN, SAME, UNKNOWN, Phase, phases, states
+from comparisons.referee.friction.phases import OPEN, UNKNOWN, Phase, phases, states
 from comparisons.referee.friction.slip import place, relative_slip_rate, roll, slip_rate
 from comparisons.referee.grip import LOOSE, Grip, Hold, UnknownFrictionError
 from comparisons.referee.guess import answer_state
 from comparisons.referee.newton import equilibrium
-from comparisons.referee.path import corners, reach
+from comparisons.referee.path import SAME, corners, reach
 from comparisons.referee.rod import face_of, units_of
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import ContactSpec, Scene
@@ -54,8 +54,7 @@ class History:
         self.taken = "; ".join(how)
         self._begins: dict[Phase, Equilibrium] = {}
         self._signs: dict[Phase, int] = {}
-        self._holds: dict[Phase, Hold] = {}
-        self._reached: dict[Phase, Hold] = {}
+        self._sticks: dict[Phase, tuple[Hold, Hold]] = {}
         """Where sticks began, and the places up to which they were followed."""
         changes = [phase.begin for own in self.phases.values() for phase in own[1:]]
         times = sorted([0.0, *changes, *corners(scene), float(np.max(response.load_parameter, initial=0.0))])
@@ -101,27 +100,26 @@ class History:
             slip = self._once(self._signs, phase, self._sign)
         if slip:
             return Grip(friction=spec.friction, slip=slip)
-        if phase not in self._holds:
+        if phase not in self._sticks:
             begin = at_rest(self.scene, spec)
             if phase.before is not None:
-                solution = self.begin(phase)
-                begin = place(solution, solution.layout.touch(spec.pair))
-            self._holds[phase] = self._reached[phase] = begin
-        if spec.surface == "face" or self.scene.radius(spec):
+                begin = place(self.begin(phase), spec.pair)
+            self._sticks[phase] = begin, begin
+        if self.scene.offset(spec):
             for first, last in pairwise(self._cuts):
                 if phase.begin <= first + SAME and first < until - SAME:
                     self._roll(phase, first, last)
-        return Grip(friction=spec.friction, slip=0, hold=self._holds[phase])
+        return Grip(friction=spec.friction, slip=0, hold=self._sticks[phase][0])
 
     def _roll(self, phase: Phase, first: float, last: float) -> None:
         """Follow the contacts that stick between two neighbouring changes, as far as this has not been done."""
-        if self._reached[phase].load_parameter > last - SAME:
+        if self._sticks[phase][1].load_parameter > last - SAME:
             return
         middle = (first + last) / 2.0
         grips = self.around(middle, until=first)
         sticking = {pair: self._phase_at(pair, middle) for pair, grip in grips.items() if not grip.slip}
-        begins = {pair: self._reached[item] for pair, item in sticking.items()}
-        begin = max(item.load_parameter for item in begins.values())
+        sticks = {pair: self._sticks[item] for pair, item in sticking.items()}
+        begin = max(reached.load_parameter for _, reached in sticks.values())
         if begin > last - SAME:
             return
         closed = self.closed(middle)
@@ -129,12 +127,10 @@ class History:
         began = [item for item in began if item.closed.keys() == closed]
         # a stick is followed from its begin: at the load parameters of the answer it may have no equilibrium
         latest = max(began, key=lambda item: item.load_parameter, default=None)
-        near = self.near(middle, closed, grips) if latest is None else latest
-        rolled = roll(near, (begin, last), grips, begins)
+        rolled = roll(latest or self.near(middle, closed, grips), (begin, last), grips, sticks)
         if rolled is None:
             raise UnknownFrictionError(f"no equilibria in stick were found up to load parameter {last:.6g}")
-        for pair, item in sticking.items():
-            self._holds[item], self._reached[item] = rolled[0][pair], rolled[1][pair]
+        self._sticks |= {item: rolled[pair] for pair, item in sticking.items()}
 
     def _sign(self, phase: Phase) -> int:
         """Sign of a slip between two load parameters: the one that the slip rate has, too, in the middle of it."""
@@ -147,7 +143,7 @@ class History:
             state = {**around, pair: Grip(friction=phase.spec.friction, slip=sign)}
             with suppress(UnknownFrictionError):
                 now = reach(self.near(t, closed, state), t, state)
-                if now.found and sign * slip_rate(now, now.layout.touch(pair)) > 0.0:
+                if now.found and sign * slip_rate(now, pair) > 0.0:
                     return sign
         raise UnknownFrictionError(f"{pair} slips between two load parameters, and its sign is not stated")
 
@@ -221,9 +217,9 @@ class History:
         """Return an equilibrium with given contacts and state, at a load parameter of the answer that is near t."""
         times = self.response.load_parameter
         after = int(np.searchsorted(times, t))
-        for k in (after - 1, after, after + 1):
-            answer = answer_state(self.response, self.scene, k) if 0 <= k < len(times) else None
-            if answer is None or not closed <= answer.arcs.keys():
+        for k in range(max(after - 1, 0), min(after + 2, len(times))):
+            answer = answer_state(self.response, self.scene, k)
+            if not closed <= answer.arcs.keys():
                 continue
             kept = {pair: arc for pair, arc in answer.arcs.items() if pair in closed}
             # far from t there may be no equilibrium in this state, while frictionless contacts lead to t
@@ -254,28 +250,25 @@ def at_rest(scene: Scene, spec: ContactSpec) -> Hold:
     beam = scene.beam(spec.beam)
     there = scene.place(spec.node) if "." in spec.node else scene.pin(spec.node).position(0.0)
     face = face_of(scene, spec)
-    steep = face.slope
     arc = min(max(beam.projected(there)[1], 0.0), 1.0) * beam.length
-    for _ in range(_FEET if steep else 0):
-        apart = np.array(there) - np.array(beam.place(arc / beam.length))
-        ahead = float(apart @ beam.tangent(arc / beam.length)) + steep * face.reach(arc)
+    for _ in range(_FEET if face.slope else 0):
+        apart = np.array(there) - beam.place(arc / beam.length)
+        ahead = float(apart @ beam.tangent(arc / beam.length)) + face.slope * face.reach(arc)
         arc = min(max(arc + ahead, 0.0), beam.length)
     tilt, (x, y) = math.asin(face.tilt), beam.direction
     return Hold(
-        load_parameter=0.0,
-        arc_position=arc / units_of(scene)[0],
-        stretch=math.sqrt(1.0 - steep**2) + face.lever(arc) * beam.curvature,
-        shear=tilt,
+        load_parameter=0.0, arc_position=arc / units_of(scene)[0], shear=tilt,
+        stretch=math.sqrt(1.0 - face.slope**2) + face.lever(arc) * beam.curvature,
         direction=math.atan2(y, x) + beam.turn * (arc / beam.length - 0.5) + tilt,
-    )
+    )  # fmt: skip
 
 
 def _margin(now: Equilibrium, phase: Phase, own: Grip) -> float:
     """A dimensionless number that is zero where a state ends: push at a touch or release, slip rate in slip, distance from the cone in stick."""
-    touch, opens = now.layout.touch(phase.spec.pair), phase.slip == OPEN
+    pair, opens = phase.spec.pair, phase.slip == OPEN
     if own.friction and own.slip and not opens:
-        return relative_slip_rate(now, touch)
-    contact = now.contacts[touch.spec.pair]
+        return relative_slip_rate(now, pair)
+    contact = now.contacts[pair]
     if opens or not own.friction:
         return contact.push / now.layout.force
     return (own.friction * contact.push - abs(contact.drag)) / now.layout.force

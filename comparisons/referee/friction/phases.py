@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from comparisons.answer import Array, ContactEvent, ContactHistory, Ints, Response
+from comparisons.answer import Array, ContactEvent, Ints, Response
 from comparisons.frozen import Frozen
-from comparisons.referee.path import changes_of
+from comparisons.referee.path import SAME, changes_of
 from comparisons.scene import ContactSpec, Scene
 
 OPEN, UNKNOWN = 9, 8
@@ -15,8 +15,6 @@ _EDGE = 0.05
 """Distance of a force from the edge of the cone, over the cone, up to which an answer without states of friction slips."""
 _MOVED = 1e-3
 """Change of an arc position between two load parameters, over the length, from which such an answer slips."""
-SAME = 1e-9
-"""Load parameters of one event."""
 
 
 class Phase(Frozen):
@@ -55,19 +53,16 @@ def states(response: Response, scene: Scene, spec: ContactSpec) -> tuple[Ints, s
         return np.where(closed, 1, OPEN), ""
     if contact.friction is not None:
         return np.where(closed, np.sign(contact.friction.slip), OPEN), ""
-    slip, taken = _from_arcs(contact, scene.beam(spec.beam).length), "changes of its arc position"
+    # since the load parameter before; at the first, up to the next
+    change = np.nan_to_num(np.diff(contact.arc_position))
+    change = np.append(change[:1], change) if len(change) else np.zeros(len(closed))
+    slip = np.where(np.abs(change) > _MOVED * scene.beam(spec.beam).length, np.sign(change), 0.0)
+    taken = "changes of its arc position"
     if contact.vector is not None:
         ratio = np.array([_leaning(response, spec, contact.vector[k], k) for k in range(len(closed))])
         slip = np.where(np.abs(ratio) >= 1.0 - _EDGE, np.sign(ratio), slip)
         taken = "the direction of its force and " + taken
     return np.where(closed, slip, OPEN).astype(np.int64), taken
-
-
-def _from_arcs(contact: ContactHistory, length: float) -> Ints:
-    """Signs of the changes of the arc position since the load parameter before; at the first, up to the next."""
-    change = np.nan_to_num(np.diff(contact.arc_position))
-    change = np.concatenate([change[:1], change]) if len(change) else np.zeros(len(contact.force))
-    return np.where(np.abs(change) > _MOVED * length, np.sign(change), 0.0).astype(np.int64)
 
 
 def _leaning(response: Response, spec: ContactSpec, force: Array, k: int) -> float:

@@ -14,7 +14,7 @@ from comparisons.referee.friction.phases import OPEN, UNKNOWN
 from comparisons.referee.friction.slip import place, relative_slip_rate, slip_rate
 from comparisons.referee.grip import Hold, UnknownFrictionError
 from comparisons.referee.layout import Touch
-from comparisons.referee.path import corners, reach
+from comparisons.referee.path import SAME, corners, reach
 from comparisons.referee.rod import largest, units_of
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import ContactSpec, Scene
@@ -74,19 +74,17 @@ def _unlawful(history: History, spec: ContactSpec, k: int, law: float) -> Iterat
 
 def rubs_wrongly(history: History, k: int, exact: Equilibrium, allowed: float) -> Iterator[str]:
     """Yield violations of Coulomb's law by more than `allowed` by the exact equilibrium next to an answer, and its moves in stick."""
-    for touch in exact.layout.touches:
-        if touch.grip is None:
-            continue
-        contact, pair = exact.contacts[touch.spec.pair], touch.spec.pair
-        outside = abs(contact.drag) - touch.grip.friction * contact.push
+    for pair, grip in exact.layout.grips.items():
+        contact = exact.contacts[pair]
+        outside = abs(contact.drag) - grip.friction * contact.push
         size = max(math.hypot(*contact.force), least_force(history.scene))
-        if touch.grip.hold is None:
-            if _backwards(exact, touch) > allowed:
+        if grip.hold is None:
+            if _backwards(exact, pair) > allowed:
                 yield f"{pair} slips against the stated direction"
             continue
         if outside > allowed * size:
             yield f"{pair} sticks with an exact force outside its cone, F_t = {contact.drag / contact.push:.6g} F_n"
-        moved = _crept(history, k, touch, touch.grip.hold, exact, allowed)
+        moved = _crept(history, k, exact.layout.touches[pair], grip.hold, exact, allowed)
         if moved:
             yield f"{pair} sticks and moves by {moved:.2g} L"
 
@@ -95,7 +93,7 @@ def _crept(history: History, k: int, touch: Touch, hold: Hold, exact: Equilibriu
     """Move over the length of a held material point, ``A (s - s*) + lever (psi - psi*) + roll (phi - phi*) = 0``; zero within its bound."""
     # an answer states s alone; the angles are exact, and it knows each of the three terms to its accuracy only
     length = history.scene.beam(touch.spec.beam).length
-    here, unit, face = place(exact, touch), exact.layout.length, touch.face
+    here, unit, face = place(exact, touch.spec.pair), exact.layout.length, touch.face
     rolled = unit * (here.arc_position - hold.arc_position)
     sheared = unit * face.lever(here.arc_position) * math.remainder(here.shear - hold.shear, math.tau)
     turned = unit * face.radius * (here.direction - hold.direction)
@@ -117,10 +115,10 @@ def _law(response: Response, allowed: float) -> float:
     return allowed if response.outside or response.continuum else LAW
 
 
-def _backwards(exact: Equilibrium, touch: Touch) -> float:
+def _backwards(exact: Equilibrium, pair: str) -> float:
     """Slip rate against the sign of the slip, over the speed; at a corner of a pin's path the smaller of those before and behind it."""
-    corner = any(abs(exact.load_parameter - t) < 1e-9 for t in corners(exact.scene))
-    return min(-relative_slip_rate(exact, touch, behind=behind) for behind in (False, True)[: 1 + corner])
+    corner = any(abs(exact.load_parameter - t) < SAME for t in corners(exact.scene))
+    return min(-relative_slip_rate(exact, pair, behind=behind) for behind in (False, True)[: 1 + corner])
 
 
 def _spent(history: History, k: int, exact: Equilibrium) -> tuple[float, float]:
@@ -149,8 +147,7 @@ def _misspent(history: History, k: int, exact: Equilibrium, tolerance: float) ->
     for pair, own in dissipated(history, k, exact).items():
         friction = response.contacts[pair].friction
         if friction is not None:
-            spent = friction.dissipated
-            missing = float(spent[k] - (spent[k - 1] if k else 0.0)) - own
+            missing = float(np.diff(friction.dissipated, prepend=0.0)[k]) - own
             if abs(missing) > tolerance * largest:
                 t = response.load_parameter[k]
                 yield f"the dissipation of {pair} up to load parameter {t:.6g} is off by {missing / largest:.2g} of the work"
@@ -181,9 +178,10 @@ def _least_energy(scene: Scene) -> float:
 def _falls(history: History, spec: ContactSpec) -> Iterator[str]:
     """Yield the first load parameter at which the dissipation of a contact is smaller than before."""
     response, friction = history.response, history.response.contacts[spec.pair].friction
-    spent = np.zeros(1) if friction is None else np.append(0.0, friction.dissipated)
-    largest = np.abs(np.append(spent, () if response.work is None else response.work)).max()
-    falls = np.diff(spent) < -FALL * max(largest, _least_energy(history.scene))
+    if friction is None:
+        return
+    sizes = [largest(x) for x in (friction.dissipated, response.work) if x is not None]
+    falls = np.diff(friction.dissipated, prepend=0.0) < -FALL * max(*sizes, _least_energy(history.scene))
     if falls.any():
         yield f"the dissipation of {spec.pair} falls up to load parameter {response.load_parameter[np.argmax(falls)]:.6g}"
 
@@ -256,7 +254,7 @@ def _between(
         now = reach(now, t, grips)
         if not now.found:
             raise UnknownFrictionError(f"no equilibrium was found at load parameter {t:.6g}")
-        rates = [slip_rate(now, now.layout.touch(pair)) * now.layout.length for pair in slipping]
+        rates = [slip_rate(now, pair) * now.layout.length for pair in slipping]
         return np.array([now.contacts[pair].drag for pair in slipping]) * rates
 
     def energy(low: float, high: float, depth: int) -> Array:

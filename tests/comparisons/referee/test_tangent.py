@@ -67,14 +67,16 @@ def test_the_hessian_is_the_derivative_of_the_gradient(name):
     mesh = mesh_of(layout, [np.linspace(0.0, 1.0, 2) for _ in layout.parts])
     random = np.random.default_rng(1)
     z = 0.1 * random.normal(size=mesh.unknowns)
-    for touch, arc in zip(layout.touches, (0.45, 0.6) if name == "every key" else (0.72,), strict=True):
+    for touch, arc in zip(
+        layout.touches.values(), (0.45, 0.6) if name == "every key" else (0.72,), strict=True
+    ):
         z[touch.arc] = arc / layout.length
     bubbles = 0.02 * random.normal(size=(len(mesh.part), DEGREE - 1))
 
     def condensed(z: np.ndarray, iterations: int = 3) -> System:
         nonlocal bubbles
         for _ in range(iterations):
-            system = assemble(layout, mesh, z, bubbles)
+            system = assemble(mesh, np.append(z, bubbles))
             bubbles = bubbles - system.shift
         return system
 
@@ -90,18 +92,18 @@ def test_the_hessian_is_the_derivative_of_the_gradient(name):
 def test_the_direction_of_a_face_follows_the_variations_of_the_axis():
     """The angle phi is no unknown of its own where the index is counted: it changes as ``nu . (r'_- + r'_+)/2 = -offset'`` says."""
     exact = nearest(on_its_face())
-    layout, z, touch = exact.layout, exact.z, exact.layout.touches[0]
+    layout, z, touch = exact.layout, exact.z, next(iter(exact.layout.touches.values()))
 
     def phi(z: np.ndarray) -> float:
         x, y = sum(replace(exact, z=z).tangents(touch)) / 2.0
         return math.atan2(y, x) + math.asin(touch.face.tilt / math.hypot(x, y))
 
     assert phi(z) == pytest.approx(z[touch.angle], abs=1e-12)
-    free = directions(layout, z)
+    free = directions(exact.mesh, z)
     before, behind = layout.beside(touch)
     forces = [part.force + k for part in (before, behind) for k in range(2)]
-    kept = [k for k in range(len(z)) if k != touch.angle]
-    for k in [layout.stations[before.last].numbers[2], *forces, touch.arc]:
+    kept = [k for k in range(exact.mesh.unknowns) if k != touch.angle]
+    for k in [layout.stations[touch.station].numbers[2], *forces, touch.arc]:
         e = 1e-6 * np.eye(len(z))[k]
         difference = (phi(z + e) - phi(z - e)) / 2e-6
         assert free[touch.angle, kept.index(k)] == pytest.approx(difference, rel=1e-6, abs=1e-9)
