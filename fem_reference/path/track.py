@@ -105,6 +105,8 @@ def _dissipated(last: Accepted, found: Accepted, pair: int) -> float:
 
 def state_at(last: Accepted, t: float, *, keep_set: bool = False) -> Accepted | None:
     """Equilibrium at ``t`` from the linear extrapolation of a state; None if it does not converge. ``keep_set`` keeps its contact set."""
+    if t == last.t:
+        return last
     attempt = equilibrium(predict((last,), t), keep_set=keep_set)
     if attempt.status is not Status.CONVERGED:
         return None
