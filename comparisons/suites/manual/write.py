@@ -1,7 +1,6 @@
 """The manual: judgements on the answers, a picture for each problem, and what is found as a page, Markdown, numbers and JUnit checks."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 from functools import partial
 from itertools import chain
 from math import inf, nan
@@ -11,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from comparisons import models as registry
 from comparisons.frozen import Frozen
+from comparisons.models import find
 from comparisons.models.shared import kept
 from comparisons.output import Report, Row, markdown
 from comparisons.report import palette
@@ -31,7 +30,7 @@ from comparisons.suites.manual.measures import (
     deflected,
     undeformed,
 )
-from comparisons.suites.manual.problem import Problem, Quantity, Trial, read_problem
+from comparisons.suites.manual.problem import Problem, Trial, read_problem
 from comparisons.version import versions
 
 PAGE = Path(__file__).with_name("page.md.jinja")
@@ -95,12 +94,11 @@ def _judged(answers: Answers) -> Judgement:
         stopped, values = str(error), [nan] * len(asked)
     seconds = perf_counter() - began
 
-    def found(one: Quantity, value: float) -> Finding:
-        error = inf if stopped else one.error(value)
-        bound = Finding(name=one.name, error=error, allowed=trial.allowed, why=trial.why)
-        return replace(bound, value=value, exact=one.exact)
-
-    findings = tuple(found(*one) for one in zip(asked, values, strict=True))
+    bound = kept(trial, "allowed why")
+    findings = tuple(
+        Finding(error=inf if stopped else one.error(value), value=value, **kept(one, "name exact"), **bound)
+        for one, value in zip(asked, values, strict=True)
+    )
     return Judgement(**vars(answers), findings=findings, seconds=seconds, stopped=stopped)
 
 
@@ -111,8 +109,8 @@ def draw_case(case: Sequence[Judgement], *paths: Path) -> None:
     x, y = picture.axes or (f"x [{length}]", f"y [{length}]")
     # the first model on top, each line wider than those above it, so that those that agree are all seen
     for number, one in reversed(list(enumerate(case))):
-        key, _, element = one.trial.model.partition(" ")
-        colour = palette.colour(f"{registry.find(key).label} {element}".strip())
+        trial = one.trial
+        colour = palette.colour(find(trial.model.split()[0]).family(trial.scene, trial.options))
         size = {"marker": "o", "markersize": 10.0} if picture.guide else {"linewidth": 1.5 + 2.0 * number}
         own = {"color": colour, **size}
         lines += (drawn._replace(style=STYLES.get(drawn.label, own)) for drawn in one.lines)
@@ -207,29 +205,28 @@ def _numbers(case: Sequence[Judgement]) -> dict[str, Any]:
 
 def manual(files: Sequence[Path], report: Report) -> Found:
     """Solve problems, the files of `comparisons.suites.manual.problem.problems`, and judge the answers; `report` takes a line for each problem."""
-    cases = []
+    cases, wrong = list[list[Judgement]](), list[str]()
     for problem in map(read_problem, files):
         case = judged(problem)
         cases.append(case)
-        failed = [item for item in case if not item.passed]
+        failed = [f"{item.trial.label}: {item.failure}" for item in case if not item.passed]
         spent = sum(item.seconds for item in case)
         report(f"{problem.name}: {'FAILED' if failed else 'passed'}, {spent:.1f} s")
-        for item in failed:
-            report(f"  {item.trial.label}: {item.failure}")
+        for line in failed:
+            report(f"  {line}")
+        wrong += (f"{problem.name}, {line}" for line in failed)
     judgements = list(chain.from_iterable(cases))
-    failed = [item for item in judgements if not item.passed]
-    wrong = [f"{item.problem.name}, {item.trial.label}: {item.failure}" for item in failed]
     every = [_answer(item) for item in judgements]
-    links = (f"[{item.problem.title}](#{item.problem.name})" for item in judgements)
-    linked = [row | {"case": link} for row, link in zip(every, links, strict=True)]
+    links = ({"case": f"[{item.problem.title}](#{item.problem.name})"} for item in judgements)
+    linked = [row | link for row, link in zip(every, links, strict=True)]
     held = ("\n".join(one.measured for one in item.findings) for item in judgements)
     checks = (
         (f"manual.{item.problem.name}", item.trial.label, item.seconds, item.failure, text)
         for item, text in zip(judgements, held, strict=True)
     )
     words: dict[str, Any] = {"cases": cases, "judgements": judgements, "versions": versions()}
-    template = PAGE.read_text(encoding="utf-8")
-    text = sentence(template, **words, every=markdown(linked), answers=lambda case: markdown(_answers(case)))
+    words |= {"every": markdown(linked), "answers": lambda case: markdown(_answers(case))}
+    text = sentence(PAGE.read_text(encoding="utf-8"), **words)
     said = f"{len(cases)} cases, {len(judgements)} answers, {len(wrong)} beyond their tolerance."
     return Found(
         title="Verification manual",
