@@ -78,7 +78,7 @@ class Judgement(Frozen):
     @property
     def failure(self) -> str | None:
         """Why the answer fails, with its numbers; None if it is right."""
-        return self.stopped or (None if self.passed else self.worst.failure)
+        return self.stopped or self.worst.failure
 
 
 def judged(problem: Problem) -> list[Judgement]:
@@ -219,10 +219,9 @@ def manual(files: Sequence[Path], report: Report) -> Found:
     every = [_answer(item) for item in judgements]
     links = ({"case": f"[{item.problem.title}](#{item.problem.name})"} for item in judgements)
     linked = [row | link for row, link in zip(every, links, strict=True)]
-    held = ("\n".join(one.measured for one in item.findings) for item in judgements)
     checks = (
-        (f"manual.{item.problem.name}", item.trial.label, item.seconds, item.failure, text)
-        for item, text in zip(judgements, held, strict=True)
+        (f"manual.{item.problem.name}", item.trial.label, item.seconds, item.failure, item.findings)
+        for item in judgements
     )
     words: dict[str, Any] = {"cases": cases, "judgements": judgements, "versions": versions()}
     words |= {"every": markdown(linked), "answers": lambda case: markdown(_answers(case))}
