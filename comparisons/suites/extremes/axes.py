@@ -13,7 +13,7 @@ import numpy as np
 from comparisons.models import MODELS, ROD, SOLID, TSM, Model
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
 from comparisons.scene.rules import Point
-from comparisons.suite import case
+from comparisons.suite import case, changed
 from comparisons.suites.extremes.cell import Against, Allowance, Cell, Check, circle, energy
 from tsm.elements import ELEMENTS, MIXED, TIMOSHENKO, ClosedForm, ElementType
 
@@ -76,10 +76,8 @@ def cell(model: Model, column: str, scene: Scene, *checks: Check, row: str = "",
 
 def beam(column: str, scene: Scene, kind: ElementType, elements: int | None, row: str = "") -> Cell:
     """Return the cell of TSM, against the rod of the same shear stiffness: that of an Euler-Bernoulli element is rigid in shear."""
-    stiff = scene
-    if not kind.sheared:
-        rigid: Any = {"poissons_ratio": None, "shear_modulus": 1e9 * scene.beams[0].youngs_modulus}
-        stiff = replace(scene, beams=(replace(scene.beams[0], **rigid),))
+    rigid = {"beam.poissons_ratio": None, "beam.shear_modulus": 1e9 * scene.beams[0].youngs_modulus}
+    stiff = scene if kind.sheared else changed(scene, rigid)
     return cell(TSM, column, scene, rod(stiff), row=row or kind.name, element=kind.name, elements=elements)
 
 
@@ -108,12 +106,12 @@ def everything(
 
 
 def _units(lengths: Sequence[float], moduli: Sequence[float]) -> Iterator[Cell]:
-    plain = list(everything("", half_circle(cantilever()), 10, COARSE))
+    plain = half_circle(cantilever())
     for length, modulus in product(lengths, moduli):
         scene = half_circle(cantilever(length=length, youngs_modulus=modulus))
-        own = everything(f"L {length:g}, E {modulus:g}", scene, 10, COARSE)
-        for one, unit in zip(own, plain, strict=True):
-            yield one.also(Against(case=unit.case, name="itself at L = 1, E = 1", allowed=UNITS))
+        for one in everything(f"L {length:g}, E {modulus:g}", scene, 10, COARSE):
+            itself = replace(one.case, scene=plain)
+            yield one.also(Against(case=itself, name="itself at L = 1, E = 1", allowed=UNITS))
 
 
 def _slenderness(slenderness: Sequence[float], solids_to: float) -> Iterator[Cell]:
