@@ -15,6 +15,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from comparisons.answer import ContactEvent, Response
+from comparisons.answer.axis import place_of
 from comparisons.answer.table import table
 from comparisons.files import writable_folder, write_text
 from comparisons.models import TSM, find, solve
@@ -146,9 +147,8 @@ def histories(scene: Scene, response: Response) -> dict[str, Any]:
     """Return what a response states, by ``OF.WHAT``, each of shape (s,)."""
     found, steps = table(response, along=False), range(len(response.load_parameter))
     for node in _free(scene):
-        name, _, end = node.partition(".")
-        lines = [response.axis_line(name, k)[1][0 if end == "start" else -1] for k in steps]
-        moved = np.reshape(lines, (-1, 2)) - scene.place(node)
+        places = [place_of(response, scene, node, k) for k in steps]
+        moved = np.reshape(places, (-1, 2)) - scene.place(node)
         found |= {f"{node}.displacement_{x}": moved[:, i] for i, x in enumerate("xy")}
     return found
 
@@ -200,7 +200,7 @@ def answers(model: str, setting: Sequence[str], given: Mapping[str, Any], report
         except ModelError as error:
             refused[scene.name] = str(error)
             continue
-        columns = histories(scene, response) if len(response.load_parameter) else {}
+        columns = histories(scene, response)
         why = "is not stated" if response.completed else response.ended
         for query in (query for query in given["queries"] if query["scene"] == scene.name):
             value = told(query, response, columns)

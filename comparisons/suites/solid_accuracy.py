@@ -37,9 +37,8 @@ MESHES = tuple((nx, 2) for nx in range(40, 61))
 SEQUENCE = ((25, 2), (50, 2), (100, 2), (200, 4))
 SCENES = ("ks-cantilever", "ks-face")
 COMPARED = ("contact_force", "arc_position")
-PENETRATION = 1e-10
-"""Penetration of the solid model, over the length."""
-EXACT: Changes = {"contact.penetration": PENETRATION}
+EXACT: Changes = {"contact.penetration": 1e-10}
+"""Hardly any penetration of the solid, over the length."""
 LAW: Changes = {"beam.material": "biot-linear"}
 """The rod's own law."""
 
@@ -56,24 +55,18 @@ def solved(
 
 def peers() -> Iterator[Row]:
     """Tip displacement and contact force of the solid and of CalculiX on the same meshes."""
-    problem = to_solid(load_scene("ks-face"))
+    scene = load_scene("ks-face")
+    (strip,) = to_solid(scene).strips
     for clamp, load, mesh in product((ROD.name, "full"), LOADS, PEER_MESHES):
-        strip = replace(problem.strips[0], clamp=clamp, mesh=mesh)
-        yield {"case": f"tip load {load:g} EI/L^2", **_named(strip), **_tip(strip, load)}
+        one = replace(strip, clamp=clamp, mesh=mesh)
+        yield {"case": f"tip load {load:g} EI/L^2", **_named(one), **_tip(one, load)}
     for steps, penalty in RUNS:
-        of = {"case": "pin on the face", **_named(problem.strips[0]), "penalty": penalty, "step": 1 / steps}
-        yield from (of | row for row in _pin(problem, steps, penalty))
+        of = {"case": "pin on the face", **_named(strip), "penalty": penalty, "step": 1 / steps}
+        yield from (of | row for row in _pin(scene, steps, penalty))
 
 
 def _named(strip: "Strip") -> Row:
     return {"clamp": strip.clamp, "mesh": "x".join(map(str, strip.mesh))}
-
-
-def contact_forces(problem: "SolidProblem", steps: int, count: int) -> Array:
-    """Contact force at the first `count` of `steps` equal load parameters."""
-    contact = replace(problem.contacts[0], penetration=PENETRATION)
-    result = solved(replace(problem, contacts=(contact,)), np.arange(1, count + 1) / steps)
-    return result.contacts[contact.name].force
 
 
 def _tip(strip: "Strip", load: float) -> Row:
@@ -85,20 +78,16 @@ def _tip(strip: "Strip", load: float) -> Row:
     result = solved(SolidProblem(strips=(strip,), loads=(dead,)), np.arange(1, 11) / 10)
     u, other = result.tips[strip.name][-1] - strip.end, tip_load(strip, force).tip[-1]
     own, peer, apart = (float(np.hypot(*one)) for one in (u, other, other - u))
-    return {
-        "load_parameter": 1.0,
-        "reached": 1.0,
-        "fem_reference": own,
-        "calculix": peer,
-        "difference": apart / own,
-    }
+    found = {"fem_reference": own, "calculix": peer, "difference": apart / own}
+    return {"load_parameter": 1.0, "reached": 1.0, **found}
 
 
-def _pin(problem: "SolidProblem", steps: int, penalty: float) -> Iterator[Row]:
+def _pin(scene: Scene, steps: int, penalty: float) -> Iterator[Row]:
     """Yield a row per load parameter shown, with the contact force as the clamp bears it."""
+    problem, stepped = to_solid(scene), changed(scene, {**EXACT, "scene.load_parameters": steps})
     answer = pressed(problem.strips[0], problem.pins[0].path, steps, penalty)
     calculix = np.hypot(*answer.force.T)
-    solid = contact_forces(problem, steps, max(calculix.size, round(steps * SHOWN[-1])))
+    solid = _contact(stepped, max(calculix.size, round(steps * SHOWN[-1]))).force
     differences = calculix / solid[: calculix.size] - 1.0
     ended = {"reached": float(answer.load_parameter[-1]), "largest": float(np.abs(differences).max())}
     for t in SHOWN:

@@ -1,6 +1,6 @@
 """The manual: judgements on the answers, a picture for each problem, and what is found as a page, Markdown, numbers and JUnit checks."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from itertools import chain
 from math import inf, nan
@@ -150,21 +150,17 @@ def _answer(item: Judgement) -> Row:
 
 def _answers(case: Sequence[Judgement]) -> list[Row]:
     """Return the rows of a problem: each quantity by each model, tolerances, verdicts and seconds."""
-
-    def row(name: str, exact: str, cells: Iterable[str]) -> Row:
-        labels = (item.trial.label for item in case)
-        return {"quantity": name, "exact": exact, **dict(zip(labels, cells, strict=True))}
-
     rows = [
-        row(of[0].name, f"{of[0].exact:.12g}", (f"{one.value:.9g} ({one.error:.1e})" for one in of))
+        (of[0].name, f"{of[0].exact:.12g}", *(f"{one.value:.9g} ({one.error:.1e})" for one in of))
         for of in zip(*(item.findings for item in case), strict=True)
     ]
-    return [
-        *rows,
-        row("tolerance", "", (f"{item.trial.allowed:.2g}" for item in case)),
-        row("verdict", "", (item.verdict for item in case)),
-        row("seconds", "", (f"{item.seconds:.2f}" for item in case)),
+    rows += [
+        ("tolerance", "", *(f"{item.trial.allowed:.2g}" for item in case)),
+        ("verdict", "", *(item.verdict for item in case)),
+        ("seconds", "", *(f"{item.seconds:.2f}" for item in case)),
     ]
+    columns = ("quantity", "exact", *(item.trial.label for item in case))
+    return [dict(zip(columns, row, strict=True)) for row in rows]
 
 
 def _section(case: Sequence[Judgement], folder: Path) -> Section:
