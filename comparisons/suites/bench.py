@@ -16,7 +16,7 @@ from numpy.polynomial import Polynomial
 
 from comparisons.answer import ContactEvent, Response
 from comparisons.answer.axis import place_of
-from comparisons.answer.table import table
+from comparisons.answer.table import table, unit_names
 from comparisons.files import writable_folder, write_text
 from comparisons.models import TSM, find, solve
 from comparisons.models.model import ModelError, Options
@@ -48,12 +48,11 @@ def scenes() -> dict[str, tuple[Scene, tuple[int, ...]]]:
 
 def resolved(about: str, scene: Scene, at: Sequence[int]) -> dict[str, Any]:
     """Return all that a scene's answer depends on, and nothing that only a program needs."""
-    force, length = (unit.strip() for unit in scene.units.split(","))
     corners = [(0.0, *pin.corners, 1.0 + len(pin.moves or ())) for pin in scene.pins]
     return {
         "name": scene.name,
         "about": about,
-        "units": {"force": force, "length": length},
+        "units": {kind: unit_names(scene.units)[kind] for kind in ("force", "length")},
         "load_parameters": [scene.times[k] for k in at],
         "beams": [_beam(beam) for beam in scene.beams],
         "joints": joints(scene),

@@ -109,7 +109,7 @@ def compare(
         check_series(folder / run.model, run.model, scene)
     left_out: dict[str, str] = {}
     answers: dict[Run, Response] = {}
-    runs = [*more, *(run for run in RUNS if run not in more)]
+    runs = dict.fromkeys((*more, *RUNS))
     for number, run in enumerate(runs, 1):
         head = f"[{number}/{len(runs)}] {run.label}"
         try:
@@ -158,11 +158,10 @@ def _cause(case: Case, reference: Response) -> str:
 def line(row: Row) -> dict[str, str]:
     """Return a run for people; a dash stands where the run or the scene does not have a quantity."""
     response = row.response
-    errors = {one.words: row.error("path", name) for name, one in table_columns().items()}
     return {
         "model": row.label if response.completed else f"{row.label} ({response.status})",
         "unknowns": str(response.unknowns),
-        **{words: _error(value) for words, value in errors.items()},
+        **{one.words: _error(row.error("path", name)) for name, one in table_columns().items()},
         "stable": row.stable,
         "iterations": str(response.iterations),
         "seconds": f"{response.wall_seconds:.3f}",

@@ -25,8 +25,8 @@ from comparisons.suites.formula import value_of
 from comparisons.suites.manual.problem import Problem, Trial
 from comparisons.suites.solid_accuracy import solved
 
-ANSWER = "exact answer"
-"""Label of lines of the exact answer, which no model computed."""
+ANSWER, GUIDE = "exact answer", "exact order"
+"""Labels of lines that no model computed."""
 
 
 class StoppedError(RuntimeError):
@@ -118,6 +118,19 @@ def undeformed(scene: Scene) -> Iterator[Line]:
     """Yield the undeformed axes and the paths of the pins."""
     yield from (Line("undeformed", np.array([beam.start, beam.end]).T) for beam in scene.beams)
     yield from (Line("path of the pin", np.array(pin.points).T) for pin in scene.pins)
+
+
+def exact_lines(problem: Problem, found: Sequence[Line]) -> Iterator[Line]:
+    """Yield what a picture has whatever the models answer: undeformed axes, the exact answer, a line for the eye."""
+    picture, scene = problem.picture, problem.scene
+    if picture.guide:
+        order, first = picture.guide
+        ends = np.sort(np.asarray(found[0].points)[0, [0, -1]])
+        yield Line(GUIDE, (ends, first * (ends / ends[0]) ** order))
+    elif not picture.axes:
+        yield from undeformed(scene)
+    if picture.exact:
+        yield from deflected(scene, answered(scene, picture.exact), ANSWER, picture.shown)
 
 
 def critical_load(answers: Answers) -> Iterable[float]:

@@ -1,6 +1,6 @@
 """The manual: judgements on the answers, a picture for each problem, and what is found as a page, Markdown, numbers and JUnit checks."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import partial
 from itertools import chain
 from math import inf, nan
@@ -8,8 +8,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-import numpy as np
-
+from comparisons.answer.table import unit_names
 from comparisons.frozen import Frozen
 from comparisons.models import find
 from comparisons.models.shared import kept
@@ -21,20 +20,11 @@ from comparisons.report.plot import Line, draw_lines
 from comparisons.suites.finding import Finding, junit_text
 from comparisons.suites.formula import sentence
 from comparisons.suites.found import Found
-from comparisons.suites.manual.measures import (
-    ANSWER,
-    MEASURES,
-    Answers,
-    StoppedError,
-    answered,
-    deflected,
-    undeformed,
-)
+from comparisons.suites.manual.measures import ANSWER, GUIDE, MEASURES, Answers, StoppedError, exact_lines
 from comparisons.suites.manual.problem import Problem, Trial, read_problem
 from comparisons.version import versions
 
 PAGE = Path(__file__).with_name("page.md.jinja")
-GUIDE = "exact order"
 EXACT = {"color": palette.GREY, "linewidth": 0.8, "linestyle": (0, (4, 3)), "zorder": 3}
 STYLES: dict[str, dict[str, Any]] = {
     "undeformed": {"color": "0.6", "linewidth": 1.0, "linestyle": "--", "zorder": 1},
@@ -105,7 +95,7 @@ def _judged(answers: Answers) -> Judgement:
 def draw_case(case: Sequence[Judgement], *paths: Path) -> None:
     """Draw what is exact and what the models found on a problem."""
     problem, picture, lines = case[0].problem, case[0].problem.picture, list[Line]()
-    length = problem.scene.units.split(",")[1].strip()
+    length = unit_names(problem.scene.units)["length"]
     x, y = picture.axes or (f"x [{length}]", f"y [{length}]")
     # the first model on top, each line wider than those above it, so that those that agree are all seen
     for number, one in reversed(list(enumerate(case))):
@@ -114,23 +104,10 @@ def draw_case(case: Sequence[Judgement], *paths: Path) -> None:
         size = {"marker": "o", "markersize": 10.0} if picture.guide else {"linewidth": 1.5 + 2.0 * number}
         own = {"color": colour, **size}
         lines += (drawn._replace(style=STYLES.get(drawn.label, own)) for drawn in one.lines)
-    lines += (drawn._replace(style=STYLES[drawn.label]) for drawn in _exact(problem, case[0].lines))
+    lines += (drawn._replace(style=STYLES[drawn.label]) for drawn in exact_lines(problem, case[0].lines))
     scales: dict[str, Any] = {} if picture.axes else {"aspect": "equal", "adjustable": "datalim"}
     scales |= {"xscale": "log", "yscale": "log"} if picture.guide else {}
     draw_lines({problem.title: lines}, *paths, tall=3.6, xlabel=x, ylabel=y, **scales)
-
-
-def _exact(problem: Problem, found: Sequence[Line]) -> Iterator[Line]:
-    """Yield what a picture has whatever the models answer: undeformed axes, the exact answer, a line for the eye."""
-    picture, scene = problem.picture, problem.scene
-    if picture.guide:
-        order, first = picture.guide
-        ends = np.sort(np.asarray(found[0].points)[0, [0, -1]])
-        yield Line(GUIDE, (ends, first * (ends / ends[0]) ** order))
-    elif not picture.axes:
-        yield from undeformed(scene)
-    if picture.exact:
-        yield from deflected(scene, answered(scene, picture.exact), ANSWER, picture.shown)
 
 
 def _answer(item: Judgement) -> Row:
