@@ -16,6 +16,7 @@ from comparisons.answer.table import table
 from comparisons.frozen import Frozen
 from comparisons.models import ROD, SOLID, solve
 from comparisons.models.model import Options
+from comparisons.models.shared import kept
 from comparisons.models.solid import to_solid
 from comparisons.models.tsm import to_structure
 from comparisons.report.plot import Line
@@ -181,10 +182,10 @@ def limit_points(answers: Answers) -> Iterable[float]:
 
     given, options, scene = answers.problem.settings, answers.trial.options, answers.scene
     pressed = next(support for support in scene.supports if support.moves)
-    dead = LoadSpec(beam=pressed.beam, end=pressed.end, force=(0.0, -given["force"]))
+    dead = LoadSpec(**kept(pressed, "beam end"), force=(0.0, -given["force"]))
     held = tuple(support for support in scene.supports if support is not pressed)
     loaded = replace(scene, supports=held, loads=(dead,))
-    structure = to_structure(loaded, elements=options.elements, element=options.element)
+    structure = to_structure(loaded, **kept(options, "elements element"))
     result = tsm.trace(structure, arc_length=given["arc_length"], steps=given["steps"], throw=False)
     found = [event.load_parameter for event in result.events if event.kind is tsm.EventKind.LIMIT_POINT]
     if len(found) < (count := len(answers.problem.quantities)):
@@ -222,7 +223,7 @@ def _solved_directly(answers: Answers, times: Array, **strip: Any) -> Any:
     if solid:
         result = solved(to_solid(scene, mesh=options.mesh), times, throw=False, **strip)
     else:
-        beams = to_structure(scene, elements=options.elements, element=options.element)
+        beams = to_structure(scene, **kept(options, "elements element"))
         result = tsm.solve(beams, times, throw=False)
     if result.status.name != "COMPLETED":
         raise StoppedError(f"{result.status.name}: {result.message}")

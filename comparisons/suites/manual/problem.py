@@ -116,8 +116,7 @@ def problems(names: Sequence[str] | None = None, folder: Path = FOLDER) -> list[
         For a name that no problem has.
     """
     files = {path.stem: path for path in sorted(folder.glob("*.toml"))}
-    order = [name for name in ORDER.read_text(encoding="utf-8").split() if name in files]
-    known = list(dict.fromkeys([*order, *files]))
+    known = [name for name in dict.fromkeys([*ORDER.read_text("utf-8").split(), *files]) if name in files]
     for name in names or ():
         if name not in files:
             raise InputError(name, f"no such problem ({', '.join(known)})")
