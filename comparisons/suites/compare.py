@@ -152,7 +152,7 @@ def _cause(case: Case, reference: Response) -> str:
     if not straight or ends != [f"{beam.name}.start"] or not len(reference.load_parameter):
         return ""
     parts = case.found.error_parts(scene, case.options, bending(beam, reference))
-    return max(parts, key=lambda why: parts[why]).partition(":")[0]
+    return max(parts, key=parts.__getitem__).partition(":")[0]
 
 
 def line(row: Row) -> dict[str, str]:

@@ -7,7 +7,6 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from comparisons.answer import Array, Response
 from comparisons.answer.axis import STATIONS, axes_at_stations
@@ -19,6 +18,7 @@ from comparisons.models.model import Options
 from comparisons.models.shared import kept
 from comparisons.models.solid import to_solid
 from comparisons.models.tsm import to_structure
+from comparisons.report import palette
 from comparisons.report.plot import Line
 from comparisons.scene import LoadSpec, Scene, read_scene
 from comparisons.suite.settings import changed
@@ -26,8 +26,8 @@ from comparisons.suites.formula import value_of
 from comparisons.suites.manual.problem import Problem, Trial
 from comparisons.suites.solid_accuracy import solved
 
-ANSWER, GUIDE = "exact answer", "exact order"
-"""Labels of lines that no model computed."""
+EXACT = {"color": palette.GREY, "linewidth": 0.8, "linestyle": (0, (4, 3)), "zorder": 3}
+"""Style of the lines of what is exact; those of models have none."""
 
 
 class StoppedError(RuntimeError):
@@ -53,17 +53,17 @@ class Answers(Frozen):
     def shown(self, scene: Scene) -> Response:
         """Return the response to a scene, and draw its deflected axes."""
         response = self.solved(scene)
-        self.lines.extend(deflected(scene, response, self.trial.model, self.problem.picture.shown))
+        for points in deflected(scene, response, self.problem.picture.shown):
+            self.draw(*points)
         return response
 
-    def draw(self, x: ArrayLike, y: ArrayLike, label: str = "") -> None:
-        """Draw a line of points, by default as one of the model."""
-        self.lines.append(Line(label or self.trial.model, np.stack([x, y])))
+    def draw(self, x: Any, y: Any) -> None:
+        """Draw a line of the model."""
+        self.lines.append(Line(self.trial.model, (x, y)))
 
-    def draw_exact(self, width: float, quantities: slice = slice(None)) -> None:
-        """Draw the exact values of quantities as lines."""
-        for one in self.problem.quantities[quantities]:
-            self.draw([0.0, width], [one.exact, one.exact], ANSWER)
+    def draw_exact(self, x: Any, y: Any) -> None:
+        """Draw a line of the exact answer."""
+        self.lines.append(Line("exact answer", (x, y), EXACT))
 
 
 def answered(scene: Scene, model: str, options: Options | None = None) -> Response:
@@ -109,16 +109,18 @@ def step(response: Response, load_parameter: float) -> int:
     return int(np.flatnonzero(np.abs(response.load_parameter - load_parameter) < 1e-9)[0])
 
 
-def deflected(scene: Scene, response: Response, label: str, shown: Sequence[float]) -> Iterator[Line]:
-    """Yield the deflected axes of all beams at some load parameters."""
+def deflected(scene: Scene, response: Response, shown: Sequence[float]) -> Iterator[Array]:
+    """Yield the deflected axes of all beams at some load parameters, shape (2, n)."""
     for beam, t in product(scene.beams, shown):
-        yield Line(label, response.axis_line(beam.name, step(response, t))[1].T)
+        yield response.axis_line(beam.name, step(response, t))[1].T
 
 
 def undeformed(scene: Scene) -> Iterator[Line]:
     """Yield the undeformed axes and the paths of the pins."""
-    yield from (Line("undeformed", np.array([beam.start, beam.end]).T) for beam in scene.beams)
-    yield from (Line("path of the pin", np.array(pin.points).T) for pin in scene.pins)
+    dashed = {"color": "0.6", "linewidth": 1.0, "linestyle": "--", "zorder": 1}
+    dotted = dashed | {"linewidth": 0.8, "linestyle": ":"}
+    yield from (Line("undeformed", np.array([one.start, one.end]).T, dashed) for one in scene.beams)
+    yield from (Line("path of the pin", np.array(one.points).T, dotted) for one in scene.pins)
 
 
 def exact_lines(problem: Problem, found: Sequence[Line]) -> Iterator[Line]:
@@ -127,11 +129,12 @@ def exact_lines(problem: Problem, found: Sequence[Line]) -> Iterator[Line]:
     if picture.guide:
         order, first = picture.guide
         ends = np.sort(np.asarray(found[0].points)[0, [0, -1]])
-        yield Line(GUIDE, (ends, first * (ends / ends[0]) ** order))
+        yield Line("exact order", (ends, first * (ends / ends[0]) ** order), EXACT)
     elif not picture.axes:
         yield from undeformed(scene)
     if picture.exact:
-        yield from deflected(scene, answered(scene, picture.exact), ANSWER, picture.shown)
+        for points in deflected(scene, answered(scene, picture.exact), picture.shown):
+            yield Line("exact answer", points, EXACT)
 
 
 def critical_load(answers: Answers) -> Iterable[float]:
@@ -147,7 +150,7 @@ def critical_load(answers: Answers) -> Iterable[float]:
     aside, loads = scene.supports[0].motion[0] or 1.0, (estimate * np.linspace(0.1, 1.2, 12)).tolist()
     stiffness = [sideways(load) / aside for load in loads]
     answers.draw(loads, stiffness)
-    answers.draw([estimate, estimate], [0.0, max(stiffness)], ANSWER)
+    answers.draw_exact([estimate, estimate], [0.0, max(stiffness)])
     yield float(brentq(sideways, 0.8 * estimate, 1.2 * estimate, xtol=1e-12, rtol=1e-12))
 
 
@@ -160,7 +163,8 @@ def greatest_load(answers: Answers) -> Iterable[float]:
     rise = np.array([pin.position(one)[1] for one in t]) / a
     load = table(response, along=False)[given["load"]] * given["times"] * a**2 / scene.beams[0].EI
     answers.draw(rise, load)
-    answers.draw_exact(rise.max(), slice(None, None, 2))
+    for one in answers.problem.quantities[::2]:
+        answers.draw_exact([0.0, rise.max()], [one.exact, one.exact])
     there = t <= max(pin.corners, default=1.0)
     yield from summit(rise[there], load[there])
     if not there.all():
@@ -193,7 +197,8 @@ def limit_points(answers: Answers) -> Iterable[float]:
     shown = result.load_parameter <= given["highest"]
     down = scene.place(dead.node)[1] - result.tips[dead.beam][shown, 1]
     answers.draw(np.append(0.0, down), np.append(0.0, result.load_parameter[shown]))
-    answers.draw_exact(down.max())
+    for one in answers.problem.quantities:
+        answers.draw_exact([0.0, down.max()], [one.exact, one.exact])
     yield from found[:count]
 
 

@@ -20,19 +20,11 @@ from comparisons.report.plot import Line, draw_lines
 from comparisons.suites.finding import Finding, junit_text
 from comparisons.suites.formula import sentence
 from comparisons.suites.found import Found
-from comparisons.suites.manual.measures import ANSWER, GUIDE, MEASURES, Answers, StoppedError, exact_lines
+from comparisons.suites.manual.measures import MEASURES, Answers, StoppedError, exact_lines
 from comparisons.suites.manual.problem import Problem, Trial, read_problem
 from comparisons.version import versions
 
 PAGE = Path(__file__).with_name("page.md.jinja")
-EXACT = {"color": palette.GREY, "linewidth": 0.8, "linestyle": (0, (4, 3)), "zorder": 3}
-STYLES: dict[str, dict[str, Any]] = {
-    "undeformed": {"color": "0.6", "linewidth": 1.0, "linestyle": "--", "zorder": 1},
-    "path of the pin": {"color": "0.6", "linewidth": 0.8, "linestyle": ":", "zorder": 1},
-    ANSWER: EXACT,
-    GUIDE: EXACT,
-}
-"""Styles of the lines that no model computed."""
 
 
 class Judgement(Frozen):
@@ -103,8 +95,8 @@ def draw_case(case: Sequence[Judgement], *paths: Path) -> None:
         colour = palette.colour(find(trial.model.split()[0]).family(trial.scene, trial.options))
         size = {"marker": "o", "markersize": 10.0} if picture.guide else {"linewidth": 1.5 + 2.0 * number}
         own = {"color": colour, **size}
-        lines += (drawn._replace(style=STYLES.get(drawn.label, own)) for drawn in one.lines)
-    lines += (drawn._replace(style=STYLES[drawn.label]) for drawn in exact_lines(problem, case[0].lines))
+        lines += (drawn._replace(style=drawn.style or own) for drawn in one.lines)
+    lines += exact_lines(problem, case[0].lines)
     scales: dict[str, Any] = {} if picture.axes else {"aspect": "equal", "adjustable": "datalim"}
     scales |= {"xscale": "log", "yscale": "log"} if picture.guide else {}
     draw_lines({problem.title: lines}, *paths, tall=3.6, xlabel=x, ylabel=y, **scales)
