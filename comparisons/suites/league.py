@@ -129,7 +129,7 @@ def _brief(scenes: Sequence[Scene], rows: Sequence[Row], stopped: Mapping[str, s
         points.append(f"Programs of others: {', '.join(others)}.")
     about = "How the runs of each program ended; wrong: said success and was wrong."
     said = f"{certified} of {len(rows)} runs are certified, {false}{cheap}."
-    return Brief(said, points, _ends(rows), about)
+    return Brief(said, points, list(_ends(rows)), about)
 
 
 def _plot(scenes: Sequence[Scene], rows: Sequence[Row], *paths: Path) -> None:
@@ -169,13 +169,11 @@ def _draw(axes: Any, program: str, rows: Sequence[Row], quantity: str) -> None:
             axes.plot(*place, linestyle="none", markerfacecolor="white", zorder=4, **own)
 
 
-def _ends(rows: Sequence[Row]) -> list[dict[str, object]]:
-    """Return a row for each program: on how many scenes it runs, and how its runs ended."""
-    found: list[dict[str, object]] = []
+def _ends(rows: Sequence[Row]) -> Iterator[dict[str, object]]:
+    """Yield a row for each program: on how many scenes it runs, and how its runs ended."""
     for program in dict.fromkeys(row.family for row in rows):
         own = [row for row in rows if row.family == program]
         ends = Counter("stopped" if row.outcome.isupper() else row.outcome for row in own)
         scenes = len({row.case.scene.name for row in own})
         how = {name: ends[name] for name in ("certified", "stopped", "wrong")}
-        found.append({"program": program, "scenes": scenes, "runs": len(own), **how})
-    return found
+        yield {"program": program, "scenes": scenes, "runs": len(own), **how}
