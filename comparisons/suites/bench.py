@@ -165,9 +165,8 @@ def told(query: Query, response: Response, columns: Mapping[str, Any]) -> float 
 
 def event(query: Query, response: Response) -> ContactEvent | None:
     """Return the event that is asked for; None where none is, or a response states none."""
-    number = query.get("number", math.inf)
     same = [one for one in response.events or () if (one.pair, one.kind) == (query["of"], query["what"])]
-    return same[number - 1] if number <= len(same) else None
+    return dict(enumerate(same, 1)).get(query.get("number", 0))
 
 
 def lines(key: str, rows: Sequence[Mapping[str, Any]], **head: Any) -> str:
