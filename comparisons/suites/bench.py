@@ -4,6 +4,7 @@ import hashlib
 import json
 import math
 import tomllib
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from operator import attrgetter
@@ -11,9 +12,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.polynomial import Polynomial
 
 from comparisons.answer import ContactEvent, Response
-from comparisons.answer.table import table
+from comparisons.answer.axis import place_of
+from comparisons.answer.table import table, unit_names
 from comparisons.files import writable_folder, write_text
 from comparisons.models import TSM, find, solve
 from comparisons.models.model import ModelError, Options
@@ -45,12 +48,11 @@ def scenes() -> dict[str, tuple[Scene, tuple[int, ...]]]:
 
 def resolved(about: str, scene: Scene, at: Sequence[int]) -> dict[str, Any]:
     """Return all that a scene's answer depends on, and nothing that only a program needs."""
-    force, length = (unit.strip() for unit in scene.units.split(","))
     corners = [(0.0, *pin.corners, 1.0 + len(pin.moves or ())) for pin in scene.pins]
     return {
         "name": scene.name,
         "about": about,
-        "units": {"force": force, "length": length},
+        "units": {kind: unit_names(scene.units)[kind] for kind in ("force", "length")},
         "load_parameters": [scene.times[k] for k in at],
         "beams": [_beam(beam) for beam in scene.beams],
         "joints": joints(scene),
@@ -82,25 +84,18 @@ def _held(end: str, values: Sequence[Any]) -> dict[str, Any]:
 
 def _beam(beam: BeamSpec) -> dict[str, Any]:
     """Return a beam with its stiffnesses, polynomials in the fraction of its length where it tapers."""
-    EA, GA, EI = ([value] for value in (beam.EA, beam.GA, beam.EI))
+    EA, GA, EI = (Polynomial([value]) for value in (beam.EA, beam.GA, beam.EI))
     if beam.tapers:
-        sides = (beam.height, beam.width)
-        h, b = ([one[0], one[1] - one[0]] if isinstance(one, tuple) else [one] for one in sides)
-        area, E = _product(h, b), beam.youngs_modulus
-        EA, EI = [c * E for c in area], [c * E / 12.0 for c in _product(area, _product(h, h))]
-        GA = [c * beam.stiffness(0.0)[1] / EA[0] for c in EA]
-    stiffness = zip(("EA", "GA", "EI"), (EA, GA, EI), strict=True)
+        sides: Any = (one if isinstance(one, tuple) else (one, one) for one in (beam.height, beam.width))
+        h, b = (Polynomial([start, end - start]) for start, end in sides)
+        EA = beam.youngs_modulus * h * b
+        GA, EI = EA * (GA / beam.EA), EA * h * h / 12.0
+    stiffness = {"EA": EA, "GA": GA, "EI": EI}
     return {
         **kept(beam, "name start end length curvature"),
         "direction": beam.tangent(0.0),
-        **{name: _coefficients(*values) for name, values in stiffness},
-    }  # fmt: skip
-
-
-def _product(p: Sequence[Any], q: Sequence[Any]) -> list[float]:
-    """Product of polynomials, by float sums whose order every machine keeps."""
-    powers = range(len(p) + len(q) - 1)
-    return [sum(p[i] * q[k - i] for i in range(len(p)) if 0 <= k - i < len(q)) for k in powers]
+        **{name: _coefficients(*one.coef.tolist()) for name, one in stiffness.items()},
+    }
 
 
 def _coefficients(*values: float) -> float | list[float]:
@@ -128,12 +123,12 @@ def _queries(scene: Scene, at: Sequence[int], right: Response) -> Iterator[Query
         if largest > 1e-9 * scale:
             known = np.flatnonzero(np.isfinite(values)).tolist()
             yield from ({"scene": scene.name, "of": of, "what": what, "at": k} for k in known)
-    last, numbers = scene.times[at[-1]], dict[tuple[str, str], int]()
+    last, numbers = scene.times[at[-1]], Counter[tuple[str, str]]()
     jumps = {event.load_parameter for event in right.events or () if event.kind == "slip-off"}
     # by contact: round-off orders two events at one load parameter
     for event in sorted(right.events or (), key=attrgetter("pair")):
         key = (event.pair, event.kind)
-        numbers[key] = numbers.get(key, 0) + 1
+        numbers[key] += 1
         # what else happens in the jump behind a slip-off is no state
         alone = event.kind == "slip-off" or event.load_parameter not in jumps
         if event.kind in EVENTS and alone and 0.0 < event.load_parameter < last:
@@ -151,9 +146,8 @@ def histories(scene: Scene, response: Response) -> dict[str, Any]:
     """Return what a response states, by ``OF.WHAT``, each of shape (s,)."""
     found, steps = table(response, along=False), range(len(response.load_parameter))
     for node in _free(scene):
-        name, _, end = node.partition(".")
-        lines = [response.axis_line(name, k)[1][0 if end == "start" else -1] for k in steps]
-        moved = np.reshape(lines, (-1, 2)) - scene.place(node)
+        places = [place_of(response, scene, node, k) for k in steps]
+        moved = np.reshape(places, (-1, 2)) - scene.place(node)
         found |= {f"{node}.displacement_{x}": moved[:, i] for i, x in enumerate("xy")}
     return found
 
@@ -171,9 +165,8 @@ def told(query: Query, response: Response, columns: Mapping[str, Any]) -> float 
 
 def event(query: Query, response: Response) -> ContactEvent | None:
     """Return the event that is asked for; None where none is, or a response states none."""
-    number = query.get("number", math.inf)
     same = [one for one in response.events or () if (one.pair, one.kind) == (query["of"], query["what"])]
-    return same[number - 1] if number <= len(same) else None
+    return dict(enumerate(same, 1)).get(query.get("number", 0))
 
 
 def lines(key: str, rows: Sequence[Mapping[str, Any]], **head: Any) -> str:
@@ -192,21 +185,20 @@ def set_texts(found: Mapping[str, Response]) -> tuple[str, str]:
     return stated, lines("queries", asked, **HEAD, set=name)
 
 
-def answers(words: str, given: Mapping[str, Any], report: Report) -> str:
+def answers(model: str, setting: Sequence[str], given: Mapping[str, Any], report: Report) -> str:
     """Return the answers of a model with its setting to the queries of a set, as JSON text; `report` takes a line for each scene.
 
     What is not stated has the reason. A model that refuses all scenes is a `ModelError`.
     """
-    model, *setting = words.split(" ")
-    options = Options(**dict(map(_option, setting)))
-    rows, refused, name = list[Query](), dict[str, str](), " ".join([find(model).label, *setting])
+    options, name = Options(**dict(map(_option, setting))), " ".join([find(model).label, *setting])
+    rows, refused = list[Query](), dict[str, str]()
     for scene, _ in scenes().values():
         try:
             response = solve(scene, model, options)
         except ModelError as error:
             refused[scene.name] = str(error)
             continue
-        columns = histories(scene, response) if len(response.load_parameter) else {}
+        columns = histories(scene, response)
         why = "is not stated" if response.completed else response.ended
         for query in (query for query in given["queries"] if query["scene"] == scene.name):
             value = told(query, response, columns)
@@ -227,11 +219,12 @@ def _option(word: str) -> tuple[str, Any]:
 
 def write_bench(folder: Path, models: Sequence[str], report: Report) -> list[Path]:
     """Write the scenes and the queries, and the answers of models with their settings, as ``tsm mixed 20``; return the files."""
-    found = {one: "-".join([find(one.split(" ")[0]).name, *one.split(" ")[1:]]) for one in models}
-    files = [writable_folder(folder) / f"{name}.json" for name in ("scenes", "queries", *found.values())]
+    asked = [one.split(" ") for one in dict.fromkeys(models)]
+    named = ("-".join([find(model).name, *setting]) for model, *setting in asked)
+    files = [writable_folder(folder) / f"{name}.json" for name in ("scenes", "queries", *named)]
     exact = {name: solve(scene, TSM.name, TSM.reference) for name, (scene, _) in scenes().items()}
     texts = list(set_texts(exact))
-    texts += (answers(one, json.loads(texts[1]), report) for one in found)
+    texts += (answers(model, setting, json.loads(texts[1]), report) for model, *setting in asked)
     for file, text in zip(files, texts, strict=True):
         write_text(file, text)
     return files

@@ -69,11 +69,14 @@ DRAWN = tuple(
     sorted((run for run in RUNS if run not in (MIXED, ELASTICA)), key=lambda run: -style(run.label).width)
 )
 """The runs whose deflected axes are drawn over each other: the widest line first, the exact rod on top."""
-OTHER_BRANCH = "OTHER_BRANCH"
 BRANCH = ("force", "moment", "tip")
 NAMES = ("report.html", "summary.json", "table.csv", "shapes.png", "stress.svg", "budget.svg", "budget.json")
 """The files beside those of ParaView."""
 MISES = "Von Mises stress of beams from section forces, of the solid from Cauchy's, and the difference."
+CAPTION = (
+    f"Largest error over the load parameters reached, against the {ROD.label}; forces and moments relative to their "
+    "largest, positions to the length, friction to the contact forces; Newton iterations and seconds for the whole path"
+)
 APART = 0.5
 """Error of one of these quantities beyond which two answers are different equilibria."""
 
@@ -106,19 +109,19 @@ def compare(
         check_series(folder / run.model, run.model, scene)
     left_out: dict[str, str] = {}
     answers: dict[Run, Response] = {}
-    runs = [*more, *(run for run in RUNS if run not in more)]
+    runs = dict.fromkeys((*more, *RUNS))
     for number, run in enumerate(runs, 1):
         head = f"[{number}/{len(runs)}] {run.label}"
         try:
             with watching(head) as watch:
                 answers[run] = one = certified(solve(scene, run.model, run.options, watch), scene)
             end = f"{one.wall_seconds:.2f} s" if one.completed else one.ended
-            report(f"{head}: {end}")
         except ModelError as error:
             why = str(error).removeprefix(f"{run.model}: ")
             left_out[find(run.model).family(scene, run.options)] = why
-            report(f"{head}: left out, {why}")
-    rows = [row_of(scene, run, response, answers[ROD]) for run, response in answers.items()]
+            end = f"left out, {why}"
+        report(f"{head}: {end}")
+    rows = {run: row_of(scene, run, response, answers[ROD]) for run, response in answers.items()}
     with staging("measuring the error budget") as count:
         budget, lack = None, "it takes the solid"
         if SOLID in answers and answers[SOLID].completed:
@@ -149,25 +152,16 @@ def _cause(case: Case, reference: Response) -> str:
     if not straight or ends != [f"{beam.name}.start"] or not len(reference.load_parameter):
         return ""
     parts = case.found.error_parts(scene, case.options, bending(beam, reference))
-    return max(parts, key=lambda why: parts[why]).partition(":")[0]
-
-
-def caption(reference: str) -> str:
-    """Return what the table shows."""
-    return (
-        f"Largest error over the load parameters reached, against the {reference}; forces and moments relative to their "
-        "largest, positions to the length, friction to the contact forces; Newton iterations and seconds for the whole path"
-    )
+    return max(parts, key=parts.__getitem__).partition(":")[0]
 
 
 def line(row: Row) -> dict[str, str]:
     """Return a run for people; a dash stands where the run or the scene does not have a quantity."""
     response = row.response
-    errors = {one.words: row.error("path", name) for name, one in table_columns().items()}
     return {
         "model": row.label if response.completed else f"{row.label} ({response.status})",
         "unknowns": str(response.unknowns),
-        **{words: _error(value) for words, value in errors.items()},
+        **{one.words: _error(row.error("path", name)) for name, one in table_columns().items()},
         "stable": row.stable,
         "iterations": str(response.iterations),
         "seconds": f"{response.wall_seconds:.3f}",
@@ -179,15 +173,13 @@ def _error(value: float) -> str:
 
 
 def _found(
-    scene: Scene, rows: Sequence[Row], budget: Budget | None, left_out: Mapping[str, str], report: Report
+    scene: Scene, of: Mapping[Run, Row], budget: Budget | None, left_out: Mapping[str, str], report: Report
 ) -> Found:
-    """Return what the rows show, with the files and the page."""
-    by = {row.label: row for row in rows}
-    responses, shown = {label: row.response for label, row in by.items()}, [line(row) for row in rows]
-    beam, solid = by.get(MIXED.label), by.get(SOLID.label)
-    bodies = None if beam is None or solid is None else beam.against(solid.response, names(mesh=False))
-    exported = {run: responses[run.label] for run in EXPORTED if run.label in responses}
-    drawn = {run.label: responses[run.label] for run in DRAWN if run.label in responses}
+    """Return what the rows of runs show, with the files and the page."""
+    rows, responses = list(of.values()), {run.label: row.response for run, row in of.items()}
+    shown, exported = [line(row) for row in rows], {run: of[run].response for run in EXPORTED if run in of}
+    bodies = of[MIXED].against(of[SOLID].response, names(mesh=False)) if len(exported) == 2 else None
+    drawn = {run.label: of[run].response for run in DRAWN if run in of}
     pictures: dict[str, Callable[..., None]] = {"shapes.png": partial(plot_shapes, scene, drawn)}
     reached = [len(one.load_parameter) for one in exported.values()]
     if len(reached) == 2 and all(reached):
@@ -217,17 +209,17 @@ def _found(
         vtu = {run.label: f"{run.model}/{run.model}-{{}}.vtm" for run in exported}
         acting, first = tracks(responses, ROD.label, scene), {MIXED.label, SOLID.label, ROD.label}
         yield motion_section("Shapes", scene, responses, acting, focus=ROD.label, first=first, vtu=vtu)
-        yield Section("Errors", table(caption(ROD.label), shown))
+        yield Section("Errors", table(CAPTION, shown))
         yield from states_section(responses)
         if budget is not None:
             yield budget_section(budget, folder / "budget.svg")
         if "stress.svg" in pictures:
             yield Section("Stress", picture(folder / "stress.svg", MISES))
 
-    wrong = {row.label for row in rows if row.wrong or row.label == ROD.label}
-    stops = {
-        row.label: f"{row.label}: {row.response.stop(scene)}" for row in rows if not row.response.completed
-    }
+    remarks, stopped = list[str](), list[str]()
+    for row in (row for row in rows if not row.response.completed):
+        needed = row.wrong or row.label == ROD.label
+        (stopped if needed else remarks).append(f"{row.label}: {row.response.stop(scene)}")
     return Found(
         title=f"{scene.name}: beams, solid and exact answers",
         brief=findings(scene, rows, ROD.label, bodies, budget, left_out),
@@ -235,9 +227,9 @@ def _found(
         sections=sections,
         pictures=pictures,
         scenes=[scene],
-        text="\n".join([*filled(caption(ROD.label)), "", tabulated(shown), *_other_events(rows)]),
-        remarks=[stops[label] for label in stops if label not in wrong],
-        stopped=[*(stops[label] for label in stops if label in wrong), *_apart(rows)],
+        text="\n".join([*filled(CAPTION), "", tabulated(shown), *_other_events(rows)]),
+        remarks=remarks,
+        stopped=[*stopped, *_apart(rows)],
     )
 
 
@@ -246,14 +238,13 @@ def _apart(rows: Sequence[Row]) -> Iterator[str]:
     for row in rows:
         judged = row.label != ELASTICA.label and row.response.completed
         if judged and any(row.error("path", name) > APART for name in BRANCH):
-            yield f"{row.label}: {OTHER_BRANCH}: ends in another equilibrium than the {ROD.label}"
+            yield f"{row.label}: OTHER_BRANCH: ends in another equilibrium than the {ROD.label}"
 
 
-def _other_events(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield a line for each completed run about the first event that it or the reference does not have, and a blank one before."""
-    exact, head = next(row.response for row in rows if row.label == ROD.label), [""]
-    for row in rows:
-        events = event_differences(row.response, exact) if row.response.completed else []
-        for item in [item for item in events if item.apart == np.inf][:1]:
-            yield from (*head, item.line(row.label, ROD.label))
-            head = []
+def _other_events(rows: Sequence[Row]) -> list[str]:
+    """Return a line for each completed run about the first event that it or the reference does not have, and a blank one before."""
+    exact = next(row.response for row in rows if row.label == ROD.label)
+    apart = {row.label: event_differences(row.response, exact) for row in rows if row.response.completed}
+    alone = ((label, [one for one in events if one.apart == np.inf]) for label, events in apart.items())
+    found = [events[0].line(label, ROD.label) for label, events in alone if events]
+    return ["", *found] if found else []

@@ -32,11 +32,13 @@ class Finding(Value):
         return share if math.isfinite(share) else math.inf
 
     @property
-    def failure(self) -> str:
-        """The sentence for a bound that is broken."""
+    def failure(self) -> str | None:
+        """The sentence for a bound that is broken; None for one that holds."""
         value = self.error if self.value is None else self.value
-        errors = f"error {self.error:.2g} > {self.allowed:.2g}"
-        return f"{self.name}: {value:.10g}, exact {self.exact:.10g}, {errors}"
+        said = (
+            f"{self.name}: {value:.10g}, exact {self.exact:.10g}, error {self.error:.2g} > {self.allowed:.2g}"
+        )
+        return None if self.holds else said
 
     @property
     def measured(self) -> str:
@@ -44,18 +46,20 @@ class Finding(Value):
         return f"{self.name}: error {self.error:.2g}, allowed {self.allowed:g}"
 
 
-def junit_text(suite: str, checks: Iterable[tuple[str, str, float, str | None, str]]) -> str:
+def junit_text(suite: str, checks: Iterable[tuple[str, str, float, str | None, Iterable[Finding]]]) -> str:
     """Return checks as the JUnit XML of one test suite.
 
-    A check has its group, its name, its seconds, why it failed if it did, in one line with numbers, and what was measured.
+    A check has its group, its name, its seconds, why it failed if it did, in one line with numbers, and what was found.
 
     Examples
     --------
-    >>> print(junit_text("manual", [("euler", "rod", 0.0, "off by 2", "")]))
+    >>> found = [Finding(name="tip", error=2.0, allowed=1e-3)]
+    >>> print(junit_text("manual", [("euler", "rod", 0.0, "off by 2", found)]))
     <?xml version="1.0" encoding="utf-8"?>
     <testsuite name="manual" tests="1" failures="1" errors="0" skipped="0" time="0.000000">
       <testcase classname="euler" name="rod" time="0.000000">
         <failure message="off by 2" />
+        <system-out>tip: error 2, allowed 0.001</system-out>
       </testcase>
     </testsuite>
     <BLANKLINE>
@@ -64,11 +68,10 @@ def junit_text(suite: str, checks: Iterable[tuple[str, str, float, str | None, s
     failed, seconds = sum(one[3] is not None for one in listed), sum(one[2] for one in listed)
     count = {"tests": str(len(listed)), "failures": str(failed), "errors": "0", "skipped": "0"}
     root = Element("testsuite", {"name": suite, **count, "time": f"{seconds:f}"})
-    for group, name, spent, failure, output in listed:
-        case = SubElement(root, "testcase", {"classname": group, "name": name, "time": f"{spent:f}"})
+    for group, name, spent, failure, findings in listed:
+        case = SubElement(root, "testcase", classname=group, name=name, time=f"{spent:f}")
         if failure is not None:
-            SubElement(case, "failure", {"message": failure})
-        if output:
-            SubElement(case, "system-out").text = output
+            SubElement(case, "failure", message=failure)
+        SubElement(case, "system-out").text = "\n".join(one.measured for one in findings)
     indent(root)
     return f'<?xml version="1.0" encoding="utf-8"?>\n{tostring(root, encoding="unicode")}\n'

@@ -8,19 +8,13 @@ from typing import Any
 def _language() -> Any:
     from jinja2 import Environment, StrictUndefined
 
-    language = Environment(undefined=StrictUndefined)  # noqa: S701 - Markdown; pages escape their cells
-    language.trim_blocks = language.keep_trailing_newline = True
-    return language
+    # Markdown; pages escape their cells
+    return Environment(undefined=StrictUndefined, trim_blocks=True, keep_trailing_newline=True)  # noqa: S701
 
 
 @cache
-def _compiled_formula(text: str) -> Any:
-    return _language().compile_expression(text, undefined_to_none=False)
-
-
-@cache
-def _compiled_template(text: str) -> Any:
-    return _language().from_string(text)
+def _compiled(kind: str, text: str, **how: bool) -> Any:
+    return getattr(_language(), kind)(text, **how)
 
 
 def value_of(formula: str, **names: Any) -> Any:
@@ -29,7 +23,7 @@ def value_of(formula: str, **names: Any) -> Any:
     >>> value_of("a ** 2 - b.c | abs", a=3.0, b={"c": -1.0})
     8.0
     """
-    return _compiled_formula(formula)(**names)
+    return _compiled("compile_expression", formula, undefined_to_none=False)(**names)
 
 
 def sentence(template: str, **names: Any) -> str:
@@ -38,4 +32,4 @@ def sentence(template: str, **names: Any) -> str:
     >>> sentence("{{ '%.2f' % a }} m", a=1.0)
     '1.00 m'
     """
-    return str(_compiled_template(template).render(names))
+    return str(_compiled("from_string", template).render(names))

@@ -1,9 +1,9 @@
 """The league: every program at several of its resolutions on several scenes, as a table, a diagram and a page."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
-from itertools import product
+from itertools import groupby, product
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from comparisons.models import MODELS, ROD, Model, find
-from comparisons.models.model import Options
 from comparisons.models.outside.programs import used
 from comparisons.report import palette
 from comparisons.report.brief import Brief
@@ -95,24 +94,19 @@ def league(scenes: Sequence[Scene], programs: Sequence[str], run: Runner, *, qui
 
 def _cases(scene: Scene, name: str, model: Model, most: int) -> Iterator[Case]:
     """Yield the cases of a model, at most so many resolutions of each family, coarse to fine."""
-    families: dict[str, list[Options]] = {}
-    for options in model.resolutions(quick=False):
-        families.setdefault(model.family(scene, options), []).append(options)
-    for settings in families.values():
+    for _, family in groupby(model.resolutions(quick=False), key=partial(model.family, scene)):
+        settings = list(family)
         chosen = np.linspace(0, len(settings) - 1, min(most, len(settings))).round().astype(int)
         for k in dict.fromkeys(chosen):
             yield Case(scene=scene, model=name, options=settings[k])
 
 
-def ranked(scene: Scene) -> tuple[str, ...]:
-    """Return the quantities by which programs are ranked; statics fix the forces of a scene without contact."""
-    return ("force", "arc", "moment", "tip") if scene.contacts else ("moment", "tip")
-
-
 def _cheapest(scene: Scene, rows: Sequence[Row]) -> Row | None:
     """Return the certified row of a scene with an error up to `ASKED` that takes the least seconds."""
+    # statics fix the forces of a scene without contact
+    names = ("force", "arc", "moment", "tip") if scene.contacts else ("moment", "tip")
     own = [row for row in rows if row.case.scene == scene and row.outcome == "certified"]
-    good = [row for row in own if np.nanmax([row.error("path", name) for name in ranked(scene)]) <= ASKED]
+    good = [row for row in own if np.nanmax([row.error("path", name) for name in names]) <= ASKED]
     return min(good, key=_seconds, default=None)
 
 
@@ -135,7 +129,7 @@ def _brief(scenes: Sequence[Scene], rows: Sequence[Row], stopped: Mapping[str, s
         points.append(f"Programs of others: {', '.join(others)}.")
     about = "How the runs of each program ended; wrong: said success and was wrong."
     said = f"{certified} of {len(rows)} runs are certified, {false}{cheap}."
-    return Brief(said, points, _ends(rows), about)
+    return Brief(said, points, list(_ends(rows)), about)
 
 
 def _plot(scenes: Sequence[Scene], rows: Sequence[Row], *paths: Path) -> None:
@@ -147,20 +141,13 @@ def _plot(scenes: Sequence[Scene], rows: Sequence[Row], *paths: Path) -> None:
 
     def panel(axes: Any, scene: Scene) -> None:
         quantity = "force" if scene.contacts else "tip"
-        for program, own in _by_program(row for row in rows if row.case.scene == scene):
-            _draw(axes, program, own, quantity)
+        seen = (row for row in rows if row.case.scene == scene)
+        for program, own in groupby(seen, key=lambda row: row.family):
+            _draw(axes, program, list(own), quantity)
         words = {"title": scene.name, "xlabel": SECONDS, "ylabel": f"largest error of the {quantity}"}
         axes.set(xscale="log", yscale="log", **words)
 
     draw([partial(panel, scene=scene) for scene in scenes], *paths, tall=2.6, sharex=True, sharey=True)
-
-
-def _by_program(rows: Iterable[Row]) -> list[tuple[str, list[Row]]]:
-    """Return the rows of each program, which is their family, as ``TSM mixed``; coarse to fine."""
-    found: dict[str, list[Row]] = {}
-    for row in rows:
-        found.setdefault(row.family, []).append(row)
-    return list(found.items())
 
 
 def _seconds(row: Row) -> float:
@@ -182,12 +169,11 @@ def _draw(axes: Any, program: str, rows: Sequence[Row], quantity: str) -> None:
             axes.plot(*place, linestyle="none", markerfacecolor="white", zorder=4, **own)
 
 
-def _ends(rows: Sequence[Row]) -> list[dict[str, object]]:
-    """Return a row for each program: on how many scenes it runs, and how its runs ended."""
-    found: list[dict[str, object]] = []
-    for program, own in _by_program(rows):
+def _ends(rows: Sequence[Row]) -> Iterator[dict[str, object]]:
+    """Yield a row for each program: on how many scenes it runs, and how its runs ended."""
+    for program in dict.fromkeys(row.family for row in rows):
+        own = [row for row in rows if row.family == program]
         ends = Counter("stopped" if row.outcome.isupper() else row.outcome for row in own)
         scenes = len({row.case.scene.name for row in own})
         how = {name: ends[name] for name in ("certified", "stopped", "wrong")}
-        found.append({"program": program, "scenes": scenes, "runs": len(own), **how})
-    return found
+        yield {"program": program, "scenes": scenes, "runs": len(own), **how}

@@ -37,11 +37,10 @@ MESHES = tuple((nx, 2) for nx in range(40, 61))
 SEQUENCE = ((25, 2), (50, 2), (100, 2), (200, 4))
 SCENES = ("ks-cantilever", "ks-face")
 COMPARED = ("contact_force", "arc_position")
-PENETRATION = 1e-10
-"""Penetration of the solid model, over the length."""
-EXACT: Changes = {"contact.penetration": PENETRATION}
-ROD_LAW: Changes = {**EXACT, "beam.material": "biot-linear"}
-"""The rod's own law, without penetration."""
+EXACT: Changes = {"contact.penetration": 1e-10}
+"""Hardly any penetration of the solid, over the length."""
+LAW: Changes = {"beam.material": "biot-linear"}
+"""The rod's own law."""
 
 
 def solved(
@@ -56,24 +55,18 @@ def solved(
 
 def peers() -> Iterator[Row]:
     """Tip displacement and contact force of the solid and of CalculiX on the same meshes."""
-    problem = to_solid(load_scene("ks-face"))
+    scene = load_scene("ks-face")
+    (strip,) = to_solid(scene).strips
     for clamp, load, mesh in product((ROD.name, "full"), LOADS, PEER_MESHES):
-        strip = replace(problem.strips[0], clamp=clamp, mesh=mesh)
-        yield {"case": f"tip load {load:g} EI/L^2", **_named(strip), **_tip(strip, load)}
+        one = replace(strip, clamp=clamp, mesh=mesh)
+        yield {"case": f"tip load {load:g} EI/L^2", **_named(one), **_tip(one, load)}
     for steps, penalty in RUNS:
-        of = {"case": "pin on the face", **_named(problem.strips[0]), "penalty": penalty, "step": 1 / steps}
-        yield from (of | row for row in _pin(problem, steps, penalty))
+        of = {"case": "pin on the face", **_named(strip), "penalty": penalty, "step": 1 / steps}
+        yield from (of | row for row in _pin(scene, steps, penalty))
 
 
 def _named(strip: "Strip") -> Row:
     return {"clamp": strip.clamp, "mesh": "x".join(map(str, strip.mesh))}
-
-
-def contact_forces(problem: "SolidProblem", steps: int, count: int) -> Array:
-    """Contact force at the first `count` of `steps` equal load parameters."""
-    contact = replace(problem.contacts[0], penetration=PENETRATION)
-    result = solved(replace(problem, contacts=(contact,)), np.arange(1, count + 1) / steps)
-    return result.contacts[contact.name].force
 
 
 def _tip(strip: "Strip", load: float) -> Row:
@@ -85,20 +78,16 @@ def _tip(strip: "Strip", load: float) -> Row:
     result = solved(SolidProblem(strips=(strip,), loads=(dead,)), np.arange(1, 11) / 10)
     u, other = result.tips[strip.name][-1] - strip.end, tip_load(strip, force).tip[-1]
     own, peer, apart = (float(np.hypot(*one)) for one in (u, other, other - u))
-    return {
-        "load_parameter": 1.0,
-        "reached": 1.0,
-        "fem_reference": own,
-        "calculix": peer,
-        "difference": apart / own,
-    }
+    found = {"fem_reference": own, "calculix": peer, "difference": apart / own}
+    return {"load_parameter": 1.0, "reached": 1.0, **found}
 
 
-def _pin(problem: "SolidProblem", steps: int, penalty: float) -> Iterator[Row]:
+def _pin(scene: Scene, steps: int, penalty: float) -> Iterator[Row]:
     """Yield a row per load parameter shown, with the contact force as the clamp bears it."""
+    problem, stepped = to_solid(scene), changed(scene, {**EXACT, "scene.load_parameters": steps})
     answer = pressed(problem.strips[0], problem.pins[0].path, steps, penalty)
     calculix = np.hypot(*answer.force.T)
-    solid = contact_forces(problem, steps, max(calculix.size, round(steps * SHOWN[-1])))
+    solid = _contact(stepped, max(calculix.size, round(steps * SHOWN[-1]))).force
     differences = calculix / solid[: calculix.size] - 1.0
     ended = {"reached": float(answer.load_parameter[-1]), "largest": float(np.abs(differences).max())}
     for t in SHOWN:
@@ -114,12 +103,12 @@ def locking() -> Iterator[Row]:
     for slenderness, nu in product((0.02, 0.002), (0.3, 0.49, 0.4999)):
         scene = _slender(slenderness, nu)
         E = scene.beams[0].youngs_modulus
-        moduli = {"youngs_modulus": E / (1 - nu**2), "shear_modulus": E / (2 * (1 + nu))}
-        (rod,) = solve(_beam(scene, poissons_ratio=None, **moduli), ROD.name).contacts.values()
+        moduli: Changes = {"beam.youngs_modulus": E / (1 - nu**2), "beam.shear_modulus": E / (2 * (1 + nu))}
+        (rod,) = solve(changed(scene, {"beam.poissons_ratio": None, **moduli}), ROD.name).contacts.values()
         row: Row = {"h_over_L": slenderness, "poissons_ratio": nu}
         for element, mesh in (("Q1", (100, 4)), ("Q2-full", (50, 2)), ("Q2", (50, 2))):
-            strip = _beam(scene, solid_element=element, mesh=mesh, material="biot-linear")
-            force = _contact(strip, STEPS // 2, plane="strain").force[-1]
+            strip: Changes = {"beam.solid_element": element, "beam.mesh": mesh, **LAW}
+            force = _contact(changed(scene, strip), STEPS // 2, plane="strain").force[-1]
             row[element] = float(force / rod.force[STEPS // 2 - 1] - 1.0)
         yield row
 
@@ -130,7 +119,7 @@ def thin_beams() -> Iterator[Row]:
     for slenderness in (0.02, 0.01, 0.005):
         scene = _slender(slenderness, 0.3)
         (rod,) = solve(scene, ROD.name).contacts.values()
-        solid = _history(_beam(changed(scene, ROD_LAW), mesh=(100, 2)))
+        solid = _history(scene, (100, 2))
         row = _largest(solid / np.array([rod.force, rod.arc_position])[:, LATE] - 1.0)
         orders = {f"{name}_order": float(np.log2(last[name] / row[name])) if last else None for name in row}
         last = row
@@ -143,11 +132,8 @@ def scatter() -> Iterator[Row]:
         scene = _stepped(name)
         x, y = scene.pins[0].points[0]
         # the centre of a pin of finite radius lies that much below the scene's sharp pin
-        pin: Changes = {"pin.start": (x, y - radius), "pin.radius": radius or None}
-        scene = changed(scene, {**ROD_LAW, **pin})
-        found, finer = (
-            np.array([_history(_beam(scene, mesh=one)) for one in of]) for of in (MESHES, SEQUENCE)
-        )
+        scene = changed(scene, {"pin.start": (x, y - radius), "pin.radius": radius or None})
+        found, finer = (np.array([_history(scene, mesh) for mesh in of]) for of in (MESHES, SEQUENCE))
         differences = {"21 meshes, 40x2 to 60x2": np.ptp(found, axis=0) / found.mean(axis=0)}
         for (a, b), (coarse, fine) in zip(pairwise(finer), pairwise(SEQUENCE), strict=True):
             differences[f"{coarse[0]}x{coarse[1]} to {fine[0]}x{fine[1]}"] = a / b - 1.0
@@ -182,11 +168,8 @@ def _stepped(name: str) -> Scene:
 def _slender(slenderness: float, nu: float) -> Scene:
     """Return the KS cantilever with another height over length and Poisson's ratio."""
     scene = _stepped("ks-cantilever")
-    return _beam(scene, height=slenderness * scene.beams[0].length, poissons_ratio=nu)
-
-
-def _beam(scene: Scene, **changes: object) -> Scene:
-    return changed(scene, {f"beam.{key}": value for key, value in changes.items()})
+    height = slenderness * scene.beams[0].length
+    return changed(scene, {"beam.height": height, "beam.poissons_ratio": nu})
 
 
 def _contact(scene: Scene, count: int = STEPS, **strip: Any) -> "ContactHistory":
@@ -195,9 +178,9 @@ def _contact(scene: Scene, count: int = STEPS, **strip: Any) -> "ContactHistory"
     return contact
 
 
-def _history(scene: Scene) -> Array:
-    """Return the quantities compared past t = .1, shape (2, n)."""
-    contact = _contact(scene)
+def _history(scene: Scene, mesh: tuple[int, int]) -> Array:
+    """Return the quantities compared of a solid with the rod's own law, without penetration, past t = .1, shape (2, n)."""
+    contact = _contact(changed(scene, {**EXACT, **LAW, "beam.mesh": mesh}))
     return np.array([contact.force, contact.arc_position])[:, LATE]
 
 

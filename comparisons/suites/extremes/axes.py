@@ -13,7 +13,7 @@ import numpy as np
 from comparisons.models import MODELS, ROD, SOLID, TSM, Model
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
 from comparisons.scene.rules import Point
-from comparisons.suite import case
+from comparisons.suite import case, changed
 from comparisons.suites.extremes.cell import Against, Allowance, Cell, Check, circle, energy
 from tsm.elements import ELEMENTS, MIXED, TIMOSHENKO, ClosedForm, ElementType
 
@@ -76,10 +76,8 @@ def cell(model: Model, column: str, scene: Scene, *checks: Check, row: str = "",
 
 def beam(column: str, scene: Scene, kind: ElementType, elements: int | None, row: str = "") -> Cell:
     """Return the cell of TSM, against the rod of the same shear stiffness: that of an Euler-Bernoulli element is rigid in shear."""
-    stiff = scene
-    if not kind.sheared:
-        rigid: Any = {"poissons_ratio": None, "shear_modulus": 1e9 * scene.beams[0].youngs_modulus}
-        stiff = replace(scene, beams=(replace(scene.beams[0], **rigid),))
+    rigid = {"beam.poissons_ratio": None, "beam.shear_modulus": 1e9 * scene.beams[0].youngs_modulus}
+    stiff = scene if kind.sheared else changed(scene, rigid)
     return cell(TSM, column, scene, rod(stiff), row=row or kind.name, element=kind.name, elements=elements)
 
 
@@ -108,12 +106,12 @@ def everything(
 
 
 def _units(lengths: Sequence[float], moduli: Sequence[float]) -> Iterator[Cell]:
-    plain = list(everything("", half_circle(cantilever()), 10, COARSE))
+    plain = half_circle(cantilever())
     for length, modulus in product(lengths, moduli):
         scene = half_circle(cantilever(length=length, youngs_modulus=modulus))
-        own = everything(f"L {length:g}, E {modulus:g}", scene, 10, COARSE)
-        for one, unit in zip(own, plain, strict=True):
-            yield one.also(Against(case=unit.case, name="itself at L = 1, E = 1", allowed=UNITS))
+        for one in everything(f"L {length:g}, E {modulus:g}", scene, 10, COARSE):
+            itself = replace(one.case, scene=plain)
+            yield one.also(Against(case=itself, name="itself at L = 1, E = 1", allowed=UNITS))
 
 
 def _slenderness(slenderness: Sequence[float], solids_to: float) -> Iterator[Cell]:
@@ -152,24 +150,21 @@ def _ratio(powers: Sequence[int]) -> Iterator[Cell]:
 
 def _contact(parts: Sequence[float]) -> Iterator[Cell]:
     """A pin beside a node in the middle, beside the clamp, beside the tip, in parts of one of ten elements."""
-    elements = 10
-    part = 1 / elements
-    ulp = {"+ulp": math.inf, "-ulp": -math.inf}
+    part = 1 / 10
 
     def beside(name: str, x: float) -> dict[str, float]:
-        return {f"at {name}": x, **{f"{name} {by}": math.nextafter(x, to) for by, to in ulp.items()}}
+        ulps = {f"{name} {sign}ulp": math.nextafter(x, float(f"{sign}inf")) for sign in "+-"}
+        return {f"at {name}": x, **ulps}
 
     nodes = beside("node", 0.5)
-    for size, (sign, away) in product(parts, (("+", 1), ("-", -1))):
-        nodes[f"node {sign}{size:g} l"] = 0.5 + away * size * part
-    clamps = {f"clamp +{size:g} l": (size * part, 0.1 * size * part) for size in parts}
-    clamps = {"at clamp": (0.0, 0.02)} | clamps
+    nodes |= {f"node {size:+g} l": 0.5 + size * part for one in parts for size in (one, -one)}
     tips = beside("tip", 1.0) | {f"tip -{size:g} l": 1 - size * part for size in parts}
     paths = {column: ((x, 0.0), (x, 0.02)) for column, x in nodes.items()}
-    paths |= {column: ((x, 0.0), (x, lift)) for column, (x, lift) in clamps.items()}
+    paths["at clamp"] = (0.0, 0.0), (0.0, 0.02)
+    paths |= {f"clamp +{one:g} l": ((one * part, 0.0), (one * part, 0.1 * one * part)) for one in parts}
     paths |= {column: ((x, 0.0), (x - 0.02, 0.02)) for column, x in tips.items()}
     for column, path in paths.items():
-        yield from everything(column, pushed(cantilever(), *path), elements)
+        yield from everything(column, pushed(cantilever(), *path), 10)
 
 
 def _load_step(counts: Sequence[int], finest: int) -> Iterator[Cell]:
@@ -207,8 +202,8 @@ def _depth() -> Iterator[Cell]:
     for turns, kind in product((1, 2), kinds()):
         load = LoadSpec(beam="beam", end="end", moment=2 * math.pi * turns * strip.EI / strip.length)
         scene = Scene(name="rolled-up", load_parameters=8, beams=(strip,), loads=(load,))
-        one = beam(f"roll-up, {turns}", scene, kind, 40 * turns if kind.meshed else 1)
-        yield replace(one, checks=(circle,))
+        count = 40 * turns if kind.meshed else 1
+        yield cell(TSM, f"roll-up, {turns}", scene, circle, row=kind.name, element=kind.name, elements=count)
 
 
 def _time(counts: Sequence[int], cut_back: int) -> Iterator[Cell]:

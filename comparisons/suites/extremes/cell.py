@@ -41,7 +41,7 @@ class Allowance(NamedTuple):
 def allowance(case: Case, bent: Bending) -> Allowance:
     """Return the error allowed to `case` against Reissner's rod, bent so; of a rod at most `LARGEST`."""
     parts = case.found.error_parts(case.scene, case.options, bent)
-    error, largest = sum(parts.values()), max(parts, key=lambda why: parts[why])
+    error, largest = sum(parts.values()), max(parts, key=parts.__getitem__)
     if case.found.rod and not error <= LARGEST:
         return Allowance(LARGEST, f"more is wrong, although theory allows it: {largest}")
     return Allowance(error, largest)

@@ -76,8 +76,7 @@ def _cost(case: Case) -> int:
 
 def _sections(judgements: Sequence[Judgement]) -> list[Section]:
     """Return one map for each axis that has cells, and the key after the first."""
-    errors = [10.0**power for power in (-14, -10, -6, -3, -1)]
-    shaded = {_number(error): {"style": _shade(error)} for error in errors}
+    shaded = {_number(error): {"style": _shade(error)} for error in (1e-14, 1e-10, 1e-6, 1e-3, 0.1)}
     parts = [Section("How to read the maps", rendered("maps", marks=MARKS, shaded=shaded))]
     for name, axis in AXES.items():
         own = [item for item in judgements if item.row["axis"] == name]
@@ -85,8 +84,8 @@ def _sections(judgements: Sequence[Judgement]) -> list[Section]:
             at = {(item.row["model"], item.row["value"]): _cell(item) for item in own}
             rows, columns = (list(dict.fromkeys(names)) for names in zip(*at, strict=True))
             grid = {row: [at.get((row, column), ABSENT) for column in columns] for row in rows}
-            about = f"{axis['scene']}."
-            parts.append(Section(axis["title"], rendered("map", about=about, columns=columns, grid=grid)))
+            drawn = rendered("map", about=f"{axis['scene']}.", columns=columns, grid=grid)
+            parts.append(Section(axis["title"], drawn))
     return [*parts[1:2], parts[0], *parts[2:]]
 
 

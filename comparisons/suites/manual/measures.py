@@ -7,7 +7,6 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from comparisons.answer import Array, Response
 from comparisons.answer.axis import STATIONS, axes_at_stations
@@ -16,17 +15,19 @@ from comparisons.answer.table import table
 from comparisons.frozen import Frozen
 from comparisons.models import ROD, SOLID, solve
 from comparisons.models.model import Options
+from comparisons.models.shared import kept
 from comparisons.models.solid import to_solid
 from comparisons.models.tsm import to_structure
+from comparisons.report import palette
 from comparisons.report.plot import Line
 from comparisons.scene import LoadSpec, Scene, read_scene
 from comparisons.suite.settings import changed
 from comparisons.suites.formula import value_of
-from comparisons.suites.manual.problem import Problem, Quantity, Trial
+from comparisons.suites.manual.problem import Problem, Trial
 from comparisons.suites.solid_accuracy import solved
 
-ANSWER = "exact answer"
-"""Label of lines of the exact answer, which no model computed."""
+EXACT = {"color": palette.GREY, "linewidth": 0.8, "linestyle": (0, (4, 3)), "zorder": 3}
+"""Style of the lines of what is exact; those of models have none."""
 
 
 class StoppedError(RuntimeError):
@@ -45,19 +46,24 @@ class Answers(Frozen):
         """What the model solves."""
         return self.trial.scene
 
-    def solved(
-        self, scene: Scene | None = None, *, draw: bool = True, options: Options | None = None
-    ) -> Response:
-        """Return the response to the trial's scene or another one, whose deflected axes are drawn."""
-        trial, scene = self.trial, scene or self.scene
-        response = answered(scene, trial.model.split()[0], options or trial.options)
-        if draw:
-            self.lines.extend(deflected(scene, response, trial.model, self.problem.picture.shown))
+    def solved(self, scene: Scene) -> Response:
+        """Return the response to a scene."""
+        return answered(scene, self.trial.model.split()[0], self.trial.options)
+
+    def shown(self, scene: Scene) -> Response:
+        """Return the response to a scene, and draw its deflected axes."""
+        response = self.solved(scene)
+        for points in deflected(scene, response, self.problem.picture.shown):
+            self.draw(*points)
         return response
 
-    def draw(self, x: ArrayLike, y: ArrayLike, label: str = "") -> None:
-        """Draw a line of points, by default as one of the model."""
-        self.lines.append(Line(label or self.trial.model, np.stack([x, y])))
+    def draw(self, x: Any, y: Any) -> None:
+        """Draw a line of the model."""
+        self.lines.append(Line(self.trial.model, (x, y)))
+
+    def draw_exact(self, x: Any, y: Any) -> None:
+        """Draw a line of the exact answer."""
+        self.lines.append(Line("exact answer", (x, y), EXACT))
 
 
 def answered(scene: Scene, model: str, options: Options | None = None) -> Response:
@@ -73,7 +79,7 @@ def readings(answers: Answers) -> Iterable[float]:
     found: dict[str, Response] = {}
     for one in answers.problem.quantities:
         if repr(one.changes) not in found:
-            found[repr(one.changes)] = answers.solved(changed(answers.scene, one.changes))
+            found[repr(one.changes)] = answers.shown(changed(answers.scene, one.changes))
         of, beam = partial(value, found[repr(one.changes)]), answers.scene.beams[0]
         yield value_of(one.formula, of=of, read=one.read, at=one.at, beam=beam)
 
@@ -103,16 +109,32 @@ def step(response: Response, load_parameter: float) -> int:
     return int(np.flatnonzero(np.abs(response.load_parameter - load_parameter) < 1e-9)[0])
 
 
-def deflected(scene: Scene, response: Response, label: str, shown: Sequence[float]) -> Iterator[Line]:
-    """Yield the deflected axes of all beams at some load parameters."""
+def deflected(scene: Scene, response: Response, shown: Sequence[float]) -> Iterator[Array]:
+    """Yield the deflected axes of all beams at some load parameters, shape (2, n)."""
     for beam, t in product(scene.beams, shown):
-        yield Line(label, response.axis_line(beam.name, step(response, t))[1].T)
+        yield response.axis_line(beam.name, step(response, t))[1].T
 
 
 def undeformed(scene: Scene) -> Iterator[Line]:
     """Yield the undeformed axes and the paths of the pins."""
-    yield from (Line("undeformed", np.array([beam.start, beam.end]).T) for beam in scene.beams)
-    yield from (Line("path of the pin", np.array(pin.points).T) for pin in scene.pins)
+    dashed = {"color": "0.6", "linewidth": 1.0, "linestyle": "--", "zorder": 1}
+    dotted = dashed | {"linewidth": 0.8, "linestyle": ":"}
+    yield from (Line("undeformed", np.array([one.start, one.end]).T, dashed) for one in scene.beams)
+    yield from (Line("path of the pin", np.array(one.points).T, dotted) for one in scene.pins)
+
+
+def exact_lines(problem: Problem, found: Sequence[Line]) -> Iterator[Line]:
+    """Yield what a picture has whatever the models answer: undeformed axes, the exact answer, a line for the eye."""
+    picture, scene = problem.picture, problem.scene
+    if picture.guide:
+        order, first = picture.guide
+        ends = np.sort(np.asarray(found[0].points)[0, [0, -1]])
+        yield Line("exact order", (ends, first * (ends / ends[0]) ** order), EXACT)
+    elif not picture.axes:
+        yield from undeformed(scene)
+    if picture.exact:
+        for points in deflected(scene, answered(scene, picture.exact), picture.shown):
+            yield Line("exact answer", points, EXACT)
 
 
 def critical_load(answers: Answers) -> Iterable[float]:
@@ -123,34 +145,30 @@ def critical_load(answers: Answers) -> Iterable[float]:
 
     def sideways(load: float) -> float:
         loaded = changed(scene, {"scene.load_parameters": 1, "load.force": (0.0, -load)})
-        return value(answers.solved(loaded, draw=False), "column.end.force_x", 1.0)
+        return value(answers.solved(loaded), "column.end.force_x", 1.0)
 
     aside, loads = scene.supports[0].motion[0] or 1.0, (estimate * np.linspace(0.1, 1.2, 12)).tolist()
     stiffness = [sideways(load) / aside for load in loads]
     answers.draw(loads, stiffness)
-    answers.draw([estimate, estimate], [0.0, max(stiffness)], ANSWER)
+    answers.draw_exact([estimate, estimate], [0.0, max(stiffness)])
     yield float(brentq(sideways, 0.8 * estimate, 1.2 * estimate, xtol=1e-12, rtol=1e-12))
 
 
 def greatest_load(answers: Answers) -> Iterable[float]:
     """Read the greatest load and its place: of a pin that is raised, or of half of three-point bending."""
     # a pin whose path has a corner turns back there: both are read on the way there, then on the way back
-    given, response, pin = answers.problem.settings, answers.solved(draw=False), answers.scene.pins[-1]
+    given, scene = answers.problem.settings, answers.scene
+    response, pin = answers.solved(scene), scene.pins[-1]
     t, a = response.load_parameter, pin.points[0][0]
     rise = np.array([pin.position(one)[1] for one in t]) / a
-    load = table(response, along=False)[given["load"]] * given["times"] * a**2 / answers.scene.beams[0].EI
+    load = table(response, along=False)[given["load"]] * given["times"] * a**2 / scene.beams[0].EI
     answers.draw(rise, load)
-    _draw_levels(answers, answers.problem.quantities[::2], rise.max())
+    for one in answers.problem.quantities[::2]:
+        answers.draw_exact([0.0, rise.max()], [one.exact, one.exact])
     there = t <= max(pin.corners, default=1.0)
     yield from summit(rise[there], load[there])
     if not there.all():
         yield from summit(rise[~there][::-1], load[~there][::-1])
-
-
-def _draw_levels(answers: Answers, quantities: Iterable[Quantity], width: float) -> None:
-    """Draw exact values as lines."""
-    for one in quantities:
-        answers.draw([0.0, width], [one.exact, one.exact], ANSWER)
 
 
 def summit(x: Array, y: Array) -> tuple[float, float]:
@@ -162,43 +180,37 @@ def summit(x: Array, y: Array) -> tuple[float, float]:
     return float(history(place)), float(place)
 
 
-def under_load(scene: Scene, force: float) -> Scene:
-    """Return a frame with a downward dead force on the joint that a support presses down in the scene, in place of the support."""
-    pressed = next(support for support in scene.supports if support.moves)
-    others = tuple(support for support in scene.supports if support is not pressed)
-    dead = LoadSpec(beam=pressed.beam, end=pressed.end, force=(0.0, -force))
-    return replace(scene, supports=others, loads=(dead,))
-
-
 def limit_points(answers: Answers) -> Iterable[float]:
     """Follow a frame by arc length under a dead load in place of the support that presses it, and read its limit points."""
     import tsm
 
-    given, options = answers.problem.settings, answers.trial.options
-    loaded = under_load(answers.scene, given["force"])
-    structure = to_structure(loaded, elements=options.elements, element=options.element)
+    given, options, scene = answers.problem.settings, answers.trial.options, answers.scene
+    pressed = next(support for support in scene.supports if support.moves)
+    dead = LoadSpec(**kept(pressed, "beam end"), force=(0.0, -given["force"]))
+    held = tuple(support for support in scene.supports if support is not pressed)
+    loaded = replace(scene, supports=held, loads=(dead,))
+    structure = to_structure(loaded, **kept(options, "elements element"))
     result = tsm.trace(structure, arc_length=given["arc_length"], steps=given["steps"], throw=False)
     found = [event.load_parameter for event in result.events if event.kind is tsm.EventKind.LIMIT_POINT]
     if len(found) < (count := len(answers.problem.quantities)):
         raise StoppedError(f"{result.status.name}: {result.message}; {len(found)} limit points of {count}")
-    joint, shown = loaded.loads[0], result.load_parameter <= given["highest"]
-    down = loaded.place(joint.node)[1] - result.tips[joint.beam][shown, 1]
+    shown = result.load_parameter <= given["highest"]
+    down = scene.place(dead.node)[1] - result.tips[dead.beam][shown, 1]
     answers.draw(np.append(0.0, down), np.append(0.0, result.load_parameter[shown]))
-    _draw_levels(answers, answers.problem.quantities, down.max())
+    for one in answers.problem.quantities:
+        answers.draw_exact([0.0, down.max()], [one.exact, one.exact])
     yield from found[:count]
 
 
 def power_law(answers: Answers) -> Iterable[float]:
-    """Exponent of the error of the force against the rod, or of the penetration, in what is varied."""
-    # ``varies`` is ``elements`` or a setting of the scene; ``sign`` is -1 for that of the inverse
+    """Exponent of the error of the force against the rod, or of the size of what is read, in the setting that is varied."""
+    # ``of`` is what is read, ``sign`` is -1 for the exponent in the inverse of the setting
     given, found = answers.problem.settings, list[float]()
     for one in given["values"]:
-        elements = given["varies"] == "elements"
-        scene = answers.scene if elements else changed(answers.scene, {given["varies"]: one})
-        options = replace(answers.trial.options, elements=one) if elements else None
-        response = answers.solved(scene, options=options, draw=False)
-        if given["of"] == "penetration":
-            found.append(-value(response, f"{scene.contacts[0].pair}.gap", 1.0))
+        scene = changed(answers.scene, {given["varies"]: one})
+        response = answers.solved(scene)
+        if "of" in given:
+            found.append(abs(value(response, given["of"], 1.0)))
         else:
             found.append(difference(response, answered(scene, ROD.name), scene, "force"))
     answers.draw(given["values"], found)
@@ -216,7 +228,7 @@ def _solved_directly(answers: Answers, times: Array, **strip: Any) -> Any:
     if solid:
         result = solved(to_solid(scene, mesh=options.mesh), times, throw=False, **strip)
     else:
-        beams = to_structure(scene, elements=options.elements, element=options.element)
+        beams = to_structure(scene, **kept(options, "elements element"))
         result = tsm.solve(beams, times, throw=False)
     if result.status.name != "COMPLETED":
         raise StoppedError(f"{result.status.name}: {result.message}")
@@ -248,7 +260,7 @@ def work_over_energy(answers: Answers) -> Iterable[float]:
 def invariance(answers: Answers) -> Iterable[float]:
     """Largest changes of contact force and clamp moment in the scene that is moved, mirrored or named from the other end."""
     other = read_scene(answers.problem.settings["other"], answers.problem.name)
-    found = [table(answers.solved(draw=False), along=False), table(answers.solved(other), along=False)]
+    found = [table(one, along=False) for one in (answers.solved(answers.scene), answers.shown(other))]
     answers.lines.extend(undeformed(other))
     for name in (".force", ".moment"):
         a, b = (np.abs(next(one[key] for key in one if key.endswith(name))) for one in found)

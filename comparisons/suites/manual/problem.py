@@ -9,7 +9,7 @@ from typing import Any
 
 from comparisons.frozen import Value
 from comparisons.models.model import Options
-from comparisons.scene import InputError, Scene, built_in_scenes, load_scene, read_scene
+from comparisons.scene import InputError, Scene, built_in_scenes, load_scene, read_scene, rules
 from comparisons.suite.settings import Changes, changed
 
 FOLDER = Path(__file__).parent / "problems"
@@ -102,8 +102,7 @@ def _scene(table: dict[str, Any], path: Path, scene: Scene | None = None) -> Sce
 def _trial(row: dict[str, Any], scene: Scene, path: Path) -> Trial:
     element, count, mesh = row["model"].partition(" ")[2], row.pop("elements", None), row.pop("mesh", None)
     beams = f"{count or 1} element{'s' if count else ''} a beam" if element else ""
-    strip: Any = tuple(map(int, mesh.split("x"))) if mesh else None
-    options = Options(element=element or None, elements=count, mesh=strip)
+    options = Options(element=element or None, elements=count, mesh=mesh and rules.mesh_text(mesh))
     row.setdefault("setting", f"{mesh} elements" if mesh else beams)
     return Trial(options=options, scene=_scene(row, path, scene), **row)
 
@@ -117,8 +116,7 @@ def problems(names: Sequence[str] | None = None, folder: Path = FOLDER) -> list[
         For a name that no problem has.
     """
     files = {path.stem: path for path in sorted(folder.glob("*.toml"))}
-    order = [name for name in ORDER.read_text(encoding="utf-8").split() if name in files]
-    known = list(dict.fromkeys([*order, *files]))
+    known = [name for name in dict.fromkeys([*ORDER.read_text("utf-8").split(), *files]) if name in files]
     for name in names or ():
         if name not in files:
             raise InputError(name, f"no such problem ({', '.join(known)})")

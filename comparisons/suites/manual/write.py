@@ -1,7 +1,6 @@
 """The manual: judgements on the answers, a picture for each problem, and what is found as a page, Markdown, numbers and JUnit checks."""
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 from functools import partial
 from itertools import chain
 from math import inf, nan
@@ -9,10 +8,9 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-import numpy as np
-
-from comparisons import models as registry
+from comparisons.answer.table import unit_names
 from comparisons.frozen import Frozen
+from comparisons.models import find
 from comparisons.models.shared import kept
 from comparisons.output import Report, Row, markdown
 from comparisons.report import palette
@@ -22,28 +20,11 @@ from comparisons.report.plot import Line, draw_lines
 from comparisons.suites.finding import Finding, junit_text
 from comparisons.suites.formula import sentence
 from comparisons.suites.found import Found
-from comparisons.suites.manual.measures import (
-    ANSWER,
-    MEASURES,
-    Answers,
-    StoppedError,
-    answered,
-    deflected,
-    undeformed,
-)
-from comparisons.suites.manual.problem import Problem, Quantity, Trial, read_problem
+from comparisons.suites.manual.measures import MEASURES, Answers, StoppedError, exact_lines
+from comparisons.suites.manual.problem import Problem, Trial, read_problem
 from comparisons.version import versions
 
 PAGE = Path(__file__).with_name("page.md.jinja")
-GUIDE = "exact order"
-EXACT = {"color": palette.GREY, "linewidth": 0.8, "linestyle": (0, (4, 3)), "zorder": 3}
-STYLES: dict[str, dict[str, Any]] = {
-    "undeformed": {"color": "0.6", "linewidth": 1.0, "linestyle": "--", "zorder": 1},
-    "path of the pin": {"color": "0.6", "linewidth": 0.8, "linestyle": ":", "zorder": 1},
-    ANSWER: EXACT,
-    GUIDE: EXACT,
-}
-"""Styles of the lines that no model computed."""
 
 
 class Judgement(Frozen):
@@ -79,7 +60,7 @@ class Judgement(Frozen):
     @property
     def failure(self) -> str | None:
         """Why the answer fails, with its numbers; None if it is right."""
-        return self.stopped or (None if self.passed else self.worst.failure)
+        return self.stopped or self.worst.failure
 
 
 def judged(problem: Problem) -> list[Judgement]:
@@ -95,44 +76,30 @@ def _judged(answers: Answers) -> Judgement:
         stopped, values = str(error), [nan] * len(asked)
     seconds = perf_counter() - began
 
-    def found(one: Quantity, value: float) -> Finding:
-        error = inf if stopped else one.error(value)
-        bound = Finding(name=one.name, error=error, allowed=trial.allowed, why=trial.why)
-        return replace(bound, value=value, exact=one.exact)
-
-    findings = tuple(found(*one) for one in zip(asked, values, strict=True))
+    bound = kept(trial, "allowed why")
+    findings = tuple(
+        Finding(error=inf if stopped else one.error(value), value=value, **kept(one, "name exact"), **bound)
+        for one, value in zip(asked, values, strict=True)
+    )
     return Judgement(**vars(answers), findings=findings, seconds=seconds, stopped=stopped)
 
 
 def draw_case(case: Sequence[Judgement], *paths: Path) -> None:
     """Draw what is exact and what the models found on a problem."""
     problem, picture, lines = case[0].problem, case[0].problem.picture, list[Line]()
-    length = problem.scene.units.split(",")[1].strip()
+    length = unit_names(problem.scene.units)["length"]
     x, y = picture.axes or (f"x [{length}]", f"y [{length}]")
     # the first model on top, each line wider than those above it, so that those that agree are all seen
     for number, one in reversed(list(enumerate(case))):
-        key, _, element = one.trial.model.partition(" ")
-        colour = palette.colour(f"{registry.find(key).label} {element}".strip())
+        trial = one.trial
+        colour = palette.colour(find(trial.model.split()[0]).family(trial.scene, trial.options))
         size = {"marker": "o", "markersize": 10.0} if picture.guide else {"linewidth": 1.5 + 2.0 * number}
         own = {"color": colour, **size}
-        lines += (drawn._replace(style=STYLES.get(drawn.label, own)) for drawn in one.lines)
-    lines += (drawn._replace(style=STYLES[drawn.label]) for drawn in _exact(problem, case[0].lines))
+        lines += (drawn._replace(style=drawn.style or own) for drawn in one.lines)
+    lines += exact_lines(problem, case[0].lines)
     scales: dict[str, Any] = {} if picture.axes else {"aspect": "equal", "adjustable": "datalim"}
     scales |= {"xscale": "log", "yscale": "log"} if picture.guide else {}
     draw_lines({problem.title: lines}, *paths, tall=3.6, xlabel=x, ylabel=y, **scales)
-
-
-def _exact(problem: Problem, found: Sequence[Line]) -> Iterator[Line]:
-    """Yield what a picture has whatever the models answer: undeformed axes, the exact answer, a line for the eye."""
-    picture, scene = problem.picture, problem.scene
-    if picture.guide:
-        order, first = picture.guide
-        ends = np.sort(np.asarray(found[0].points)[0, [0, -1]])
-        yield Line(GUIDE, (ends, first * (ends / ends[0]) ** order))
-    elif not picture.axes:
-        yield from undeformed(scene)
-    if picture.exact:
-        yield from deflected(scene, answered(scene, picture.exact), ANSWER, picture.shown)
 
 
 def _answer(item: Judgement) -> Row:
@@ -152,21 +119,17 @@ def _answer(item: Judgement) -> Row:
 
 def _answers(case: Sequence[Judgement]) -> list[Row]:
     """Return the rows of a problem: each quantity by each model, tolerances, verdicts and seconds."""
-
-    def row(name: str, exact: str, cells: Iterable[str]) -> Row:
-        labels = (item.trial.label for item in case)
-        return {"quantity": name, "exact": exact, **dict(zip(labels, cells, strict=True))}
-
     rows = [
-        row(of[0].name, f"{of[0].exact:.12g}", (f"{one.value:.9g} ({one.error:.1e})" for one in of))
+        (of[0].name, f"{of[0].exact:.12g}", *(f"{one.value:.9g} ({one.error:.1e})" for one in of))
         for of in zip(*(item.findings for item in case), strict=True)
     ]
-    return [
-        *rows,
-        row("tolerance", "", (f"{item.trial.allowed:.2g}" for item in case)),
-        row("verdict", "", (item.verdict for item in case)),
-        row("seconds", "", (f"{item.seconds:.2f}" for item in case)),
+    rows += [
+        ("tolerance", "", *(f"{item.trial.allowed:.2g}" for item in case)),
+        ("verdict", "", *(item.verdict for item in case)),
+        ("seconds", "", *(f"{item.seconds:.2f}" for item in case)),
     ]
+    columns = ("quantity", "exact", *(item.trial.label for item in case))
+    return [dict(zip(columns, row, strict=True)) for row in rows]
 
 
 def _section(case: Sequence[Judgement], folder: Path) -> Section:
@@ -207,29 +170,27 @@ def _numbers(case: Sequence[Judgement]) -> dict[str, Any]:
 
 def manual(files: Sequence[Path], report: Report) -> Found:
     """Solve problems, the files of `comparisons.suites.manual.problem.problems`, and judge the answers; `report` takes a line for each problem."""
-    cases = []
+    cases, wrong = list[list[Judgement]](), list[str]()
     for problem in map(read_problem, files):
         case = judged(problem)
         cases.append(case)
-        failed = [item for item in case if not item.passed]
+        failed = [f"{item.trial.label}: {item.failure}" for item in case if not item.passed]
         spent = sum(item.seconds for item in case)
         report(f"{problem.name}: {'FAILED' if failed else 'passed'}, {spent:.1f} s")
-        for item in failed:
-            report(f"  {item.trial.label}: {item.failure}")
+        for line in failed:
+            report(f"  {line}")
+        wrong += (f"{problem.name}, {line}" for line in failed)
     judgements = list(chain.from_iterable(cases))
-    failed = [item for item in judgements if not item.passed]
-    wrong = [f"{item.problem.name}, {item.trial.label}: {item.failure}" for item in failed]
     every = [_answer(item) for item in judgements]
-    links = (f"[{item.problem.title}](#{item.problem.name})" for item in judgements)
-    linked = [row | {"case": link} for row, link in zip(every, links, strict=True)]
-    held = ("\n".join(one.measured for one in item.findings) for item in judgements)
+    links = ({"case": f"[{item.problem.title}](#{item.problem.name})"} for item in judgements)
+    linked = [row | link for row, link in zip(every, links, strict=True)]
     checks = (
-        (f"manual.{item.problem.name}", item.trial.label, item.seconds, item.failure, text)
-        for item, text in zip(judgements, held, strict=True)
+        (f"manual.{item.problem.name}", item.trial.label, item.seconds, item.failure, item.findings)
+        for item in judgements
     )
     words: dict[str, Any] = {"cases": cases, "judgements": judgements, "versions": versions()}
-    template = PAGE.read_text(encoding="utf-8")
-    text = sentence(template, **words, every=markdown(linked), answers=lambda case: markdown(_answers(case)))
+    words |= {"every": markdown(linked), "answers": lambda case: markdown(_answers(case))}
+    text = sentence(PAGE.read_text(encoding="utf-8"), **words)
     said = f"{len(cases)} cases, {len(judgements)} answers, {len(wrong)} beyond their tolerance."
     return Found(
         title="Verification manual",
