@@ -75,7 +75,7 @@ def changed(scene: Scene, changes: Changes) -> Scene:
 def settings(case: Case) -> dict[str, object]:
     """Return the settings of a case by key; the key omits the record's name if the scene has only one of its kind."""
     tables = plain(to_tables(case.scene))
-    found = {name: plain(value) for name, value in vars(case.options).items() if value is not None}
+    found: Table = plain(case.given)
     found |= {f"scene.{key}": value for key, value in tables["scene"].items() if key != "name"}
     for kind in LISTS:
         records = tables.get(kind, [])

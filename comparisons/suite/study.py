@@ -38,7 +38,7 @@ Axes = dict[str, tuple[object, ...]]
 
 LARGEST, LARGEST_COUNT = 100_000, 10_000
 """Cases of a study, and values of a range."""
-ANSWERED = ("force", "arc_position", "moment", "tip_x", "tip_y")
+ANSWERED = ("load_parameter", "force", "arc_position", "moment", "tip_x", "tip_y")
 """Quantities whose values at the end are columns."""
 DETAILS = ("moment:", "tip_x:", "tip_y:")
 """Columns that a table for a reader leaves out, by their beginnings."""
@@ -252,13 +252,12 @@ def _varied(tables: Collection[Mapping[str, object]]) -> list[str]:
 
 def _answers(response: Response) -> dict[str, float]:
     """Return the last state reached."""
-    last = {name: values[-1:] for name, values in table(response, along=False).items()}
-    told = {"load_parameter": last.pop("load_parameter")}
-    for name, value in last.items():
+    told = {}
+    for name, values in table(response, along=False).items():
         of, _, what = name.rpartition(".")
-        if what in ANSWERED:
-            told[f"{what}:{of}"] = value
-    return {name: float(value[0]) for name, value in told.items() if np.isfinite(value).any()}
+        if what in ANSWERED and np.isfinite(values[-1:]).any():
+            told[f"{what}:{of}".rstrip(":")] = float(values[-1])
+    return told
 
 
 def _text(value: object) -> object:

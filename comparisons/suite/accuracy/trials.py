@@ -12,6 +12,7 @@ from comparisons.answer.errors import difference
 from comparisons.answer.quantities import QUANTITIES, size
 from comparisons.models import SOLID, TSM, solve
 from comparisons.models.model import Options
+from comparisons.models.solid import rectangle
 from comparisons.scene import Scene
 from tsm.elements import EXACT, MIXED, ClosedForm
 
@@ -189,8 +190,6 @@ def solid(scene: Scene, accuracy: float, quantity: str) -> Iterator[Trial]:
 
 def _strips(scene: Scene, mesh: tuple[int, int]) -> Scene:
     """Return the scene with every strip meshed alike, stocky ones with fewer elements along."""
-    from comparisons.models.solid import rectangle
-
     beams = []
     for beam in scene.beams:
         part = min(1.0, beam.length / rectangle(beam)[1] / SLENDER)
