@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from math import log
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from comparisons.answer import Array, Response
 from comparisons.answer.axis import SampledAxes, sampled_axes
 from comparisons.answer.errors import Errors, errors
-from comparisons.answer.quantities import forces, moments, scales, size
+from comparisons.answer.quantities import QUANTITIES, forces, moments, scales, size
 from comparisons.frozen import Frozen
 from comparisons.models import MODELS, ROD, SOLID, TSM, Model
 from comparisons.models.solid import REFINED
@@ -104,7 +105,6 @@ class Reference(Frozen):
     """A response that errors are measured against, its uncertainty by scope and quantity, and what it is in one sentence."""
 
     response: Response
-    scene: Scene
     uncertainty: Errors
     sentence: str
 
@@ -113,9 +113,9 @@ class Reference(Frozen):
         """The load parameter of the scope ``end``."""
         return _end(self.response)
 
-    def errors(self, response: Response) -> Errors:
+    def errors(self, response: Response, scene: Scene) -> Errors:
         """Return the errors of a response."""
-        return errors(response, self.response, self.scene, end=self.end)
+        return errors(response, self.response, scene, end=self.end)
 
 
 def _end(response: Response) -> float:
@@ -143,7 +143,7 @@ def best_reference(scene: Scene, measured: Results) -> Reference:
         confirmed = f"TSM exact, which shares no code with them, agrees within {within}"
     least = {scope: {name: max(e, ROUND_OFF) for name, e in table.items()} for scope, table in apart.items()}
     what = "the exact Reissner rods, with the beams' stretch and shear, which the elastica leaves out"
-    return Reference(response=rod, scene=scene, uncertainty=least, sentence=f"{what}; {confirmed}")
+    return Reference(response=rod, uncertainty=least, sentence=f"{what}; {confirmed}")
 
 
 def solid_limit(scene: Scene, measured: Results, *, quick: bool = False) -> Reference | None:
@@ -156,7 +156,7 @@ def solid_limit(scene: Scene, measured: Results, *, quick: bool = False) -> Refe
     apart = errors(series[-2], series[-1], scene, scale=scales(limit), end=_end(limit))
     meshes = ", ".join(one.label.removeprefix(f"{one.family} ") for one in cases)
     sentence = f"extrapolated from {meshes}, known to {apart['path']['force']:.1e} of the largest force"
-    return Reference(response=limit, scene=scene, uncertainty=apart, sentence=sentence)
+    return Reference(response=limit, uncertainty=apart, sentence=sentence)
 
 
 def extrapolated(responses: Sequence[Response]) -> Response:
@@ -166,19 +166,16 @@ def extrapolated(responses: Sequence[Response]) -> Response:
     # lowers the order on fine meshes
 
     def limit(read: Callable[[Response], Mapping[str, Array]]) -> dict[str, Array]:
-        coarse, middle, fine = (read(one) for one in responses[-3:])
-
-        def apart(a: Mapping[str, Array], b: Mapping[str, Array]) -> float:
-            return max(
-                (float(np.nanmax(np.abs(b[name] - a[name]), initial=0.0)) for name in fine), default=0.0
-            )
-
-        d1, d2 = apart(coarse, middle), apart(middle, fine)
+        _, middle, fine = series = [read(one) for one in responses[-3:]]
+        d1, d2 = (
+            max((float(np.nanmax(np.abs(b[name] - a[name]), initial=0.0)) for name in fine), default=0.0)
+            for a, b in pairwise(series)
+        )
         factor = d2 / (d1 - d2) if 0.0 < 1.1 * d2 < d1 else 0.0
         return {name: values + factor * (values - middle[name]) for name, values in fine.items()}
 
     best, force, moment = responses[-1], limit(forces), limit(moments)
-    arc = limit(lambda one: {pair: contact.arc_position for pair, contact in one.contacts.items()})
+    arc = limit(QUANTITIES["arc"].read)
     axis = limit(lambda one: sampled_axes(one).position)
     closed, held = best.contacts.items(), best.supports.items()
     return replace(

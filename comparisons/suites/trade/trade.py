@@ -115,15 +115,14 @@ class Trade(Frozen):
 
 def measure_trade(scene: Scene, run: Runner, *, quick: bool = False) -> Trade:
     """Measure every setting of `scene` and state its errors; nothing to measure them against is a `NoReferenceError`."""
-    cases = list(dict.fromkeys([*reference_cases(scene), *sweep_cases(scene, quick=quick)]))
-    measured = run(cases)
+    measured = run([*reference_cases(scene), *sweep_cases(scene, quick=quick)])
     reference = best_reference(scene, measured)
     limit = solid_limit(scene, measured, quick=quick)
     rows = []
-    for case in cases:
-        response, own = measured[case].response, limit if case.found.continuum else reference
-        errors, own_errors = (None if one is None else one.errors(response) for one in (reference, own))
-        rows.append(replace(measured[case], errors=errors, own_errors=own_errors))
+    for case, row in measured.items():
+        own = limit if case.found.continuum else reference
+        own_errors = None if own is None else own.errors(row.response, scene)
+        rows.append(replace(row, errors=reference.errors(row.response, scene), own_errors=own_errors))
     return Trade(scene=scene, rows=rows, reference=reference, limit=limit)
 
 
