@@ -143,13 +143,13 @@ def brief(judgements: Judgements, *, quick: bool) -> Brief:
 
 
 def reproduce(name: str, *, quick: bool, report: Report) -> Found:
-    """Draw a figure of `FIGURES` or "all", and judge its claims."""
-    found, names = dict[str, Study](), list(FIGURES) if name == "all" else [name]
+    """Draw a figure of `FIGURES`, or all of them for another name, and judge its claims."""
+    found, names = dict[str, Study](), [name] if name in FIGURES else list(FIGURES)
     for number, figure in enumerate(names, 1):
         report(f"[{number}/{len(names)}] {figure}: {FIGURES[figure]}")
         found[figure] = STUDIES[figure](quick=quick, report=lambda line: report(f"  {line}"))
     judgements = judged({figure: study.numbers for figure, study in found.items()}, quick=quick)
-    text = "claims.md" if name == "all" else f"claims-{name}.md"
+    text = f"claims-{name}.md" if name in FIGURES else "claims.md"
     files: dict[str, Any] = {text: claims_text(judgements, quick=quick)}
     for figure, study in found.items():
         files |= {f"{stem}.csv": rows for stem, rows in study.tables.items()}
