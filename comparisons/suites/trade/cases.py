@@ -18,7 +18,7 @@ from comparisons.scene import Scene
 from comparisons.suite import Case, case
 from comparisons.suite.run import Results
 from comparisons.suite.settings import changed
-from tsm.elements import EXACT, MIXED_NO_BOW, PAPER, ElementType
+from tsm.elements import EXACT, MIXED_NO_BOW, PAPER
 
 PENALTIES = (1e-4, 1e-2, 1e2)
 """Penalties over Young's modulus times width; the automatic one is 25."""
@@ -57,8 +57,9 @@ def _settings(model: Model, scene: Scene, *, quick: bool) -> Iterator[Case]:
         for options in model.resolutions(quick=quick):
             yield Case(scene=stepped, model=model.name, options=options)
     if model is TSM and not quick:
-        yield beams(scene, EXACT, 1, tolerance=1e-3)
-        yield from (beams(scene, kind, n) for kind in (*PAPER[1:], MIXED_NO_BOW) for n in (5, 10, 20, 40))
+        yield _exact(scene, 1e-3)
+        kinds = (*PAPER[1:], MIXED_NO_BOW)
+        yield from (case(scene, TSM, element=one.name, elements=n) for one in kinds for n in (5, 10, 20, 40))
     if model is SOLID:
         yield from limit_cases(scene, quick=quick)
         if not quick:
@@ -72,9 +73,9 @@ def _settings(model: Model, scene: Scene, *, quick: bool) -> Iterator[Case]:
         yield solid(scene, (25, 2), penetration=PENETRATION)
 
 
-def beams(scene: Scene, kind: ElementType, elements: int, tolerance: float | None = None) -> Case:
-    """Return TSM with elements of a type."""
-    return case(scene, TSM, element=kind.name, elements=elements, integration_tolerance=tolerance)
+def _exact(scene: Scene, tolerance: float) -> Case:
+    """Return TSM with an exact element a beam."""
+    return case(scene, TSM, element=EXACT.name, elements=1, integration_tolerance=tolerance)
 
 
 def solid(
@@ -127,7 +128,7 @@ def _end(response: Response) -> float:
 
 def reference_cases(scene: Scene) -> list[Case]:
     """Return the exact rods, and the exact elements that confirm them."""
-    return [case(scene, ROD), beams(scene, EXACT, 1, tolerance=1e-12)]
+    return [case(scene, ROD), _exact(scene, 1e-12)]
 
 
 def best_reference(scene: Scene, measured: Results) -> Reference:
