@@ -144,7 +144,7 @@ def _values(case: Case) -> Values:
     ks = [int(np.argmin(np.abs(response.load_parameter - t))) for t in TIMES]
     found = {}
     for kind, columns in kinds.items():
-        largest = max((float(np.abs(values).max(initial=0.0)) for values in columns.values()), default=0.0)
+        largest = np.nanmax(np.abs(list(columns.values())), initial=0.0)
         for name, values in columns.items():
             seen = np.abs(values[ks]) > LEAST * largest
             found[f"{kind} {name}" if len(columns) > 1 else kind] = np.where(seen, values[ks], np.nan)
