@@ -33,8 +33,8 @@ from comparisons.scene import to_toml
 from comparisons.suite.case import Case
 
 REFUSED = "REFUSED"
-REFUSALS = {verdict.name for verdict in Verdict} - {Verdict.CERTIFIED.name, Verdict.NOT_JUDGED.name}
-"""Verdicts by which the referee refuses an answer."""
+ACCEPTED = ("", Verdict.CERTIFIED.name, Verdict.NOT_JUDGED.name)
+"""Verdicts by which the referee does not refuse an answer."""
 SLOW = 10.0
 """Time of a run [s] above which the first run is the measurement, without a warm-up."""
 STORED = "seconds repeats peak_memory verdict process_seconds"
@@ -91,7 +91,7 @@ class Row(Frozen):
     def wrong(self) -> bool:
         """Whether the model reported success and its answer was refused by the checks or the referee."""
         response = self.response
-        return response.false_success or (response.reported_success and self.verdict in REFUSALS)
+        return response.false_success or (response.reported_success and self.verdict not in ACCEPTED)
 
     @property
     def outcome(self) -> str:

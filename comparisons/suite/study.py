@@ -245,8 +245,7 @@ def result_table(rows: list[dict[str, Any]]) -> str:
 
 def _varied(tables: Collection[Mapping[str, object]]) -> list[str]:
     """Return the settings that differ between cases, a model's options first."""
-    known = {name for table in tables for name in table}
-    differ = (name for name in known if len({repr(table.get(name)) for table in tables}) > 1)
+    differ = (name for name in keys(tables) if len({repr(table.get(name)) for table in tables}) > 1)
     return sorted(differ, key=lambda name: ("." in name, name))
 
 

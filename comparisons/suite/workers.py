@@ -26,7 +26,7 @@ class WorkersError(InputError):
 
 
 @contextmanager
-def local(count: int | None = None) -> Iterator[tuple[Executor, int]]:
+def local(count: int | None) -> Iterator[tuple[Executor, int]]:
     """Give `count` processes of this machine, by default one for each processor core."""
     count = count or os.cpu_count() or 1
     main = str(getattr(sys.modules["__main__"], "__file__", ""))
@@ -34,7 +34,10 @@ def local(count: int | None = None) -> Iterator[tuple[Executor, int]]:
         raise WorkersError(
             "workers", f"cannot load {main}: a program from standard input must be a file to start processes"
         )
-    context, before = get_context("spawn"), {name: os.environ.get(name) for name in ONE_THREAD}
+    context, before = (
+        get_context("spawn"),
+        {name: os.environ[name] for name in ONE_THREAD if name in os.environ},
+    )
     # nothing is sent: the workers see the pipe close when this process closes it or dies
     watched, held = context.Pipe(duplex=False)
     executor = ProcessPoolExecutor(count, mp_context=context, initializer=_end_with, initargs=(watched,))
@@ -42,9 +45,9 @@ def local(count: int | None = None) -> Iterator[tuple[Executor, int]]:
     try:
         yield executor, count
     finally:
-        for name, value in before.items():
+        for name in ONE_THREAD:
             del os.environ[name]
-            os.environ.update({} if value is None else {name: value})
+        os.environ.update(before)
         held.close()
         executor.shutdown(cancel_futures=True)
         watched.close()

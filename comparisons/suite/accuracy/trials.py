@@ -95,13 +95,15 @@ def graded(scene: Scene, accuracy: float, quantity: str, kind: ClosedForm) -> It
     # a mesh is compared with the one of halved elements; the next has the number that the order predicts, with
     # equal shares of the error: its density is (kappa^4 + (N/EI)^2 + (V/EI)^2)^(p/(4 (p + 1)))
     order, element, options, few = kind.order, kind.name, Options(element=kind.name), _few(scene)
+    factor, power = kind.shear_floor
     mesh = _with(scene, [np.linspace(0.0, 1.0, FIRST + 1)] * len(scene.beams))
     for _ in range(ROUNDS):
         coarse, fine = (
             solve(replace(one, load_parameters=few), TSM.name, options) for one in (mesh, _halved(mesh))
         )
         apart = float(np.fmax(difference(coarse, fine, scene, quantity), 0.0))
-        stuck = _shear_limit(fine, scene, kind.shear_floor)
+        # the error that no mesh removes
+        stuck = factor * shear_kink(fine, scene) ** power
         estimate = SAFETY * (2**order / (2**order - 1)) * apart + stuck
         counts = [beam.divisions for beam in mesh.beams]
         total = sum(counts)
@@ -118,14 +120,13 @@ def graded(scene: Scene, accuracy: float, quantity: str, kind: ClosedForm) -> It
         mesh = _graded(mesh, fine, wanted, order) if len(fine.load_parameter) else _halved(mesh)
 
 
-def _shear_limit(response: Response, scene: Scene, floor: tuple[float, int]) -> float:
-    """Return the error that no mesh removes: the element's factor times a power of the largest shear strain under a contact."""
-    factor, power = floor
-    strains = [
+def shear_kink(response: Response, scene: Scene) -> float:
+    """Return the largest angle by which shear kinks an axis at a contact, ``F/GA`` [rad]."""
+    kinks = (
         float(np.abs(response.contacts[contact.pair].force).max(initial=0.0)) / scene.beam(contact.beam).GA
         for contact in scene.contacts
-    ]
-    return float(factor * max(strains, default=0.0) ** power)
+    )
+    return max(kinks, default=0.0)
 
 
 def _with(scene: Scene, ends: Sequence[Array]) -> Scene:

@@ -76,16 +76,11 @@ def critical_areas(*, quick: bool, report: Report) -> Study:
     rows = [{**of, "floor": force_floor(**of, samples=samples)} for of in cases]
     floors = np.reshape([row["floor"] for row in rows], (len(FLOORS), -1))
     numbers = measured(areas, floors, shown)
+    drawn = {"fig7b-tolerance": {"": _areas(numbers)}, "fig7b-floor": {"": _floors(floors, numbers)}}
     return Study(
         tables={"fig7b": curves, "fig7b-tolerance": areas, "fig7b-floor": rows},
         numbers=numbers,
-        pictures=pictures(
-            {
-                "fig7b": panels,
-                "fig7b-tolerance": {"": _areas(numbers)},
-                "fig7b-floor": {"": _floors(floors, numbers)},
-            }
-        ),
+        pictures=pictures({"fig7b": panels, **drawn}),
     )
 
 

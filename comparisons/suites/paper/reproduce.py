@@ -65,8 +65,7 @@ def judged(found: Mapping[str, Numbers], *, quick: bool) -> Judgements:
     """Return the judgements on the claims whose figure was studied, by the numbers of the figures."""
     judgements: dict[str, Row] = {}
     for name, claim in CLAIMS.items():
-        figure = claim["figure"]
-        if figure not in found:
+        if (figure := claim["figure"]) not in found:
             continue
         numbers = found[figure]
         readings, holds, in_size = (

@@ -27,7 +27,7 @@ ROUND_OFF = 2.0**-52
 """Least uncertainty of a reference, also where two answers are equal."""
 
 
-def sweep_cases(scene: Scene, *, quick: bool = False) -> list[Case]:
+def sweep_cases(scene: Scene, *, quick: bool) -> list[Case]:
     """Return the cases of the sweep, each once, without the longest if quick."""
     every = (one for model in MODELS.values() for one in _settings(model, scene, quick=quick))
     return list(dict.fromkeys(every))
@@ -40,7 +40,7 @@ def load_steps(scene: Scene) -> tuple[int, ...]:
     return tuple(sorted({min(divisors, key=lambda n: abs(log(n / wanted))) for wanted in (1, 5, 10, count)}))
 
 
-def limit_cases(scene: Scene, *, quick: bool = False) -> list[Case]:
+def limit_cases(scene: Scene, *, quick: bool) -> list[Case]:
     """Return the solids for the extrapolation to the limit, coarse to fine: Q2 elements, contact without penetration."""
     return [solid(scene, mesh, penetration=PENETRATION) for mesh in (REFINED[:3] if quick else REFINED[1:])]
 
@@ -147,7 +147,7 @@ def best_reference(scene: Scene, measured: Results) -> Reference:
     return Reference(response=rod, uncertainty=least, sentence=f"{what}; {confirmed}")
 
 
-def solid_limit(scene: Scene, measured: Results, *, quick: bool = False) -> Reference | None:
+def solid_limit(scene: Scene, measured: Results, *, quick: bool) -> Reference | None:
     """Return what the solid converges to, as uncertain as its last meshes differ; None if one stopped."""
     cases = limit_cases(scene, quick=quick)
     series = [measured[one].response for one in cases]

@@ -102,7 +102,7 @@ HIDDEN = ("scope", "quantity", "limit_uncertainty", "settings", "order_scatter",
 """Columns that the other tables for people leave out."""
 
 
-def trade(scene: Scene, run: Runner, *, quick: bool = False) -> Found:
+def trade(scene: Scene, run: Runner, *, quick: bool) -> Found:
     """Return what a trade-off found: every setting, the cheapest for an accuracy, orders, fronts, and what stopped."""
     trade = measure_trade(scene, run, quick=quick)
     settings, known = result_rows(trade.rows), trade.reference.uncertainty

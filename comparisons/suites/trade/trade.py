@@ -113,7 +113,7 @@ class Trade(Frozen):
         return [row for row in rows if scope == "end" or row.case.scene.load_parameters == every]
 
 
-def measure_trade(scene: Scene, run: Runner, *, quick: bool = False) -> Trade:
+def measure_trade(scene: Scene, run: Runner, *, quick: bool) -> Trade:
     """Measure every setting of `scene` and state its errors; nothing to measure them against is a `NoReferenceError`."""
     measured = run([*reference_cases(scene), *sweep_cases(scene, quick=quick)])
     reference = best_reference(scene, measured)
