@@ -72,7 +72,8 @@ def read_study(path: Path) -> Study:
     """
     source = str(path)
     tables = read_tables(read_text(source), source)
-    head, mistakes = head_values(tables, "study", HEAD_RULES, required=("name", "scene"))
+    head_rules: dict[str, Rule] = {"name": rules.name, "scene": rules.text, "repeats": rules.whole_number}
+    head, mistakes = head_values(tables, "study", head_rules, required=("name", "scene"))
     mistakes += check_keys(tables, ("study", "run"), required=("study", "run"))
     wrong, cases = list(check_tables(tables, "run")), list[Case]()
     mistakes += wrong
@@ -141,10 +142,6 @@ OPTION_RULES: dict[str, Rule] = {
 }
 """What the options of a case must obey."""
 assert OPTION_RULES.keys() == {item.name for item in fields(Options)}
-
-
-HEAD_RULES: dict[str, Rule] = {"name": rules.name, "scene": rules.text, "repeats": rules.whole_number}
-"""The keys of the table ``[study]`` with the rules of their values."""
 
 
 def _case(scene: Scene, chosen: dict[str, object], folder: Path) -> Case:
@@ -264,4 +261,4 @@ def _text(value: object) -> object:
     if not isinstance(value, list):
         return value
     whole = all(isinstance(item, int) for item in value)
-    return ("x" if whole else " ").join(str(item) for item in value)
+    return ("x" if whole else " ").join(map(str, value))

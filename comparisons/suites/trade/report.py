@@ -12,6 +12,7 @@ import numpy as np
 
 from comparisons.answer.quantities import KEPT, SCOPES
 from comparisons.models import MODELS, ROD, SOLID, TSM
+from comparisons.output import Row as Line
 from comparisons.output import tabulated
 from comparisons.report import palette
 from comparisons.report.brief import Brief
@@ -25,7 +26,6 @@ from comparisons.suites.trade.trade import (
     COSTS,
     MESHED,
     TARGETS,
-    Line,
     Trade,
     cheapest,
     front,
@@ -44,15 +44,8 @@ APART = 0.045
 """Least distance of two labels, over the height of the diagram."""
 
 
-def plot_work(trade: Trade, *paths: Path) -> None:
-    """Draw the errors of all settings over their seconds, against the reference and against each model's limit."""
-    panels = [partial(_draw, trade=trade, own=own) for own in (False, True)]
-    title = f"{trade.scene.name}: what accuracy costs over {trade.scene.load_parameters} load steps"
-    draw(panels, *paths, tall=3.95, title=title, columns=1, sharex=True, sharey=True)
-
-
 def _draw(axes: Any, trade: Trade, *, own: bool) -> None:
-    """Draw the completed settings in the order of the legend, and fronts; what is uncertain bounds errors from below."""
+    """Draw the errors of the completed settings over their seconds in the order of the legend; their uncertainty bounds them from below."""
     order = [words for model in MODELS.values() for words in model.styles()]
     models = (model.name for model in MODELS.values() if model.meshed or not model.rod)
     rows = [row for name in models for row in trade.of_model(name, SCOPE)]
@@ -129,6 +122,10 @@ def trade(scene: Scene, run: Runner, *, quick: bool) -> Found:
     limit = trade.limit.sentence if trade.limit else "not known: a solid that it is extrapolated from stopped"
     sources = {"errors against": trade.reference.sentence, "the solid's own limit": limit}
 
+    panels = [partial(_draw, trade=trade, own=own) for own in (False, True)]
+    title = f"{scene.name}: what accuracy costs over {scene.load_parameters} load steps"
+    work = partial(draw, panels, tall=3.95, title=title, columns=1, sharex=True, sharey=True)
+
     def sections(folder: Path) -> list[Section]:
         seen = picture(folder / f"{WORK}.svg", f"Largest error of {SHOWN} over the path, against seconds.")
         every = _shown([{name: row[name] for name in SETTING} for row in settings])
@@ -149,7 +146,7 @@ def trade(scene: Scene, run: Runner, *, quick: bool) -> Found:
             "trade.json": numbers,
         },
         sections=sections,
-        pictures={WORK: partial(plot_work, trade)},
+        pictures={WORK: work},
         scenes=[scene],
         text="\n\n".join([*said, "\n".join(ends if reasons else [])]),
     )

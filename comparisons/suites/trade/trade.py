@@ -3,13 +3,14 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import nan
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from comparisons.frozen import Frozen
 from comparisons.models import MODELS, SOLID, TSM
+from comparisons.output import Row as Line
 from comparisons.scene import Scene
 from comparisons.suite import Row
 from comparisons.suite.progress import Runner
@@ -79,8 +80,6 @@ def convergence(resolution: Sequence[float], error: Sequence[float], floor: floa
     return power_law(list(x[chosen]), list(y[chosen]))
 
 
-Line = dict[str, Any]
-"""A row of a table by its columns."""
 TARGETS = (5e-2, 1e-2, 1e-3, 1e-4, 1e-5)
 COSTS = ("seconds", "iterations", "unknowns")
 MESHED = tuple(model.name for model in MODELS.values() if model.meshed)
