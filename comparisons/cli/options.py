@@ -3,6 +3,7 @@
 import argparse
 import sys
 from collections.abc import Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,7 +30,8 @@ def workers(given: argparse.Namespace, number: int | None = None) -> "Workers":
     """Return where the cases run, by default `number` processes or one for each core."""
     from comparisons.suite.workers import cluster, local
 
-    return cluster(given.workers) if isinstance(given.workers, str) else local(given.workers or number)
+    where = given.workers or number
+    return partial(cluster, where) if isinstance(where, str) else partial(local, where)
 
 
 STANDARD = Path("-")

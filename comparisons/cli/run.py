@@ -46,8 +46,7 @@ def _out(given: Namespace, *names: str) -> Path:
 
 def _figures(given: Namespace) -> int:
     folder = _out(given, "report.html")
-    figure = "all" if given.suite == "paper" else given.suite
-    return shown(reproduce(figure, quick=given.quick, report=report), folder)
+    return shown(reproduce(given.suite, quick=given.quick, report=report), folder)
 
 
 def _bench(given: Namespace) -> int:

@@ -39,12 +39,17 @@ class Case(Value):
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
     @property
+    def given(self) -> dict[str, Any]:
+        """The options that are given."""
+        return {name: value for name, value in vars(self.options).items() if value is not None}
+
+    @property
     def description(self) -> dict[str, object]:
         """What the case is, for the file of its result."""
         return {
             "scene": to_toml(self.scene),
             "model": self.found.name,
-            "options": {name: value for name, value in vars(self.options).items() if value is not None},
+            "options": self.given,
             "version": version(),
         }
 

@@ -6,7 +6,7 @@ import json
 import statistics
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from importlib import import_module
@@ -24,7 +24,7 @@ from comparisons.answer.axis import storable
 from comparisons.answer.errors import Errors, errors
 from comparisons.answer.file import as_dict, restated
 from comparisons.frozen import Frozen
-from comparisons.models import certified, find, solve
+from comparisons.models import certified, solve
 from comparisons.models.model import ModelError
 from comparisons.models.shared import kept
 from comparisons.output import plain
@@ -33,11 +33,11 @@ from comparisons.scene import to_toml
 from comparisons.suite.case import Case
 
 REFUSED = "REFUSED"
-REFUSALS = {verdict.name for verdict in Verdict} - {Verdict.CERTIFIED.name, Verdict.NOT_JUDGED.name}
-"""Verdicts by which the referee refuses an answer."""
+ACCEPTED = ("", Verdict.CERTIFIED.name, Verdict.NOT_JUDGED.name)
+"""Verdicts by which the referee does not refuse an answer."""
 SLOW = 10.0
 """Time of a run [s] above which the first run is the measurement, without a warm-up."""
-STORED = ("seconds", "repeats", "peak_memory", "verdict", "process_seconds")
+STORED = "seconds repeats peak_memory verdict process_seconds"
 """What is kept of a row besides its answer."""
 
 
@@ -51,21 +51,18 @@ class Row(Frozen):
     #: Processor time from the scene to the checked response without imports [s]: the median over `repeats` runs after a warm-up, nan if no
     #: run is timed. On one thread it is the wall time on an idle core.
     seconds: float = nan
-    repeats: int = (
-        0  #: Number of timed runs; one, without a warm-up, where the first run took more than 10 s.
-    )
-    peak_memory: int = (
-        0  #: Largest rise of the process's resident memory in the first run [byte]; zero but on Linux.
-    )
+    #: Number of timed runs; one, without a warm-up, where the first run took more than 10 s.
+    repeats: int = 0
+    #: Largest rise of the process's resident memory in the first run [byte]; zero but on Linux.
+    peak_memory: int = 0
     #: Verdict of the certificate for the last load parameter and the neighbours of events; empty if none was reached or no run is timed.
     verdict: str = ""
     process_seconds: float = nan  #: Processor time of a process of ``crossval solve`` without certificate [s]; nan if not asked for.
     errors: Errors | None = None  #: By scope and quantity, against the reference, which has none.
     own_errors: Errors | None = None  #: Against the model's limit.
     name: str = ""  #: Label of the run, if not that of the case.
-    cause: str = (
-        ""  #: Largest part of the error that theory allows the model; empty where theory has no estimate.
-    )
+    #: Largest part of the error that theory allows the model; empty where theory has no estimate.
+    cause: str = ""
 
     @property
     def label(self) -> str:
@@ -94,7 +91,7 @@ class Row(Frozen):
     def wrong(self) -> bool:
         """Whether the model reported success and its answer was refused by the checks or the referee."""
         response = self.response
-        return response.false_success or (response.reported_success and self.verdict in REFUSALS)
+        return response.false_success or (response.reported_success and self.verdict not in ACCEPTED)
 
     @property
     def outcome(self) -> str:
@@ -147,15 +144,14 @@ class Row(Frozen):
 
     def to_json(self) -> str:
         """Return what was measured as JSON text, after what the case is; null for what is not finite."""
-        numbers = {name: getattr(self, name) for name in STORED}
-        data = {**self.case.description, **numbers, "response": as_dict(self.response)}
+        data = {**self.case.description, **kept(self, STORED), "response": as_dict(self.response)}
         return json.dumps(plain(data), allow_nan=False)
 
     @classmethod
     def from_json(cls, case: Case, text: str) -> "Row":
         """Return the row that `to_json` wrote, every number the same."""
         data: dict[str, Any] = json.loads(text)
-        numbers: dict[str, Any] = {name: nan if data[name] is None else data[name] for name in STORED}
+        numbers: dict[str, Any] = {name: nan if data[name] is None else data[name] for name in STORED.split()}
         return cls(case=case, response=restated(data["response"]), **numbers)
 
 
@@ -166,10 +162,10 @@ def measure(case: Case, *, repeats: int = 3, process: bool = False) -> Row:
 
     A solution that stops is measured like any other. A scene that the model refuses has the status ``REFUSED``. Neither raises.
     """
-    for library in find(case.model).libraries:
+    for library in case.found.libraries:
         import_module(library)
     try:
-        (response, first), peak = _with_peak_memory(lambda: _timed(case))
+        response, first, peak = _with_peak_memory(case)
     except ModelError as error:
         return unmeasured(case, REFUSED, str(error))
     seconds = [first] if first > SLOW or not repeats else [_timed(case)[1] for _ in range(repeats)]
@@ -188,18 +184,15 @@ def _process_seconds(case: Case) -> float:
     """Processor time of ``crossval solve`` in a process of its own [s]; nan where the system does not count it."""
     command = [sys.executable, "-c", "from comparisons.cli import main; main()", "solve"]
     words = ["--model", case.model, "--certify", "none", "--quiet"]
-    for name, value in vars(case.options).items():
-        if value is not None:
-            text = "x".join(map(str, value)) if isinstance(value, tuple) else str(value)
-            words += ["--" + name.replace("_", "-"), text]
+    for name, value in case.given.items():
+        text = "x".join(map(str, value)) if isinstance(value, tuple) else str(value)
+        words += ["--" + name.replace("_", "-"), text]
     with TemporaryDirectory() as folder:
         file = Path(folder) / f"{case.scene.name}.toml"
         file.write_text(to_toml(case.scene), encoding="utf-8")
-        before = times()
+        before = _children_seconds()
         subprocess.run([*command, str(file), *words], capture_output=True, check=False)  # noqa: S603 - this program
-        after = times()
-    spent = after.children_user + after.children_system - before.children_user - before.children_system
-    return spent or nan
+        return _children_seconds() - before or nan
 
 
 def verdict(response: Response) -> str:
@@ -208,30 +201,29 @@ def verdict(response: Response) -> str:
 
 
 def _timed(case: Case) -> tuple[Response, float]:
-    began = _processor_seconds()
+    # programs of others are child processes
+    began = process_time() + _children_seconds()
     response = solve(case.scene, case.model, case.options)
-    return response, _processor_seconds() - began
+    return response, process_time() + _children_seconds() - began
 
 
-def _processor_seconds() -> float:
-    """Processor time of this process, and of child processes that have ended, which programs of others are [s]."""
+def _children_seconds() -> float:
+    """Processor time of child processes that have ended [s]."""
     now = times()
-    return process_time() + now.children_user + now.children_system
+    return now.children_user + now.children_system
 
 
-def _with_peak_memory(action: Callable[[], tuple[Response, float]]) -> tuple[tuple[Response, float], int]:
-    """Return what `action` returns, and by how many bytes the memory rose: Linux can reset its peak."""
-    if sys.platform != "linux":
-        return action(), 0
+def _with_peak_memory(case: Case) -> tuple[Response, float, int]:
+    """Return the response, its seconds, and by how many bytes the memory rose: Linux can reset its peak."""
     gc.collect()
-    with suppress(AttributeError):  # not every C library can give freed memory back to the system
+    with suppress(AttributeError, TypeError):  # not every C library can give freed memory back to the system
         ctypes.CDLL(None).malloc_trim(0)
     try:
         Path("/proc/self/clear_refs").write_text("5")
     except OSError:
-        return action(), 0
+        return *_timed(case), 0
     start = _kibibytes("VmRSS")
-    return action(), 1024 * max(_kibibytes("VmHWM") - start, 0)
+    return *_timed(case), 1024 * max(_kibibytes("VmHWM") - start, 0)
 
 
 def _kibibytes(field: str) -> int:

@@ -21,7 +21,7 @@ Runner = Callable[[Iterable[Case]], Results]
 
 
 @contextmanager
-def running(folder: Path, workers: Workers, *, quiet: bool = False, **how: Any) -> Iterator[Runner]:
+def running(folder: Path, workers: Workers, *, quiet: bool, **how: Any) -> Iterator[Runner]:
     """Give what runs cases on some workers, keeps their results in a folder, and shows its progress; `how` is that of `measure`.
 
     An exception ends the line of progress, so that its message starts on a new one.

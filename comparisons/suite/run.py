@@ -17,11 +17,8 @@ ERROR = "ERROR"
 """The status of a case that raised an exception, which no model should."""
 UNSETTLED = (WORKER_LOST, ERROR)
 """Statuses that come from the machine or from a bug and not from the case; the next run repeats the case."""
-LOST = "its worker died twice, the second time with this case alone: memory ran out, or a library crashed"
 Results = dict[Case, Row]
 """The row of every case."""
-Progress = Callable[[int, Collection[Row]], None]
-"""Called with the number of cases and the rows that are there, at the start and after each finished case."""
 
 
 def run(
@@ -29,26 +26,29 @@ def run(
     folder: Path,
     workers: Workers,
     *,
-    progress: Progress = lambda *_: None,
+    progress: Callable[[int, Collection[Row]], None] = lambda *_: None,
     **how: Any,
 ) -> Results:
     """Measure all `cases` that have no result in `folder`, in their order; return the results of all, equal cases once.
 
     A result is kept as soon as it is there, and a run may be ended at any point. A case whose worker dies is tried once more,
     alone. If its worker dies again, the case is recorded as ``WORKER_LOST``. A case that raises is recorded as ``ERROR``.
-    `how` are arguments of `measure`.
+    `how` are arguments of `measure`. `progress` takes the number of cases and the rows that are there, at the start and after each case.
 
     Raises OutputError if a result cannot be written, or read. Raises WorkersError if the cluster is gone.
     """
     writable_folder(folder)
     every = {case.key: case for case in cases}
-    kept = {key: recorded(case, folder / f"{key}.json") for key, case in every.items()}
-    done = {key: row for key, row in kept.items() if row is not None}
+    done = {key: row for key, case in every.items() if (row := recorded(case, folder / f"{key}.json"))}
     suspects: list[str] = []
     under_way: dict[Future[Row], str] = {}
 
     def keep(key: str, row: Row) -> None:
-        _write(folder / f"{key}.json", row)
+        file = folder / f"{key}.json"
+        # under a temporary name, and not in the folder's list of files
+        with staging(folder, file) as aside:
+            (aside / file.name).write_text(row.to_json(), encoding="utf-8")
+            (aside / file.name).replace(file)
         done[key] = row
         progress(len(every), done.values())
 
@@ -70,18 +70,12 @@ def run(
                         del under_way[future]
         except BrokenExecutor:
             suspects = suspects if alone else list(under_way.values())
+            lost = "its worker died twice, the second time with this case alone: memory ran out, or a library crashed"
             for key in under_way.values() if alone else ():
-                keep(key, unmeasured(every[key], WORKER_LOST, LOST))
+                keep(key, unmeasured(every[key], WORKER_LOST, lost))
             under_way.clear()
         if len(done) == len(every):
             return {case: done[key] for key, case in every.items()}
-
-
-def _write(file: Path, row: Row) -> None:
-    """Write a result under a temporary name, which is then renamed."""
-    with staging(file.parent, file) as aside:
-        (aside / file.name).write_text(row.to_json(), encoding="utf-8")
-        (aside / file.name).replace(file)
 
 
 def recorded(case: Case, file: Path) -> Row | None:

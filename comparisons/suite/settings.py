@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from comparisons.output import plain
-from comparisons.scene import LoadSpec, Scene, to_tables
+from comparisons.scene import Scene, to_tables
 from comparisons.scene.read import HEAD, LISTS
 from comparisons.scene.rules import FieldError, RecordError
 from comparisons.scene.tables import check_keys
@@ -15,24 +15,23 @@ Changes = Mapping[str, object]
 Table = dict[str, Any]
 
 
-def _named(kind: str, records: list[Table]) -> dict[str, Table]:
-    """Return records by their names in a study file; the number from 2 on of a stage without one."""
-    name_of = {
-        "contact": lambda record: f"{record['node']}->{record['beam']}",
-        "load": lambda record: LoadSpec(**record).node,
-        **dict.fromkeys(("support", "hinge", "spring"), lambda record: f"{record['beam']}.{record['end']}"),
-    }
-    if kind in name_of:
-        return {name_of[kind](record): record for record in records}
-    return {str(record.get("name") or number): record for number, record in enumerate(records, 2)}
+NAMES = {"contact": "pair", **dict.fromkeys(("support", "hinge", "spring", "load"), "node")}
+"""The attributes by which records without a name are named in a study file."""
 
 
-def _places(tables: Table, path: str, value: object) -> Iterator[tuple[str, Table]]:
+def _named(scene: Scene, kind: str, tables: Table) -> dict[str, Table]:
+    """Return the tables of a scene's records by their names; the number from 2 on of a stage without one."""
+    records = enumerate(getattr(scene, f"{kind}s"), 2)
+    names = (str(getattr(one, NAMES.get(kind, "name")) or number) for number, one in records)
+    return dict(zip(names, tables.get(kind, []), strict=True))
+
+
+def _places(scene: Scene, tables: Table, path: str, value: object) -> Iterator[tuple[str, Table]]:
     """Yield the tables that a setting changes with their places in a scene file; `FieldError` for none."""
     kind, _, rest = path.partition(".")
     name, _, key = rest.rpartition(".")
     given: Table = {name: {key: value}} if name else {key: value}
-    records = _named(kind, tables.get(kind, [])) if kind in LISTS else {"": tables["scene"]}
+    records = _named(scene, kind, tables) if kind in LISTS else {"": tables["scene"]}
     mistakes = list(check_keys({kind: given}, ("scene", *LISTS)))
     if records and (kind == "scene" or name):
         known = records if kind in LISTS else () if name else HEAD
@@ -53,7 +52,7 @@ def changed(scene: Scene, changes: Changes) -> Scene:
     stated, mistakes = dict[str, str](), list[FieldError]()
     for path, value in sorted(changes.items(), key=lambda item: item[0].count(".")):
         try:
-            for place, record in _places(tables, path, value):
+            for place, record in _places(scene, tables, path, value):
                 key = path.rpartition(".")[2]
                 record[key] = value
                 stated[f"{place}.{key}"] = path
@@ -75,11 +74,10 @@ def changed(scene: Scene, changes: Changes) -> Scene:
 def settings(case: Case) -> dict[str, object]:
     """Return the settings of a case by key; the key omits the record's name if the scene has only one of its kind."""
     tables = plain(to_tables(case.scene))
-    found = {name: plain(value) for name, value in vars(case.options).items() if value is not None}
+    found: Table = plain(case.given)
     found |= {f"scene.{key}": value for key, value in tables["scene"].items() if key != "name"}
     for kind in LISTS:
-        records = tables.get(kind, [])
-        for name, record in _named(kind, records).items():
-            place = kind if len(records) == 1 else f"{kind}.{name}"
+        for name, record in _named(case.scene, kind, tables).items():
+            place = kind if len(tables[kind]) == 1 else f"{kind}.{name}"
             found |= {f"{place}.{key}": value for key, value in record.items()}
     return found

@@ -38,7 +38,7 @@ Axes = dict[str, tuple[object, ...]]
 
 LARGEST, LARGEST_COUNT = 100_000, 10_000
 """Cases of a study, and values of a range."""
-ANSWERED = ("force", "arc_position", "moment", "tip_x", "tip_y")
+ANSWERED = ("load_parameter", "force", "arc_position", "moment", "tip_x", "tip_y")
 """Quantities whose values at the end are columns."""
 DETAILS = ("moment:", "tip_x:", "tip_y:")
 """Columns that a table for a reader leaves out, by their beginnings."""
@@ -72,7 +72,8 @@ def read_study(path: Path) -> Study:
     """
     source = str(path)
     tables = read_tables(read_text(source), source)
-    head, mistakes = head_values(tables, "study", HEAD_RULES, required=("name", "scene"))
+    head_rules: dict[str, Rule] = {"name": rules.name, "scene": rules.text, "repeats": rules.whole_number}
+    head, mistakes = head_values(tables, "study", head_rules, required=("name", "scene"))
     mistakes += check_keys(tables, ("study", "run"), required=("study", "run"))
     wrong, cases = list(check_tables(tables, "run")), list[Case]()
     mistakes += wrong
@@ -141,10 +142,6 @@ OPTION_RULES: dict[str, Rule] = {
 }
 """What the options of a case must obey."""
 assert OPTION_RULES.keys() == {item.name for item in fields(Options)}
-
-
-HEAD_RULES: dict[str, Rule] = {"name": rules.name, "scene": rules.text, "repeats": rules.whole_number}
-"""The keys of the table ``[study]`` with the rules of their values."""
 
 
 def _case(scene: Scene, chosen: dict[str, object], folder: Path) -> Case:
@@ -245,20 +242,18 @@ def result_table(rows: list[dict[str, Any]]) -> str:
 
 def _varied(tables: Collection[Mapping[str, object]]) -> list[str]:
     """Return the settings that differ between cases, a model's options first."""
-    known = {name for table in tables for name in table}
-    differ = (name for name in known if len({repr(table.get(name)) for table in tables}) > 1)
+    differ = (name for name in keys(tables) if len({repr(table.get(name)) for table in tables}) > 1)
     return sorted(differ, key=lambda name: ("." in name, name))
 
 
 def _answers(response: Response) -> dict[str, float]:
     """Return the last state reached."""
-    last = {name: values[-1:] for name, values in table(response, along=False).items()}
-    told = {"load_parameter": last.pop("load_parameter")}
-    for name, value in last.items():
+    told = {}
+    for name, values in table(response, along=False).items():
         of, _, what = name.rpartition(".")
-        if what in ANSWERED:
-            told[f"{what}:{of}"] = value
-    return {name: float(value[0]) for name, value in told.items() if np.isfinite(value).any()}
+        if what in ANSWERED and np.isfinite(values[-1:]).any():
+            told[f"{what}:{of}".rstrip(":")] = float(values[-1])
+    return told
 
 
 def _text(value: object) -> object:
@@ -266,4 +261,4 @@ def _text(value: object) -> object:
     if not isinstance(value, list):
         return value
     whole = all(isinstance(item, int) for item in value)
-    return ("x" if whole else " ").join(str(item) for item in value)
+    return ("x" if whole else " ").join(map(str, value))

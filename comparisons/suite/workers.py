@@ -7,7 +7,6 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import AbstractContextManager, contextmanager, suppress
-from functools import partial
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 
@@ -26,19 +25,19 @@ class WorkersError(InputError):
     """Workers that cannot be had, or are gone: one line."""
 
 
-def local(count: int | None = None) -> Workers:
-    """Return `count` processes of this machine, by default one for each processor core."""
-    return partial(_processes, count or os.cpu_count() or 1)
-
-
 @contextmanager
-def _processes(count: int) -> Iterator[tuple[Executor, int]]:
+def local(count: int | None) -> Iterator[tuple[Executor, int]]:
+    """Give `count` processes of this machine, by default one for each processor core."""
+    count = count or os.cpu_count() or 1
     main = str(getattr(sys.modules["__main__"], "__file__", ""))
     if main.startswith("<"):
         raise WorkersError(
             "workers", f"cannot load {main}: a program from standard input must be a file to start processes"
         )
-    context, before = get_context("spawn"), {name: os.environ.get(name) for name in ONE_THREAD}
+    context, before = (
+        get_context("spawn"),
+        {name: os.environ[name] for name in ONE_THREAD if name in os.environ},
+    )
     # nothing is sent: the workers see the pipe close when this process closes it or dies
     watched, held = context.Pipe(duplex=False)
     executor = ProcessPoolExecutor(count, mp_context=context, initializer=_end_with, initargs=(watched,))
@@ -46,9 +45,9 @@ def _processes(count: int) -> Iterator[tuple[Executor, int]]:
     try:
         yield executor, count
     finally:
-        for name, value in before.items():
+        for name in ONE_THREAD:
             del os.environ[name]
-            os.environ.update({} if value is None else {name: value})
+        os.environ.update(before)
         held.close()
         executor.shutdown(cancel_futures=True)
         watched.close()
@@ -65,17 +64,13 @@ def _end_with(parent: Connection) -> None:
     threading.Thread(target=watch, daemon=True).start()
 
 
-def cluster(address: str) -> Workers:
-    """Return the workers of the Dask cluster whose scheduler is at `address`, as ``tcp://127.0.0.1:8786``; they need this package.
+@contextmanager
+def cluster(address: str) -> Iterator[tuple[Executor, int]]:
+    """Give the workers of the Dask cluster whose scheduler is at `address`, as ``tcp://127.0.0.1:8786``; they need this package.
 
     The scheduler itself gives the cases of a worker that died to another one, and gives a case up after
     `distributed.scheduler.allowed-failures` deaths. A `WorkersError` says that the extra or the scheduler is missing.
     """
-    return partial(_cluster, address)
-
-
-@contextmanager
-def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
     try:
         from distributed import Client
     except ImportError:

@@ -172,14 +172,8 @@ def beam_theory(response: Response, scene: Scene) -> Theory | None:
     grids = [response.grid(k).point_data for k in np.unique(np.linspace(0, steps - 1, LOOKED_AT).astype(int))]
     slender = max(beam.rectangle_height * max(1.0 / beam.length, abs(beam.curvature)) for _, beam in known)
     strain = max(_face_strain(beam, data, data["beam"] == number) for number, beam in known for data in grids)
-    kinks = (
-        float(np.abs(contact.force).max()) / beam.GA
-        for _, beam in known
-        for pair, contact in response.contacts.items()
-        if pair.endswith(f"->{beam.name}")
-    )
     error = max(strain**2 / 2, slender**2)
-    return Theory(error=error, slenderness=slender, strain=strain, kink=max(kinks, default=0.0))
+    return Theory(error=error, slenderness=slender, strain=strain, kink=trials.shear_kink(response, scene))
 
 
 def _face_strain(beam: BeamSpec, data: Mapping[str, Array], own: Array) -> float:

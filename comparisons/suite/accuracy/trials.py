@@ -1,7 +1,7 @@
 """The settings that are tried for an accuracy, from the cheapest on: tolerances of exact elements, graded elements, solid meshes."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -12,6 +12,7 @@ from comparisons.answer.errors import difference
 from comparisons.answer.quantities import QUANTITIES, size
 from comparisons.models import SOLID, TSM, solve
 from comparisons.models.model import Options
+from comparisons.models.solid import rectangle
 from comparisons.scene import Scene
 from tsm.elements import EXACT, MIXED, ClosedForm
 
@@ -94,13 +95,15 @@ def graded(scene: Scene, accuracy: float, quantity: str, kind: ClosedForm) -> It
     # a mesh is compared with the one of halved elements; the next has the number that the order predicts, with
     # equal shares of the error: its density is (kappa^4 + (N/EI)^2 + (V/EI)^2)^(p/(4 (p + 1)))
     order, element, options, few = kind.order, kind.name, Options(element=kind.name), _few(scene)
-    mesh = _with(scene, {beam.name: np.linspace(0.0, 1.0, FIRST + 1) for beam in scene.beams})
+    factor, power = kind.shear_floor
+    mesh = _with(scene, [np.linspace(0.0, 1.0, FIRST + 1)] * len(scene.beams))
     for _ in range(ROUNDS):
         coarse, fine = (
             solve(replace(one, load_parameters=few), TSM.name, options) for one in (mesh, _halved(mesh))
         )
         apart = float(np.fmax(difference(coarse, fine, scene, quantity), 0.0))
-        stuck = _shear_limit(fine, scene, kind.shear_floor)
+        # the error that no mesh removes
+        stuck = factor * shear_kink(fine, scene) ** power
         estimate = SAFETY * (2**order / (2**order - 1)) * apart + stuck
         counts = [beam.divisions for beam in mesh.beams]
         total = sum(counts)
@@ -117,54 +120,50 @@ def graded(scene: Scene, accuracy: float, quantity: str, kind: ClosedForm) -> It
         mesh = _graded(mesh, fine, wanted, order) if len(fine.load_parameter) else _halved(mesh)
 
 
-def _shear_limit(response: Response, scene: Scene, floor: tuple[float, int]) -> float:
-    """Return the error that no mesh removes: the element's factor times a power of the largest shear strain under a contact."""
-    factor, power = floor
-    strains = [
+def shear_kink(response: Response, scene: Scene) -> float:
+    """Return the largest angle by which shear kinks an axis at a contact, ``F/GA`` [rad]."""
+    kinks = (
         float(np.abs(response.contacts[contact.pair].force).max(initial=0.0)) / scene.beam(contact.beam).GA
         for contact in scene.contacts
-    ]
-    return float(factor * max(strains, default=0.0) ** power)
+    )
+    return max(kinks, default=0.0)
 
 
-def _with(scene: Scene, ends: Mapping[str, Array]) -> Scene:
-    """Return the scene with the ends of elements, over the length, by beam."""
+def _with(scene: Scene, ends: Sequence[Array]) -> Scene:
+    """Return the scene with the ends of the elements of each beam, over its length."""
     beams = (
-        replace(beam, nodes=tuple(ends[beam.name][1:-1].tolist()), elements=len(ends[beam.name]) - 1)
-        for beam in scene.beams
+        replace(beam, nodes=tuple(own[1:-1].tolist()), elements=len(own) - 1)
+        for beam, own in zip(scene.beams, ends, strict=True)
     )
     return replace(scene, beams=tuple(beams))
 
 
 def _halved(mesh: Scene) -> Scene:
-    ends = {beam.name: np.array([0.0, *beam.nodes, 1.0]) for beam in mesh.beams}
-    return _with(mesh, {name: np.sort([*own, *(own[1:] + own[:-1]) / 2]) for name, own in ends.items()})
+    ends = (np.array([0.0, *beam.nodes, 1.0]) for beam in mesh.beams)
+    return _with(mesh, [np.sort([*own, *(own[1:] + own[:-1]) / 2]) for own in ends])
 
 
 def _graded(mesh: Scene, response: Response, wanted: int, order: int) -> Scene:
     """Return a mesh of about `wanted` elements whose density follows the response."""
     grids = [response.grid(k).point_data for k in range(len(response.load_parameter))]
-    arcs, densities, ends = {}, {}, {}
+    arcs, densities = list[Array](), list[Array]()
     for number, beam in enumerate(mesh.beams):
         parts = [data["beam"] == number for data in grids]
         arc, kappa, N, V = (
             np.array([data[name][own] for data, own in zip(grids, parts, strict=True)])
             for name in ("arc", *"MNV")
         )
-        arcs[beam.name] = np.append(arc[0, ::2], beam.length)
+        arcs.append(np.append(arc[0, ::2], beam.length))
         kappa, N, V = (one.reshape(len(grids), -1, 2).mean(axis=2) / beam.EI for one in (kappa, N, V))
-        densities[beam.name] = ((kappa**4 + N**2 + V**2) ** (order / (4 * (order + 1)))).max(axis=0)
-    least = LEAST * max(float(values.max()) for values in densities.values())
-    sums = {
-        name: np.append(0.0, np.cumsum(np.maximum(values, least) * np.diff(arcs[name])))
-        for name, values in densities.items()
-    }
-    whole = sum(float(total[-1]) for total in sums.values())
-    for beam in mesh.beams:
-        total = sums[beam.name]
+        densities.append(((kappa**4 + N**2 + V**2) ** (order / (4 * (order + 1)))).max(axis=0))
+    least = LEAST * max(float(values.max()) for values in densities)
+    lengths = (np.maximum(values, least) * np.diff(arc) for arc, values in zip(arcs, densities, strict=True))
+    sums = [np.append(0.0, np.cumsum(own)) for own in lengths]
+    whole, ends = sum(float(total[-1]) for total in sums), list[Array]()
+    for arc, total in zip(arcs, sums, strict=True):
         count = max(1, round(wanted * float(total[-1]) / whole))
-        inner = np.interp(np.arange(1, count) / count * total[-1], total, arcs[beam.name] / beam.length)
-        ends[beam.name] = np.array([0.0, *inner, 1.0])
+        inner = np.interp(np.arange(1, count) / count * total[-1], total, arc / arc[-1])
+        ends.append(np.array([0.0, *inner, 1.0]))
     return _with(mesh, ends)
 
 
@@ -189,8 +188,6 @@ def solid(scene: Scene, accuracy: float, quantity: str) -> Iterator[Trial]:
 
 def _strips(scene: Scene, mesh: tuple[int, int]) -> Scene:
     """Return the scene with every strip meshed alike, stocky ones with fewer elements along."""
-    from comparisons.models.solid import rectangle
-
     beams = []
     for beam in scene.beams:
         part = min(1.0, beam.length / rectangle(beam)[1] / SLENDER)

@@ -76,12 +76,11 @@ def critical_areas(*, quick: bool, report: Report) -> Study:
     rows = [{**of, "floor": force_floor(**of, samples=samples)} for of in cases]
     floors = np.reshape([row["floor"] for row in rows], (len(FLOORS), -1))
     numbers = measured(areas, floors, shown)
+    drawn = {"fig7b-tolerance": {"": _areas(numbers)}, "fig7b-floor": {"": _floors(floors, numbers)}}
     return Study(
         tables={"fig7b": curves, "fig7b-tolerance": areas, "fig7b-floor": rows},
         numbers=numbers,
-        pictures=pictures(
-            fig7b=panels, fig7b_tolerance={"": _areas(numbers)}, fig7b_floor={"": _floors(floors, numbers)}
-        ),
+        pictures=pictures({"fig7b": panels, **drawn}),
     )
 
 
@@ -171,7 +170,7 @@ def _floors(floors: Array, numbers: Numbers) -> Iterator[Line]:
 
 def cantilever_shapes(*, quick: bool, report: Report) -> Study:
     """Solve the six; `quick` takes two of them with a quarter of the load parameters and without Euler-Bernoulli."""
-    lifts, histories, panels = list[Row](), list[Row](), dict[str, list[Line]]()
+    lifts, histories, panels = list[Row](), list[Row](), dict[str, Iterator[Line]]()
     scenes, runs = list[Scene](), dict[str, Response]()
     coarse, fine = GIVEN["elements"]
     for start in GIVEN["starts"][:: 4 if quick else 1]:
@@ -195,9 +194,9 @@ def cantilever_shapes(*, quick: bool, report: Report) -> Study:
         histories += (dict(zip(names, (start, *row), strict=True)) for row in history)
         # up to the slip-off, or the end of the run before it
         off = {one: travel * one.contacts[pair].slip_off for one in (*tried.values(), finer, rod)}
-        last = {name: travel * max(one.load_parameter, default=0.0) for name, one in tried.items()}
-        ends = {name: np.nanmin([off[one], last[name]]) for name, one in tried.items()}
-        slip_off = dict(zip((coarse, fine), (off[beams], off[finer]), strict=True))
+        last = {one: travel * max(one.load_parameter, default=0.0) for one in tried.values()}
+        ends = {name: np.nanmin([off[one], last[one]]) for name, one in tried.items()}
+        slip_off = {coarse: off[beams], fine: off[finer]}
         lifts.append({
             "start": start,
             "slip_off_rod": off[rod],
@@ -210,12 +209,12 @@ def cantilever_shapes(*, quick: bool, report: Report) -> Study:
         closed = int(np.flatnonzero(np.isfinite(own.arc_position))[-1])
         shown = {f"TSM {one}, {coarse} elements": tried[one] for one in (TIMOSHENKO, MIXED)}
         stop = f"timoshenko: {tried[TIMOSHENKO].status} after {ends[TIMOSHENKO]:.4f} m"
-        title, depths = f"{place}: slips off at {off[beams]:.4f} m\n{stop}", GIVEN["depths"]
-        drawn = shapes(scene, {"exact rod": rod, **shown}, [round(part * closed) for part in depths])
-        panels[title] = list(drawn)
+        steps = [round(part * closed) for part in GIVEN["depths"]]
+        title = f"{place}: slips off at {off[beams]:.4f} m\n{stop}"
+        panels[title] = shapes(scene, {"exact rod": rod, **shown}, steps)
     return Study(
         tables={"fig7a": histories},
         numbers={"starting_positions": lifts, "stopped": stops(runs)},
-        pictures=pictures(fig7a=panels),
+        pictures=pictures({"fig7a": panels}),
         scenes=scenes,
     )

@@ -74,8 +74,7 @@ def double_beam(*, quick: bool, report: Report) -> Study:
             columns[f"{pair} {prefix}{name}"] = np.append(values, np.full(missing, np.nan))
     events = [{**vars(one), "depth": travel * one.load_parameter} for one in response.events or ()]
     stages = _stages(columns["depth"])
-    runs = {label: paper, BEAMS: response}
-    drawn = {title: list(lines) for title, lines in (_stage(finer, runs, stage) for stage in stages)}
+    drawn = dict(_stage(finer, {label: paper, BEAMS: response}, stage) for stage in stages)
     quantities = {"force": "contact force [N]", "arc": "arc position [m]"}
     forces = {title: _histories(columns, events, name, label) for name, title in quantities.items()}
     shown = tracks({BEAMS: response, RODS: exact}, RODS, finer)
@@ -91,14 +90,15 @@ def double_beam(*, quick: bool, report: Report) -> Study:
         "attempts": attempts,
         "stopped": stops({one.setting or one.model: one for one in (own, response, exact)}),
     }
-    rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
-    title = "Double beam: shapes and histories"
+    moving = motion_section("Double beam: shapes and histories", finer, {BEAMS: response}, shown, focus=BEAMS)
     return Study(
-        tables={"fig9": rows},
+        tables={
+            "fig9": [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+        },
         numbers=numbers,
-        pictures=pictures(**({"fig9": drawn} if stages else {}), fig9_forces=forces),
+        pictures=pictures({**({"fig9": drawn} if stages else {}), "fig9-forces": forces}),
         scenes=[finer],
-        moving=[motion_section(title, finer, {BEAMS: response}, shown, focus=BEAMS)],
+        moving=[moving],
     )
 
 

@@ -37,10 +37,9 @@ class Study(Frozen):
     moving: Sequence[Section] = ()
 
 
-def pictures(**drawn: Mapping[str, Iterable[Line]]) -> dict[str, Callable[..., None]]:
-    """Return what draws pictures, the panels of each by the name of its file, with a line below for a hyphen."""
-    names = {name.replace("_", "-"): panels for name, panels in drawn.items()}
-    return {name: partial(draw_lines, panels, **STATED["picture"][name]) for name, panels in names.items()}
+def pictures(drawn: Mapping[str, Mapping[str, Iterable[Line]]]) -> dict[str, Callable[..., None]]:
+    """Return what draws pictures, the panels of each by the name of its file."""
+    return {name: partial(draw_lines, panels, **STATED["picture"][name]) for name, panels in drawn.items()}
 
 
 def stops(runs: Mapping[str, Response]) -> list[str]:
@@ -48,13 +47,7 @@ def stops(runs: Mapping[str, Response]) -> list[str]:
     return [f"{name}: {one.ended}" for name, one in runs.items() if not one.completed]
 
 
-_KINDS = (
-    elements.EULER_BERNOULLI_SIMPLE,
-    elements.EULER_BERNOULLI_CANTILEVER,
-    elements.TIMOSHENKO,
-    elements.MIXED,
-)
-SIMPLE, CANTILEVER, TIMOSHENKO, MIXED = (kind.name for kind in _KINDS)
+TIMOSHENKO, SIMPLE, CANTILEVER, MIXED = (kind.name for kind in (*elements.PAPER, elements.MIXED))
 LABELS = {
     SIMPLE: "Euler-Bernoulli, simple",
     CANTILEVER: "Euler-Bernoulli, cantilever",

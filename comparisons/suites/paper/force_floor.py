@@ -5,7 +5,7 @@
 # GA/b (Timoshenko, b below sqrt(psi)); with the force as an unknown nothing is multiplied. The reference has
 # the same amplification with a last bit 2000 times smaller (x86).
 
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -47,10 +47,8 @@ _Extended = np.longdouble
 _ELEMENTS = 10  # of the beam, over whose length the element lies anywhere
 
 
-def force_floor(
-    element: str, ratio: float, end: Literal["start", "end"] = "start", psi: float = 9.0, *, samples: int = 50
-) -> float:
-    """Return the unbalanced force [EI/L^2] that round-off leaves, the median over random states."""
+def force_floor(*, element: str, end: str, psi: float, ratio: float, samples: int) -> float:
+    """Return the unbalanced force [EI/L^2] that round-off leaves before the start or end of an element, the median over random states."""
     kind = None if element == TURNED else CLOSED_FORM[element]
     if np.finfo(_Extended).eps > 1e-3 * np.finfo(float).eps:
         raise ValueError("numpy.longdouble: this platform's is no wider than double precision")

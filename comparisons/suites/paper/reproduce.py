@@ -1,14 +1,12 @@
 """The claims of [P], which ``claims.toml`` states, and its figures: verdicts, files and a page."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import field
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from comparisons.frozen import Frozen
 from comparisons.output import Report, Row, markdown
 from comparisons.report.brief import Brief
 from comparisons.report.pages import Section, picture, table
@@ -41,34 +39,12 @@ class Verdict(StrEnum):
     CANNOT_BE_TOLD = "cannot be told"
 
 
-Bounds = Mapping[str, tuple[float, float]]
-"""The least and the greatest value of expressions; of a list, of all its values."""
-
-
-class Claim(Frozen):
-    """One claim, however often the paper makes it: every place in [P] where it stands, with what is said there.
-
-    It holds within the bounds `holds` together, or in each of the `readings` of what the paper does not say; in size within `in_size`, too.
-    The number behind the verdict and the reason are templates with the figure's numbers.
-    """
-
-    name: str
-    figure: str
-    stated: Sequence[tuple[str, str]]
-    number: str
-    why: str
-    holds: Bounds = field(default_factory=dict)
-    readings: Bounds = field(default_factory=dict)
-    in_size: Bounds = field(default_factory=dict)
-
-
-MACROS = STATED["macros"]
-CLAIMS = tuple(Claim(**row) for row in STATED["claim"])
+CLAIMS: Mapping[str, Row] = STATED["claim"]
 """By the section that makes them first, in the order of the paper; each once, however often the paper makes it."""
 
 
-def _within(bounds: Bounds, numbers: Numbers) -> list[bool | None]:
-    """Whether each number lies within its bounds; None where there is none."""
+def _within(bounds: Mapping[str, tuple[float, float]], numbers: Numbers) -> list[bool | None]:
+    """Whether each number lies within its least and greatest value; None where there is none."""
     found = ((np.ravel(value_of(of, **numbers)).tolist(), *limits) for of, limits in bounds.items())
     return [None if one is None else least <= one <= most for values, least, most in found for one in values]
 
@@ -88,19 +64,23 @@ Judgements = Mapping[str, Row]
 def judged(found: Mapping[str, Numbers], *, quick: bool) -> Judgements:
     """Return the judgements on the claims whose figure was studied, by the numbers of the figures."""
     judgements: dict[str, Row] = {}
-    for claim in (claim for claim in CLAIMS if claim.figure in found):
-        numbers = found[claim.figure]
-        cases = _within(claim.readings, numbers) or [all(_within(claim.holds, numbers))]
-        became = verdict(cases, in_size=all(_within(claim.in_size, numbers)))
-        number, why = (sentence(MACROS + text, **numbers) for text in (claim.number, claim.why))
-        if quick and claim.figure in COARSE:
+    for name, claim in CLAIMS.items():
+        if (figure := claim["figure"]) not in found:
+            continue
+        numbers = found[figure]
+        readings, holds, in_size = (
+            _within(claim.get(kind, {}), numbers) for kind in ("readings", "holds", "in_size")
+        )
+        became = verdict(readings or [all(holds)], in_size=all(in_size))
+        number, why = (sentence(STATED["macros"] + claim[text], **numbers) for text in ("number", "why"))
+        if quick and figure in COARSE:
             why = f"With coarse settings; a full run may decide otherwise. {why}"
-        judgements[claim.name] = {
+        judgements[name] = {
             "": str(len(judgements) + 1),
-            "where": "; ".join(place for place, _ in claim.stated),
-            "claim": " ".join(text for _, text in claim.stated),
+            "where": "; ".join(place for place, _ in claim["stated"]),
+            "claim": " ".join(text for _, text in claim["stated"]),
             "verdict": became,
-            "number": f"{number} ({claim.figure})",
+            "number": f"{number} ({figure})",
             "why": why,
         }
     return judgements
@@ -115,7 +95,7 @@ def numbered(judgements: Judgements) -> dict[str, list[str]]:
 def counted(judgements: Judgements) -> str:
     """Return how many claims are judged, and how many have each verdict."""
     summary = "; ".join(f"{len(numbers)} {name}" for name, numbers in numbered(judgements).items())
-    statements = sum(len(claim.stated) for claim in CLAIMS)
+    statements = sum(len(claim["stated"]) for claim in CLAIMS.values())
     return f"{len(judgements)} of {len(CLAIMS)} claims judged ({statements} statements): {summary}"
 
 
@@ -143,13 +123,13 @@ def brief(judgements: Judgements, *, quick: bool) -> Brief:
 
 
 def reproduce(name: str, *, quick: bool, report: Report) -> Found:
-    """Draw a figure of `FIGURES` or "all", and judge its claims."""
-    found, names = dict[str, Study](), list(FIGURES) if name == "all" else [name]
+    """Draw a figure of `FIGURES`, or all of them for another name, and judge its claims."""
+    found, names = dict[str, Study](), [name] if name in FIGURES else list(FIGURES)
     for number, figure in enumerate(names, 1):
         report(f"[{number}/{len(names)}] {figure}: {FIGURES[figure]}")
         found[figure] = STUDIES[figure](quick=quick, report=lambda line: report(f"  {line}"))
     judgements = judged({figure: study.numbers for figure, study in found.items()}, quick=quick)
-    text = "claims.md" if name == "all" else f"claims-{name}.md"
+    text = f"claims-{name}.md" if name in FIGURES else "claims.md"
     files: dict[str, Any] = {text: claims_text(judgements, quick=quick)}
     for figure, study in found.items():
         files |= {f"{stem}.csv": rows for stem, rows in study.tables.items()}

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from math import log
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from comparisons.answer import Array, Response
 from comparisons.answer.axis import SampledAxes, sampled_axes
 from comparisons.answer.errors import Errors, errors
-from comparisons.answer.quantities import forces, moments, scales, size
+from comparisons.answer.quantities import QUANTITIES, forces, moments, scales, size
 from comparisons.frozen import Frozen
 from comparisons.models import MODELS, ROD, SOLID, TSM, Model
 from comparisons.models.solid import REFINED
@@ -17,7 +18,7 @@ from comparisons.scene import Scene
 from comparisons.suite import Case, case
 from comparisons.suite.run import Results
 from comparisons.suite.settings import changed
-from tsm.elements import EXACT, MIXED_NO_BOW, PAPER, ElementType
+from tsm.elements import EXACT, MIXED_NO_BOW, PAPER
 
 PENALTIES = (1e-4, 1e-2, 1e2)
 """Penalties over Young's modulus times width; the automatic one is 25."""
@@ -26,7 +27,7 @@ ROUND_OFF = 2.0**-52
 """Least uncertainty of a reference, also where two answers are equal."""
 
 
-def sweep_cases(scene: Scene, *, quick: bool = False) -> list[Case]:
+def sweep_cases(scene: Scene, *, quick: bool) -> list[Case]:
     """Return the cases of the sweep, each once, without the longest if quick."""
     every = (one for model in MODELS.values() for one in _settings(model, scene, quick=quick))
     return list(dict.fromkeys(every))
@@ -39,7 +40,7 @@ def load_steps(scene: Scene) -> tuple[int, ...]:
     return tuple(sorted({min(divisors, key=lambda n: abs(log(n / wanted))) for wanted in (1, 5, 10, count)}))
 
 
-def limit_cases(scene: Scene, *, quick: bool = False) -> list[Case]:
+def limit_cases(scene: Scene, *, quick: bool) -> list[Case]:
     """Return the solids for the extrapolation to the limit, coarse to fine: Q2 elements, contact without penetration."""
     return [solid(scene, mesh, penetration=PENETRATION) for mesh in (REFINED[:3] if quick else REFINED[1:])]
 
@@ -56,8 +57,9 @@ def _settings(model: Model, scene: Scene, *, quick: bool) -> Iterator[Case]:
         for options in model.resolutions(quick=quick):
             yield Case(scene=stepped, model=model.name, options=options)
     if model is TSM and not quick:
-        yield beams(scene, EXACT, 1, tolerance=1e-3)
-        yield from (beams(scene, kind, n) for kind in (*PAPER[1:], MIXED_NO_BOW) for n in (5, 10, 20, 40))
+        yield _exact(scene, 1e-3)
+        kinds = (*PAPER[1:], MIXED_NO_BOW)
+        yield from (case(scene, TSM, element=one.name, elements=n) for one in kinds for n in (5, 10, 20, 40))
     if model is SOLID:
         yield from limit_cases(scene, quick=quick)
         if not quick:
@@ -71,9 +73,9 @@ def _settings(model: Model, scene: Scene, *, quick: bool) -> Iterator[Case]:
         yield solid(scene, (25, 2), penetration=PENETRATION)
 
 
-def beams(scene: Scene, kind: ElementType, elements: int, tolerance: float | None = None) -> Case:
-    """Return TSM with elements of a type."""
-    return case(scene, TSM, element=kind.name, elements=elements, integration_tolerance=tolerance)
+def _exact(scene: Scene, tolerance: float) -> Case:
+    """Return TSM with an exact element a beam."""
+    return case(scene, TSM, element=EXACT.name, elements=1, integration_tolerance=tolerance)
 
 
 def solid(
@@ -104,7 +106,6 @@ class Reference(Frozen):
     """A response that errors are measured against, its uncertainty by scope and quantity, and what it is in one sentence."""
 
     response: Response
-    scene: Scene
     uncertainty: Errors
     sentence: str
 
@@ -113,9 +114,9 @@ class Reference(Frozen):
         """The load parameter of the scope ``end``."""
         return _end(self.response)
 
-    def errors(self, response: Response) -> Errors:
+    def errors(self, response: Response, scene: Scene) -> Errors:
         """Return the errors of a response."""
-        return errors(response, self.response, self.scene, end=self.end)
+        return errors(response, self.response, scene, end=self.end)
 
 
 def _end(response: Response) -> float:
@@ -127,7 +128,7 @@ def _end(response: Response) -> float:
 
 def reference_cases(scene: Scene) -> list[Case]:
     """Return the exact rods, and the exact elements that confirm them."""
-    return [case(scene, ROD), beams(scene, EXACT, 1, tolerance=1e-12)]
+    return [case(scene, ROD), _exact(scene, 1e-12)]
 
 
 def best_reference(scene: Scene, measured: Results) -> Reference:
@@ -143,10 +144,10 @@ def best_reference(scene: Scene, measured: Results) -> Reference:
         confirmed = f"TSM exact, which shares no code with them, agrees within {within}"
     least = {scope: {name: max(e, ROUND_OFF) for name, e in table.items()} for scope, table in apart.items()}
     what = "the exact Reissner rods, with the beams' stretch and shear, which the elastica leaves out"
-    return Reference(response=rod, scene=scene, uncertainty=least, sentence=f"{what}; {confirmed}")
+    return Reference(response=rod, uncertainty=least, sentence=f"{what}; {confirmed}")
 
 
-def solid_limit(scene: Scene, measured: Results, *, quick: bool = False) -> Reference | None:
+def solid_limit(scene: Scene, measured: Results, *, quick: bool) -> Reference | None:
     """Return what the solid converges to, as uncertain as its last meshes differ; None if one stopped."""
     cases = limit_cases(scene, quick=quick)
     series = [measured[one].response for one in cases]
@@ -156,7 +157,7 @@ def solid_limit(scene: Scene, measured: Results, *, quick: bool = False) -> Refe
     apart = errors(series[-2], series[-1], scene, scale=scales(limit), end=_end(limit))
     meshes = ", ".join(one.label.removeprefix(f"{one.family} ") for one in cases)
     sentence = f"extrapolated from {meshes}, known to {apart['path']['force']:.1e} of the largest force"
-    return Reference(response=limit, scene=scene, uncertainty=apart, sentence=sentence)
+    return Reference(response=limit, uncertainty=apart, sentence=sentence)
 
 
 def extrapolated(responses: Sequence[Response]) -> Response:
@@ -166,19 +167,16 @@ def extrapolated(responses: Sequence[Response]) -> Response:
     # lowers the order on fine meshes
 
     def limit(read: Callable[[Response], Mapping[str, Array]]) -> dict[str, Array]:
-        coarse, middle, fine = (read(one) for one in responses[-3:])
-
-        def apart(a: Mapping[str, Array], b: Mapping[str, Array]) -> float:
-            return max(
-                (float(np.nanmax(np.abs(b[name] - a[name]), initial=0.0)) for name in fine), default=0.0
-            )
-
-        d1, d2 = apart(coarse, middle), apart(middle, fine)
+        _, middle, fine = series = [read(one) for one in responses[-3:]]
+        d1, d2 = (
+            max((float(np.nanmax(np.abs(b[name] - a[name]), initial=0.0)) for name in fine), default=0.0)
+            for a, b in pairwise(series)
+        )
         factor = d2 / (d1 - d2) if 0.0 < 1.1 * d2 < d1 else 0.0
         return {name: values + factor * (values - middle[name]) for name, values in fine.items()}
 
     best, force, moment = responses[-1], limit(forces), limit(moments)
-    arc = limit(lambda one: {pair: contact.arc_position for pair, contact in one.contacts.items()})
+    arc = limit(QUANTITIES["arc"].read)
     axis = limit(lambda one: sampled_axes(one).position)
     closed, held = best.contacts.items(), best.supports.items()
     return replace(

@@ -1,6 +1,6 @@
 """The tables and diagrams of a trade-off: every setting, the cheapest for an accuracy, fronts, orders."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from itertools import chain, pairwise, product
 from math import isfinite, log
@@ -12,6 +12,7 @@ import numpy as np
 
 from comparisons.answer.quantities import KEPT, SCOPES
 from comparisons.models import MODELS, ROD, SOLID, TSM
+from comparisons.output import Row as Line
 from comparisons.output import tabulated
 from comparisons.report import palette
 from comparisons.report.brief import Brief
@@ -25,7 +26,6 @@ from comparisons.suites.trade.trade import (
     COSTS,
     MESHED,
     TARGETS,
-    Line,
     Trade,
     cheapest,
     front,
@@ -44,20 +44,13 @@ APART = 0.045
 """Least distance of two labels, over the height of the diagram."""
 
 
-def plot_work(trade: Trade, *paths: Path) -> None:
-    """Draw the errors of all settings over their seconds, against the reference and against each model's limit."""
-    panels = [partial(_draw, trade=trade, own=own) for own in (False, True)]
-    title = f"{trade.scene.name}: what accuracy costs over {trade.scene.load_parameters} load steps"
-    draw(panels, *paths, tall=3.95, title=title, columns=1, sharex=True, sharey=True)
-
-
 def _draw(axes: Any, trade: Trade, *, own: bool) -> None:
-    """Draw the completed settings in the order of the legend, and fronts; what is uncertain bounds errors from below."""
+    """Draw the errors of the completed settings over their seconds in the order of the legend; their uncertainty bounds them from below."""
     order = [words for model in MODELS.values() for words in model.styles()]
     models = (model.name for model in MODELS.values() if model.meshed or not model.rod)
     rows = [row for name in models for row in trade.of_model(name, SCOPE)]
-    ranks = [[k for k, words in enumerate(order) if row.family.startswith(words)] for row in rows]
-    for _, row in sorted(zip(ranks, rows, strict=True), key=lambda ranked: ranked[0][-1]):
+    rank = {row: max(k for k, words in enumerate(order) if row.family.startswith(words)) for row in rows}
+    for row in sorted(rows, key=rank.__getitem__):
         style, error = palette.style(row.family), row.error(SCOPE, SHOWN, own=own)
         floor = trade.uncertainty(row.case.model if own else ROD.name, SCOPE, SHOWN)
         mark = {"color": style.colour, "marker": style.marker, "markersize": 9 if style.marker == "*" else 6}
@@ -102,7 +95,7 @@ HIDDEN = ("scope", "quantity", "limit_uncertainty", "settings", "order_scatter",
 """Columns that the other tables for people leave out."""
 
 
-def trade(scene: Scene, run: Runner, *, quick: bool = False) -> Found:
+def trade(scene: Scene, run: Runner, *, quick: bool) -> Found:
     """Return what a trade-off found: every setting, the cheapest for an accuracy, orders, fronts, and what stopped."""
     trade = measure_trade(scene, run, quick=quick)
     settings, known = result_rows(trade.rows), trade.reference.uncertainty
@@ -121,21 +114,25 @@ def trade(scene: Scene, run: Runner, *, quick: bool = False) -> Found:
         "orders": fitted,
         "pareto": [row for of in product(MESHED, SCOPES, KEPT, COSTS) for row in front(trade, *of)],
     }
-    every = [(f"{row.label} [{row.case.scene.load_parameters}]", row.response) for row in trade.rows]
-    shown, reasons = _tables(trade), {name: one.ended for name, one in every if not one.completed}
-    titled = chain.from_iterable(shown.values())
-    said = [f"{title}\n\n{tabulated(rows) if rows else 'none'}" for title, rows in titled]
+    stopped = (row for row in trade.rows if not row.response.completed)
+    reasons = {f"{row.label} [{row.case.scene.load_parameters}]": row.response.ended for row in stopped}
+    shown = _tables(trade)
+    said = [f"{title}\n\n{tabulated(rows) if rows else 'none'}" for title, rows in chain(*shown.values())]
     ends = ["settings without a solution:", *(f"  {name}: {why}" for name, why in reasons.items())]
     limit = trade.limit.sentence if trade.limit else "not known: a solid that it is extrapolated from stopped"
     sources = {"errors against": trade.reference.sentence, "the solid's own limit": limit}
 
+    panels = [partial(_draw, trade=trade, own=own) for own in (False, True)]
+    title = f"{scene.name}: what accuracy costs over {scene.load_parameters} load steps"
+    work = partial(draw, panels, tall=3.95, title=title, columns=1, sharex=True, sharey=True)
+
     def sections(folder: Path) -> list[Section]:
         seen = picture(folder / f"{WORK}.svg", f"Largest error of {SHOWN} over the path, against seconds.")
-        every = table(f"Seconds: {SECONDS}", _shown(settings, SETTING))
+        every = _shown([{name: row[name] for name in SETTING} for row in settings])
         return [
             Section("Work and precision", seen),
             *(Section(name, "\n".join(table(*one) for one in tables)) for name, tables in shown.items()),
-            Section("All settings", piece("definitions", sources) + every),
+            Section("All settings", piece("definitions", sources) + table(f"Seconds: {SECONDS}", every)),
             Section("Settings without a solution", piece("definitions", reasons)),
         ]
 
@@ -149,16 +146,15 @@ def trade(scene: Scene, run: Runner, *, quick: bool = False) -> Found:
             "trade.json": numbers,
         },
         sections=sections,
-        pictures={WORK: partial(plot_work, trade)},
+        pictures={WORK: work},
         scenes=[scene],
         text="\n\n".join([*said, "\n".join(ends if reasons else [])]),
     )
 
 
-def _shown(rows: Sequence[Line], columns: Sequence[str] = ()) -> list[Line]:
-    """Return rows for people, of some columns or without `HIDDEN`, with blanks in the names."""
-    kept = columns or [name for name in next(iter(rows), ()) if name not in HIDDEN]
-    return [{name.replace("_", " "): row[name] for name in kept} for row in rows]
+def _shown(rows: Iterable[Line]) -> list[Line]:
+    """Return rows for people, without `HIDDEN`, with blanks in the names."""
+    return [{key.replace("_", " "): value for key, value in row.items() if key not in HIDDEN} for row in rows]
 
 
 def _tables(trade: Trade) -> dict[str, list[tuple[str, list[Line]]]]:
@@ -167,11 +163,15 @@ def _tables(trade: Trade) -> dict[str, list[tuple[str, list[Line]]]]:
         "end": f"at the load parameter {trade.reference.end:g}, any number of load steps",
         "path": f"the largest over all {trade.scene.load_parameters} load parameters",
     }
-    rows = {scope: [cheapest(trade, scope, SHOWN, target) for target in TARGETS] for scope in SCOPES}
-    cheap = [(f"cheapest for an error of {SHOWN}, {places[of]}", _shown(rows[of])) for of in SCOPES]
+    cheap = [
+        (
+            f"cheapest for an error of {SHOWN}, {place}",
+            _shown(cheapest(trade, of, SHOWN, one) for one in TARGETS),
+        )
+        for of, place in places.items()
+    ]
     title = f"orders over elements and cost exponents over unknowns, error of {SHOWN} over the path"
-    orders_of = [(title, _shown(list(orders(trade, SHOWN))))]
-    return {"Cheapest settings": cheap, "Orders of convergence": orders_of}
+    return {"Cheapest settings": cheap, "Orders of convergence": [(title, _shown(orders(trade, SHOWN)))]}
 
 
 def _brief(trade: Trade, sources: Mapping[str, str], stopped: int) -> Brief:

@@ -3,13 +3,14 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import nan
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from comparisons.frozen import Frozen
 from comparisons.models import MODELS, SOLID, TSM
+from comparisons.output import Row as Line
 from comparisons.scene import Scene
 from comparisons.suite import Row
 from comparisons.suite.progress import Runner
@@ -79,8 +80,6 @@ def convergence(resolution: Sequence[float], error: Sequence[float], floor: floa
     return power_law(list(x[chosen]), list(y[chosen]))
 
 
-Line = dict[str, Any]
-"""A row of a table by its columns."""
 TARGETS = (5e-2, 1e-2, 1e-3, 1e-4, 1e-5)
 COSTS = ("seconds", "iterations", "unknowns")
 MESHED = tuple(model.name for model in MODELS.values() if model.meshed)
@@ -113,17 +112,16 @@ class Trade(Frozen):
         return [row for row in rows if scope == "end" or row.case.scene.load_parameters == every]
 
 
-def measure_trade(scene: Scene, run: Runner, *, quick: bool = False) -> Trade:
+def measure_trade(scene: Scene, run: Runner, *, quick: bool) -> Trade:
     """Measure every setting of `scene` and state its errors; nothing to measure them against is a `NoReferenceError`."""
-    cases = list(dict.fromkeys([*reference_cases(scene), *sweep_cases(scene, quick=quick)]))
-    measured = run(cases)
+    measured = run([*reference_cases(scene), *sweep_cases(scene, quick=quick)])
     reference = best_reference(scene, measured)
     limit = solid_limit(scene, measured, quick=quick)
     rows = []
-    for case in cases:
-        response, own = measured[case].response, limit if case.found.continuum else reference
-        errors, own_errors = (None if one is None else one.errors(response) for one in (reference, own))
-        rows.append(replace(measured[case], errors=errors, own_errors=own_errors))
+    for case, row in measured.items():
+        own = limit if case.found.continuum else reference
+        own_errors = None if own is None else own.errors(row.response, scene)
+        rows.append(replace(row, errors=reference.errors(row.response, scene), own_errors=own_errors))
     return Trade(scene=scene, rows=rows, reference=reference, limit=limit)
 
 

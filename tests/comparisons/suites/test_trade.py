@@ -116,7 +116,7 @@ def table_of(value):
 
 
 def known(response, to=0.0):
-    return Reference(response=response, scene=KS, uncertainty=table_of(to), sentence="")
+    return Reference(response=response, uncertainty=table_of(to), sentence="")
 
 
 def test_the_cases_of_a_sweep_are_complete_and_once():

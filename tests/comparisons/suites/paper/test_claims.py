@@ -133,15 +133,14 @@ OTHERS = [
 
 def test_every_claim_is_judged_by_its_numbers():
     """Two of the 25 claims are made twice in the paper; no verdict is always the same."""
-    claims = {claim.name: claim for claim in CLAIMS}
-    assert set(claims) == {name for name, *_ in OTHERS}
+    assert set(CLAIMS) == {name for name, *_ in OTHERS}
     for name, verdict, others in OTHERS:
-        figure = claims[name].figure
+        figure = CLAIMS[name]["figure"]
         for found, expected in ((BASE[figure], verdict), *others):
             told = judged({figure: found}, quick=False)[name]
             assert told["verdict"] is expected, told
             assert "{" not in told["number"] + told["why"]
-    assert (len(claims), sum(len(claim.stated) for claim in CLAIMS)) == (25, 27)
+    assert (len(CLAIMS), sum(len(claim["stated"]) for claim in CLAIMS.values())) == (25, 27)
     quick = claims_text(judged({"fig7b": BASE["fig7b"]}, quick=True), quick=True)
     assert "13 of 25 claims judged (27 statements): 7 reproduced; 1 reproduced in direction" in quick
     assert "With coarse settings; a full run may decide otherwise." in quick

@@ -24,7 +24,7 @@ FILES = {
     "fig9": (("fig9", "fig9-forces"), ("fig9",)),
 }
 """Pictures and tables of a figure."""
-VERDICTS = dict.fromkeys((claim.name for claim in CLAIMS), REPRODUCED) | {
+VERDICTS = dict.fromkeys(CLAIMS, REPRODUCED) | {
     **dict.fromkeys(("cantilever-effective", "anything"), NOT),
     **dict.fromkeys((f"range-{element}" for element in PRINTED), OPEN),
     "cantilever-reduces": IN_DIRECTION,
@@ -38,8 +38,8 @@ def check_claims(page, *figures):
     found = re.findall(
         r"^\| (\d+) \| .* \| (.*?) \| [^|]* \((\w+)\) \| [^|]* \|$", page.read_text(), re.MULTILINE
     )
-    wanted = [claim for claim in CLAIMS if claim.figure in figures]
-    expected = [(VERDICTS[claim.name], claim.figure) for claim in wanted]
+    wanted = {name: claim["figure"] for name, claim in CLAIMS.items() if claim["figure"] in figures}
+    expected = [(VERDICTS[name], figure) for name, figure in wanted.items()]
     assert found == [(str(number), *one) for number, one in enumerate(expected, 1)]
 
 
@@ -68,7 +68,7 @@ def test_fig9(tmp_path, capsys, stated):
     check_claims(tmp_path / "claims-fig9.md", "fig9")
     html = (tmp_path / "report.html").read_text()
     check_alone(html, tmp_path)
-    assert html.count("(fig9)</td>") == sum(claim.figure == "fig9" for claim in CLAIMS)
+    assert html.count("(fig9)</td>") == sum(claim["figure"] == "fig9" for claim in CLAIMS.values())
     assert html.count("data:image/svg+xml") == len(FILES["fig9"][0])
     (moving,) = block(html).values()
     assert all(len(lines) == 2 for lines in moving["runs"][0]["lines"])
