@@ -17,8 +17,8 @@ from typing import Any, NoReturn, TextIO
 
 from comparisons.extras import EXTRAS, install
 from comparisons.files import OutputError, printable
-from comparisons.scene import InputError, rules
-from comparisons.scene.rules import Rule, RuleError
+from comparisons.scene import FieldError, InputError, rules
+from comparisons.scene.rules import Rule
 from comparisons.suites.names import SUITES
 
 DONE, WRONG, BAD_INPUT, STOPPED, INTERRUPTED = 0, 1, 2, 3, 130
@@ -187,8 +187,8 @@ def obeying(rule: Rule, text: str, whole: str = "") -> Any:
             word = form(text)
     try:
         return rule(word)
-    except RuleError as error:
-        raise argparse.ArgumentTypeError(f"{whole or text}: {error}") from None
+    except FieldError as error:
+        raise argparse.ArgumentTypeError(f"{whole or text}: {error.rule}") from None
 
 
 def _bound(argument: str, rule: Rule, default: str, text: str) -> tuple[str, float]:

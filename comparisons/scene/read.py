@@ -6,8 +6,8 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from comparisons.scene.record import Record, lists_of, rule_of
-from comparisons.scene.rules import MISSING, UNREADABLE, RecordError, Records, toml_value
+from comparisons.scene.record import Record, lists_of
+from comparisons.scene.rules import MISSING, UNREADABLE, RecordError, toml_value
 from comparisons.scene.scene import Scene
 from comparisons.scene.tables import (
     InputError,
@@ -142,10 +142,10 @@ def _schema(kind: type[Record], known: Collection[str]) -> Table:
     """Return the schema of a table with some keys of a record."""
     properties, declared = {}, [item for item in fields(kind) if item.name in known]
     for item in declared:
-        rule, meaning = rule_of(item), item.metadata["meaning"].replace("``", "`")
-        properties[item.name] = {"description": meaning, **rule.schema}
-        if isinstance(rule, Records):
-            properties[item.name]["items"] = _schema(rule.kind, {one.name for one in fields(rule.kind)})
+        meaning = item.metadata["meaning"].replace("``", "`")
+        properties[item.name] = {"description": meaning, **kind.rules[item.name].schema}
+        if listed := lists_of(kind).get(item.name):
+            properties[item.name]["items"] = _schema(listed, listed.rules)
         elif item.default not in (MISSING, None):
             properties[item.name]["default"] = item.default
     return {
