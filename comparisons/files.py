@@ -11,6 +11,8 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
+from textwrap import wrap
+from typing import Any
 
 WRITTEN = ".crossval"
 """Name of the list of a folder: a line for each file, with its digest (SHA-256) and its name."""
@@ -29,6 +31,12 @@ def printable(text: object) -> str:
     'red \\x1b[31m'
     """
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in str(text))
+
+
+def wrapped(text: str, width: int, first: str = "", rest: str = "") -> list[str]:
+    """Return lines of at most a width, the first one and the others indented; no word is broken."""
+    whole: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
+    return wrap(text, width, initial_indent=first, subsequent_indent=rest, **whole)
 
 
 def one_line(text: object) -> str:

@@ -7,17 +7,14 @@ import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
-from functools import partial
 from itertools import zip_longest
 from pathlib import Path
 from shutil import get_terminal_size
-from textwrap import wrap
 from typing import Any
 
 import numpy as np
 
-from comparisons.files import write_text
-from comparisons.version import versions
+from comparisons.files import wrapped, write_text
 
 Row = dict[str, Any]
 """One line of a study's table."""
@@ -93,12 +90,11 @@ def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool], indent: int = 
         if not folded:
             break
         widths[folded[min(folded)]] -= 1
-    fold = partial(wrap, break_long_words=False, break_on_hyphens=False)
     sides = [str.rjust if one else str.ljust for one in right]
     lines = []
     for row in rows:
         cells = (
-            fold(_joined(text), width) if len(text) > width else [text]
+            wrapped(_joined(text), width) if len(text) > width else [text]
             for text, width in zip(row, widths, strict=True)
         )
         for line in zip_longest(*cells, fillvalue=""):
@@ -127,12 +123,6 @@ def cell(value: Any) -> str:
     if isinstance(value, float) and math.isinf(value):
         return NO_VALUE
     return f"{value:.3g}" if isinstance(value, float) else str(value)
-
-
-def write_numbers(path: Path, numbers: Mapping[str, Any]) -> Path:
-    """Write nested numbers with the versions behind them as JSON; a number that is not finite is null."""
-    write_text(path, json_text({**numbers, "versions": versions()}))
-    return path
 
 
 def json_text(value: Any) -> str:

@@ -2,8 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from shutil import get_terminal_size
-from textwrap import wrap
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from comparisons.answer.along import ALONG, extremes_along
 from comparisons.answer.quantities import forces, moments, size
 from comparisons.answer.round_off import round_off
 from comparisons.answer.table import unit_names
+from comparisons.files import wrapped
 from comparisons.output import Row, tabulated
 from comparisons.scene import Scene
 
@@ -24,8 +24,7 @@ DIGITS, LEAST = 4, 1e-9
 
 def filled(words: str, first: str = "", rest: str = "") -> list[str]:
     """Return lines that fit the terminal, the first one and the others indented; no word is broken."""
-    whole: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
-    return wrap(words, get_terminal_size().columns, initial_indent=first, subsequent_indent=rest, **whole)
+    return wrapped(words, get_terminal_size().columns, first, rest)
 
 
 class Brief(NamedTuple):
