@@ -43,7 +43,7 @@ def run(given: Namespace) -> int:
     response = certified(response, scene, given.certify)
     for kind, path in files:
         _write(kind, path, response, scene, more)
-    if STANDARD not in dict(files).values():
+    if (".json", STANDARD) not in files:
         print(text(response, [*_found(response, scene), *lines], rule))
     status = exit_status(scene, [("", response)])
     if answer is None or answer.reached or status != DONE:
