@@ -211,7 +211,7 @@ def writable_folder(folder: Path, *names: str) -> Path:
         with tempfile.TemporaryFile(dir=folder):
             pass
     except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        reason = getattr(error, "strerror", None) or error
         raise OutputError(f"{folder}: cannot be written: {reason}") from None
     check_free(folder, *names)
     return folder

@@ -118,11 +118,9 @@ def markdown(rows: Sequence[Mapping[str, str]]) -> str:
 
 def cell(value: Any) -> str:
     """Return a value as text: a number in three digits, what is not there as a dash."""
-    if value is None or (isinstance(value, float) and math.isnan(value)):
-        return "-"
-    if isinstance(value, float) and math.isinf(value):
-        return NO_VALUE
-    return f"{value:.3g}" if isinstance(value, float) else str(value)
+    if not isinstance(value, float):
+        return "-" if value is None else str(value)
+    return "-" if math.isnan(value) else NO_VALUE if math.isinf(value) else f"{value:.3g}"
 
 
 def json_text(value: Any) -> str:
@@ -135,21 +133,20 @@ def _lines(value: Any, line: str) -> Iterator[str]:
     if not value or not isinstance(value, dict | list) or _flat(value):
         yield json.dumps(value, allow_nan=False)  # without indentation this is several times faster
         return
-    inner = line + " "
-    keys = [f"{json.dumps(key)}: " for key in value] if isinstance(value, dict) else [""] * len(value)
-    items = value.values() if isinstance(value, dict) else value
-    yield "{" if isinstance(value, dict) else "["
-    for number, (key, item) in enumerate(zip(keys, items, strict=True)):
-        yield f",{inner}{key}" if number else f"{inner}{key}"
-        yield from _lines(item, inner)
-    yield line + ("}" if isinstance(value, dict) else "]")
+    begin, end = "{}" if isinstance(value, dict) else "[]"
+    for key, item in value.items() if isinstance(value, dict) else enumerate(value):
+        yield f"{begin}{line} " + (f"{json.dumps(key)}: " if end == "}" else "")
+        yield from _lines(item, f"{line} ")
+        begin = ","
+    yield line + end
 
 
 def _flat(value: Any) -> bool:
     """Whether `value` is a list of values, or of rows of values."""
-    rows = isinstance(value, list) and all(isinstance(item, list) for item in value)
-    items = [item for row in value for item in row] if rows else value
-    return isinstance(value, list) and not any(isinstance(item, dict | list) for item in items)
+    if not isinstance(value, list):
+        return False
+    rows = value if all(isinstance(item, list) for item in value) else [value]
+    return not any(isinstance(item, dict | list) for row in rows for item in row)
 
 
 def plain(value: Any) -> Any:

@@ -1,9 +1,10 @@
 """``crossval solve``: one scene, one model."""
 
 from argparse import Namespace
-from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from numpy import isnan
 
 from comparisons.answer import Response
 from comparisons.answer.material import frictions_found
@@ -80,13 +81,11 @@ def _write(kind: str, path: Path, response: Response, scene: Scene, more: dict[s
 def _found(response: Response, scene: Scene) -> list[tuple[str, str]]:
     """Return the coefficient of friction that a clamp's reactions show, at the last load parameter in contact, and the scene's."""
     given = {contact.beam: contact.friction for contact in scene.contacts}
-    rows = []
-    for beam, found in frictions_found(response, scene).items():
-        known = [value for value in found.tolist() if not isnan(value)]
-        if known:
-            said = f"{abs(known[-1]):.6g} by the reactions of {beam}, {given[beam]:g} in the scene"
-            rows.append(("friction", said))
-    return rows
+    return [
+        ("friction", f"{abs(value):.6g} by the reactions of {beam}, {given[beam]:g} in the scene")
+        for beam, found in frictions_found(response, scene).items()
+        for value in found[~isnan(found)][-1:]
+    ]
 
 
 def _answer(scene: Scene, given: Namespace) -> "Answer | None":

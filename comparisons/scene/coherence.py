@@ -67,7 +67,7 @@ def _named(place: str, records: Sequence[Any], how: tuple[str, str, str, str], n
                     f"{place}[{i}].{key}", name, f"must name a {kind}: {_list(names.found[kind])}"
                 )
         with suppress(Unjudged):
-            value = getattr(record, attribute) if attribute else None
+            value = getattr(record, attribute, None)
             if value in seen:
                 yield FieldError(
                     f"{place}[{i}].{getattr(record, 'key', shared)}", value, "must not appear twice"

@@ -74,9 +74,9 @@ def read_scene(text: str, source: str) -> Scene:
         head = dict.fromkeys(HEAD, UNREADABLE)
     mistakes = [*check_keys(tables, known, required=("scene", "beam")), *check_table(tables, "scene")]
     mistakes += (mistake.within("scene.") for mistake in check_keys(head, HEAD))
-    given: Table = {name: head.get(name, UNREADABLE) for name in HEAD if name in stated(head, HEAD)}
-    for kind in (kind for kind in LISTS if kind in {"beam", *stated(tables, known)}):
-        given[f"{kind}s"] = tables.get(kind, UNREADABLE)
+    given = {name: head.get(name, UNREADABLE) for name in HEAD & stated(head, HEAD)}
+    kinds = LISTS.keys() & {"beam", *stated(tables, known)}
+    given |= {f"{kind}s": tables.get(kind, UNREADABLE) for kind in kinds}
     try:
         scene = Scene(**given)
     except RecordError as error:

@@ -13,7 +13,7 @@ from comparisons.frozen import Value
 from comparisons.scene.rules import MISSING, FieldError, Mistakes, RecordError, Records, ValueRule
 from comparisons.scene.tables import stated, table_values
 
-RAISES = "Raises\n------\nFieldError\n    With all mistakes, each in one line: field, value and rule."
+RAISES = "\nRaises\n------\nFieldError\n    With all mistakes, each in one line: field, value and rule."
 
 
 class Unjudged(KeyError):  # noqa: N818 - no error of the user: the value is reported where it stands
@@ -56,7 +56,7 @@ class Record(Value):
             delattr(cls, name)  # so that a value which is wrong is not there
         rows = (f"{name} : {one['rule'].accepts}\n    {one['meaning']}" for name, one in said.items())
         own = (cls.__doc__ or "").replace("\n    ", "\n").rstrip()
-        cls.__doc__ = "\n".join([own, "\nParameters\n----------", *rows, f"\n{RAISES}"])
+        cls.__doc__ = "\n".join([own, "\nParameters\n----------", *rows, RAISES])
 
     def __init__(self, /, **given: Any) -> None:
         free, rules = self._free, self.rules

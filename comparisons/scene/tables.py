@@ -47,7 +47,7 @@ def read_text(path: str, absent: str = "no such file") -> str:
     except UnicodeDecodeError as error:
         raise InputError(path, f"must be UTF-8 text, byte {error.start} is not") from None
     except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        reason = getattr(error, "strerror", None) or error
         raise InputError(path, f"cannot be read: {reason}") from None
 
 
