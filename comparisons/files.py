@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
+from shutil import get_terminal_size
 from textwrap import wrap
 from typing import Any
 
@@ -33,9 +34,10 @@ def printable(text: object) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in str(text))
 
 
-def wrapped(text: str, width: int, first: str = "", rest: str = "") -> list[str]:
-    """Return lines of at most a width, the first one and the others indented; no word is broken."""
+def filled(text: str, first: str = "", rest: str = "", width: int | None = None) -> list[str]:
+    """Return lines that fit the terminal or a width, the first one and the others indented; no word is broken."""
     whole: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
+    width = width or get_terminal_size().columns
     return wrap(text, width, initial_indent=first, subsequent_indent=rest, **whole)
 
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.files import wrapped, write_text
+from comparisons.files import filled, write_text
 
 Row = dict[str, Any]
 """One line of a study's table."""
@@ -57,13 +57,10 @@ def tabulated(rows: Sequence[Mapping[str, Any]], *, folded: bool = False) -> str
     columns = list(zip(*cells, strict=True))
     right = [all(one == NO_VALUE or one[:1] in "-0123456789" for one in column[1:]) for column in columns]
     room = math.inf if folded else get_terminal_size().columns
-    parts, used = [[0]], 0
+    widths, parts = [2 + max(map(len, column)) for column in columns], [[0]]
     for k in range(1, len(columns)):
-        wide = 2 + max(map(len, columns[k]))
-        used += wide
-        if len(parts[-1]) > 1 and max(map(len, columns[0])) + used > room:
+        if len(parts[-1]) > 1 and sum(widths[j] for j in (*parts[-1], k)) - 2 > room:
             parts.append([0])
-            used = wide
         parts[-1].append(k)
     tables = (aligned([[row[k] for k in ks] for row in cells], [right[k] for k in ks]) for ks in parts)
     return "\n\n".join(map("\n".join, tables))
@@ -94,7 +91,7 @@ def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool], indent: int = 
     lines = []
     for row in rows:
         cells = (
-            wrapped(_joined(text), width) if len(text) > width else [text]
+            filled(_joined(text), width=width) if len(text) > width else [text]
             for text, width in zip(row, widths, strict=True)
         )
         for line in zip_longest(*cells, fillvalue=""):

@@ -11,12 +11,11 @@ from contextlib import ExitStack, contextmanager, redirect_stderr, suppress
 from functools import partial
 from importlib import import_module
 from pathlib import Path
-from shutil import get_terminal_size
 from textwrap import fill
 from typing import Any, NoReturn, TextIO
 
 from comparisons.extras import EXTRAS, install
-from comparisons.files import OutputError, printable, wrapped
+from comparisons.files import OutputError, filled, printable
 from comparisons.scene import FieldError, InputError, rules
 from comparisons.scene.rules import Rule
 from comparisons.suites.names import SUITES
@@ -90,7 +89,7 @@ def report(line: str, stream: TextIO | None = None, indent: int = 2) -> None:
     """Print a line to standard error or another stream, on a terminal in lines that fit it, with all but the first one indented."""
     stream, text = stream or sys.stderr, printable(line)
     if stream.isatty():
-        text = "\n".join(wrapped(text, get_terminal_size().columns, rest=" " * indent))
+        text = "\n".join(filled(text, rest=" " * indent))
     print(text, file=stream, flush=True)
 
 
@@ -104,8 +103,8 @@ def told(reason: object, status: int) -> int:
 def _ended_as_a_whole() -> Iterator[None]:
     """Let SIGTERM and SIGHUP end the command by an exception: temporary files and the processes of programs are removed."""
     main = threading.current_thread() is threading.main_thread()
-    ends = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if main and hasattr(signal, name)]
-    ends = [number for number in ends if signal.getsignal(number) is signal.SIG_DFL]
+    names = ("SIGTERM", "SIGHUP") if main else ()
+    ends = [one for one in signal.Signals if one.name in names and signal.getsignal(one) is signal.SIG_DFL]
     for number in ends:
         signal.signal(number, lambda number, _: sys.exit(128 + number))
     try:

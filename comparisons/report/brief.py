@@ -1,7 +1,6 @@
 """What a page and a terminal begin with: one sentence, at most five points, and the answer in units, model by model."""
 
 from collections.abc import Mapping, Sequence
-from shutil import get_terminal_size
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +10,7 @@ from comparisons.answer.along import ALONG, extremes_along
 from comparisons.answer.quantities import forces, moments, size
 from comparisons.answer.round_off import round_off
 from comparisons.answer.table import unit_names
-from comparisons.files import wrapped
+from comparisons.files import filled
 from comparisons.output import Row, tabulated
 from comparisons.scene import Scene
 
@@ -20,11 +19,6 @@ POINTS = 5
 BOLD = "\x1b[1m{}\x1b[0m"
 DIGITS, LEAST = 4, 1e-9
 """Significant digits of an answer in a brief, and the least relative difference that is no round-off."""
-
-
-def filled(words: str, first: str = "", rest: str = "") -> list[str]:
-    """Return lines that fit the terminal, the first one and the others indented; no word is broken."""
-    return wrapped(words, get_terminal_size().columns, first, rest)
 
 
 class Brief(NamedTuple):

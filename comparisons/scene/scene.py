@@ -62,8 +62,8 @@ class Scene(Statement):
 
     def tip(self, beam: str) -> str:
         """Return the end of a beam with fewer held components, "end" at equality."""
-        held = {support.end: len(support.held) for support in self.supports_of(beam)}
-        return "start" if held.get("start", 0) < held.get("end", 0) else "end"
+        held = [support.end for support in self.supports_of(beam)]
+        return "start" if held[:1] == ["end"] else "end"
 
     @cached_property
     def times(self) -> tuple[float, ...]:
