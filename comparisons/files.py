@@ -74,10 +74,9 @@ def _entry(path: Path, name: str) -> str:
 
 def _listed(folder: Path) -> set[str]:
     """Return the lines of the list of a folder; none where there is no list."""
-    try:
+    with suppress(OSError, ValueError):
         return set((folder / WRITTEN).read_text(encoding="utf-8").splitlines())
-    except (OSError, ValueError):
-        return set()
+    return set()
 
 
 def own(folder: Path, names: Iterable[str]) -> set[str]:
@@ -213,8 +212,9 @@ def writable_folder(folder: Path, *names: str) -> Path:
         with tempfile.TemporaryFile(dir=folder):
             pass
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise OutputError(f"{folder}: cannot be written: {reason}") from None
+        raise OutputError(
+            f"{folder}: cannot be written: {getattr(error, 'strerror', None) or error}"
+        ) from None
     check_free(folder, *names)
     return folder
 

@@ -79,8 +79,7 @@ class Record(Value):
 
     def records(self, name: str) -> tuple[Any, ...]:
         """Return the records that a value lists; none where it is wrong."""
-        records: tuple[Any, ...] = vars(self).get(name, ())
-        return records
+        return tuple(vars(self).get(name, ()))
 
     if not TYPE_CHECKING:
 
