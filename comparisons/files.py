@@ -11,6 +11,9 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
+from shutil import get_terminal_size
+from textwrap import wrap
+from typing import Any
 
 WRITTEN = ".crossval"
 """Name of the list of a folder: a line for each file, with its digest (SHA-256) and its name."""
@@ -29,6 +32,13 @@ def printable(text: object) -> str:
     'red \\x1b[31m'
     """
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in str(text))
+
+
+def filled(text: str, first: str = "", rest: str = "", width: int | None = None) -> list[str]:
+    """Return lines that fit the terminal or a width, the first one and the others indented; no word is broken."""
+    whole: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
+    width = width or get_terminal_size().columns
+    return wrap(text, width, initial_indent=first, subsequent_indent=rest, **whole)
 
 
 def one_line(text: object) -> str:
@@ -64,10 +74,9 @@ def _entry(path: Path, name: str) -> str:
 
 def _listed(folder: Path) -> set[str]:
     """Return the lines of the list of a folder; none where there is no list."""
-    try:
+    with suppress(OSError, ValueError):
         return set((folder / WRITTEN).read_text(encoding="utf-8").splitlines())
-    except (OSError, ValueError):
-        return set()
+    return set()
 
 
 def own(folder: Path, names: Iterable[str]) -> set[str]:
@@ -210,8 +219,9 @@ def writable_folder(folder: Path, *names: str) -> Path:
         with tempfile.TemporaryFile(dir=folder):
             pass
     except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise OutputError(f"{folder}: cannot be written: {reason}") from None
+        raise OutputError(
+            f"{folder}: cannot be written: {getattr(error, 'strerror', None) or error}"
+        ) from None
     check_free(folder, *names)
     return folder
 

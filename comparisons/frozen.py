@@ -18,7 +18,9 @@ class Frozen:
     def __init_subclass__(cls) -> None:
         dataclass(init=False, repr=False, eq=False, match_args=False)(cls)
         cls._fields = {item.name: item for item in fields(cls)}
-        cls._needed = {item.name for item in fields(cls) if item.default is item.default_factory is MISSING}
+        cls._needed = {
+            k for k, item in cls._fields.items() if item.default is item.default_factory is MISSING
+        }
 
     def __init__(self, /, **given: Any) -> None:
         if not self._needed <= given.keys() <= self._fields.keys():

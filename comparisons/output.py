@@ -7,17 +7,14 @@ import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
-from functools import partial
 from itertools import zip_longest
 from pathlib import Path
 from shutil import get_terminal_size
-from textwrap import wrap
 from typing import Any
 
 import numpy as np
 
-from comparisons.files import write_text
-from comparisons.version import versions
+from comparisons.files import filled, write_text
 
 Row = dict[str, Any]
 """One line of a study's table."""
@@ -60,13 +57,10 @@ def tabulated(rows: Sequence[Mapping[str, Any]], *, folded: bool = False) -> str
     columns = list(zip(*cells, strict=True))
     right = [all(one == NO_VALUE or one[:1] in "-0123456789" for one in column[1:]) for column in columns]
     room = math.inf if folded else get_terminal_size().columns
-    parts, used = [[0]], 0
+    widths, parts = [2 + max(map(len, column)) for column in columns], [[0]]
     for k in range(1, len(columns)):
-        wide = 2 + max(map(len, columns[k]))
-        used += wide
-        if len(parts[-1]) > 1 and max(map(len, columns[0])) + used > room:
+        if len(parts[-1]) > 1 and sum(widths[j] for j in (*parts[-1], k)) - 2 > room:
             parts.append([0])
-            used = wide
         parts[-1].append(k)
     tables = (aligned([[row[k] for k in ks] for row in cells], [right[k] for k in ks]) for ks in parts)
     return "\n\n".join(map("\n".join, tables))
@@ -93,12 +87,11 @@ def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool], indent: int = 
         if not folded:
             break
         widths[folded[min(folded)]] -= 1
-    fold = partial(wrap, break_long_words=False, break_on_hyphens=False)
     sides = [str.rjust if one else str.ljust for one in right]
     lines = []
     for row in rows:
         cells = (
-            fold(_joined(text), width) if len(text) > width else [text]
+            filled(_joined(text), width=width) if len(text) > width else [text]
             for text, width in zip(row, widths, strict=True)
         )
         for line in zip_longest(*cells, fillvalue=""):
@@ -122,17 +115,9 @@ def markdown(rows: Sequence[Mapping[str, str]]) -> str:
 
 def cell(value: Any) -> str:
     """Return a value as text: a number in three digits, what is not there as a dash."""
-    if value is None or (isinstance(value, float) and math.isnan(value)):
-        return "-"
-    if isinstance(value, float) and math.isinf(value):
-        return NO_VALUE
-    return f"{value:.3g}" if isinstance(value, float) else str(value)
-
-
-def write_numbers(path: Path, numbers: Mapping[str, Any]) -> Path:
-    """Write nested numbers with the versions behind them as JSON; a number that is not finite is null."""
-    write_text(path, json_text({**numbers, "versions": versions()}))
-    return path
+    if not isinstance(value, float):
+        return "-" if value is None else str(value)
+    return "-" if math.isnan(value) else NO_VALUE if math.isinf(value) else f"{value:.3g}"
 
 
 def json_text(value: Any) -> str:
@@ -145,21 +130,20 @@ def _lines(value: Any, line: str) -> Iterator[str]:
     if not value or not isinstance(value, dict | list) or _flat(value):
         yield json.dumps(value, allow_nan=False)  # without indentation this is several times faster
         return
-    inner = line + " "
-    keys = [f"{json.dumps(key)}: " for key in value] if isinstance(value, dict) else [""] * len(value)
-    items = value.values() if isinstance(value, dict) else value
-    yield "{" if isinstance(value, dict) else "["
-    for number, (key, item) in enumerate(zip(keys, items, strict=True)):
-        yield f",{inner}{key}" if number else f"{inner}{key}"
-        yield from _lines(item, inner)
-    yield line + ("}" if isinstance(value, dict) else "]")
+    begin, end = "{}" if isinstance(value, dict) else "[]"
+    for key, item in value.items() if isinstance(value, dict) else enumerate(value):
+        yield f"{begin}{line} " + (f"{json.dumps(key)}: " if end == "}" else "")
+        yield from _lines(item, f"{line} ")
+        begin = ","
+    yield line + end
 
 
 def _flat(value: Any) -> bool:
     """Whether `value` is a list of values, or of rows of values."""
-    rows = isinstance(value, list) and all(isinstance(item, list) for item in value)
-    items = [item for row in value for item in row] if rows else value
-    return isinstance(value, list) and not any(isinstance(item, dict | list) for item in items)
+    if not isinstance(value, list):
+        return False
+    rows = value if all(isinstance(item, list) for item in value) else [value]
+    return not any(isinstance(item, dict | list) for row in rows for item in row)
 
 
 def plain(value: Any) -> Any:

@@ -2,7 +2,6 @@
 
 import os
 import platform
-import sys
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
@@ -38,7 +37,7 @@ def versions() -> dict[str, str]:
     from importlib import metadata
 
     found = {name: metadata.version(name) for name in DISTRIBUTIONS}
-    return {"python": ".".join(map(str, sys.version_info[:3])), **found}
+    return {"python": platform.python_version(), **found}
 
 
 def machine() -> dict[str, str]:

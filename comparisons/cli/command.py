@@ -11,14 +11,13 @@ from contextlib import ExitStack, contextmanager, redirect_stderr, suppress
 from functools import partial
 from importlib import import_module
 from pathlib import Path
-from shutil import get_terminal_size
 from textwrap import fill
 from typing import Any, NoReturn, TextIO
 
 from comparisons.extras import EXTRAS, install
-from comparisons.files import OutputError, printable
-from comparisons.scene import InputError, rules
-from comparisons.scene.rules import Rule, RuleError
+from comparisons.files import OutputError, filled, printable
+from comparisons.scene import FieldError, InputError, rules
+from comparisons.scene.rules import Rule
 from comparisons.suites.names import SUITES
 
 DONE, WRONG, BAD_INPUT, STOPPED, INTERRUPTED = 0, 1, 2, 3, 130
@@ -41,10 +40,10 @@ def main(arguments: list[str] | None = None) -> int:
             nowhere = streams.enter_context(Path(os.devnull).open("w"))
             streams.enter_context(redirect_stderr(nowhere))
         if sys.stdout is None:
-            return _told("output: standard output is closed", BAD_INPUT)
+            return told("output: standard output is closed", BAD_INPUT)
         for word in (word for word in words if word in GONE):
             kind = "an option" if word.startswith("-") else "a command"
-            return _told(f"{word}: is no longer {kind}, see {GONE[word]}", BAD_INPUT)
+            return told(f"{word}: is no longer {kind}, see {GONE[word]}", BAD_INPUT)
         return _version() if words == ("--version",) else _run(arguments)
 
 
@@ -57,24 +56,24 @@ def _run(arguments: list[str] | None) -> int:
         sys.stdout.flush()
     except InputError as error:
         for line in str(error).split("\n"):
-            status = _told(line, BAD_INPUT)
+            status = told(line, BAD_INPUT)
     except BrokenPipeError:
         # whoever read the output has had enough
         _drop_output()
         status = DONE
     except OSError as error:
-        status = _told(f"{error.filename or 'output'}: {error.strerror}", BAD_INPUT)
+        status = told(f"{error.filename or 'output'}: {error.strerror}", BAD_INPUT)
         _drop_output()
     except ImportError as error:
         missing = error.name or str(error).strip().partition("\n")[0]
         if missing.startswith(OWN):
             raise
-        status = _told(f"{missing}: cannot be imported, {install(missing)}", BAD_INPUT)
+        status = told(f"{missing}: cannot be imported, {install(missing)}", BAD_INPUT)
     except KeyboardInterrupt:
-        status = _told("interrupted", INTERRUPTED)
+        status = told("interrupted", INTERRUPTED)
     except _refusals() as error:  # whose names may have line ends
         ran = getattr(error, "status", None)
-        status = _told(error, STOPPED if ran and ran.name != "NOT_STARTED" else BAD_INPUT)
+        status = told(error, STOPPED if ran and ran.name != "NOT_STARTED" else BAD_INPUT)
     return status
 
 
@@ -90,17 +89,22 @@ def report(line: str, stream: TextIO | None = None, indent: int = 2) -> None:
     """Print a line to standard error or another stream, on a terminal in lines that fit it, with all but the first one indented."""
     stream, text = stream or sys.stderr, printable(line)
     if stream.isatty():
-        whole: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
-        text = fill(text, get_terminal_size().columns, subsequent_indent=" " * indent, **whole)
+        text = "\n".join(filled(text, rest=" " * indent))
     print(text, file=stream, flush=True)
+
+
+def told(reason: object, status: int) -> int:
+    """Report a reason, and return an exit status."""
+    report(f"crossval: {reason}")
+    return status
 
 
 @contextmanager
 def _ended_as_a_whole() -> Iterator[None]:
     """Let SIGTERM and SIGHUP end the command by an exception: temporary files and the processes of programs are removed."""
     main = threading.current_thread() is threading.main_thread()
-    ends = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if main and hasattr(signal, name)]
-    ends = [number for number in ends if signal.getsignal(number) is signal.SIG_DFL]
+    names = ("SIGTERM", "SIGHUP") if main else ()
+    ends = [one for one in signal.Signals if one.name in names and signal.getsignal(one) is signal.SIG_DFL]
     for number in ends:
         signal.signal(number, lambda number, _: sys.exit(128 + number))
     try:
@@ -108,11 +112,6 @@ def _ended_as_a_whole() -> Iterator[None]:
     finally:
         for number in ends:
             signal.signal(number, signal.SIG_DFL)
-
-
-def _told(reason: object, status: int) -> int:
-    report(f"crossval: {reason}")
-    return status
 
 
 def _drop_output() -> None:
@@ -132,12 +131,9 @@ def _version() -> int:
         return None
 
     rows = [("python", sys.version.partition(" ")[0], ""), *((name, found(name), "") for name in NEEDED)]
-    rows += (
-        (name, found(name), f"missing, extra {extra.name}: {extra.use}") for name, extra in EXTRAS.items()
-    )
-    rows.append(
-        ("ccx", shutil.which("ccx"), "missing, Debian's calculix-ccx: --model calculix, crossval run peers")
-    )
+    rows += ((name, found(name), f"missing, extra {extra}: {use}") for name, (extra, use) in EXTRAS.items())
+    ccx = "missing, Debian's calculix-ccx: --model calculix, crossval run peers"
+    rows.append(("ccx", shutil.which("ccx"), ccx))
     print(f"crossval {metadata.version('tsm-crossval')}")
     for name, state, absent in rows:
         mark = "ok" if state else "-" if absent else "MISSING"
@@ -187,8 +183,8 @@ def obeying(rule: Rule, text: str, whole: str = "") -> Any:
             word = form(text)
     try:
         return rule(word)
-    except RuleError as error:
-        raise argparse.ArgumentTypeError(f"{whole or text}: {error}") from None
+    except FieldError as error:
+        raise argparse.ArgumentTypeError(f"{whole or text}: {error.rule}") from None
 
 
 def _bound(argument: str, rule: Rule, default: str, text: str) -> tuple[str, float]:

@@ -4,7 +4,7 @@ import argparse
 from functools import partial
 from pathlib import Path
 
-from comparisons.cli.command import DONE, WRONG, report
+from comparisons.cli.command import DONE, WRONG, told
 from comparisons.cli.options import chosen, outputs, refuse, workers
 from comparisons.cli.screen import exit_status, shown, staging, teller, watching
 from comparisons.files import writable_folder, write_text
@@ -68,8 +68,8 @@ def _held(scene: Scene, given: argparse.Namespace) -> int:
     status = exit_status(scene, [("", found.response), ("reference: ", found.reference)])
     if status != DONE or found.held:
         return status
-    report(f"crossval: {', '.join(item.name for item in found.bounds if not item.holds)}: beyond the bound")
-    return WRONG
+    beyond = ", ".join(item.name for item in found.bounds if not item.holds)
+    return told(f"{beyond}: beyond the bound", WRONG)
 
 
 def _league(scenes: list[Scene], given: argparse.Namespace) -> int:

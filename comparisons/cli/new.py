@@ -5,7 +5,7 @@ from pathlib import Path
 
 from comparisons.cli.command import DONE
 from comparisons.files import OutputError
-from comparisons.scene import InputError, built_in_scenes, load_scene, rules
+from comparisons.scene import FieldError, InputError, built_in_scenes, load_scene, rules
 from comparisons.scene.read import FOLDER
 
 TEMPLATE = FOLDER.with_name("template.toml")
@@ -15,8 +15,8 @@ def run(given: Namespace) -> int:
     """Write the file, never over another."""
     try:
         rules.name(given.name)
-    except rules.RuleError as error:
-        raise InputError("NAME", f"{given.name}: {error}") from None
+    except FieldError as error:
+        raise InputError("NAME", f"{given.name}: {error.rule}") from None
     path, like, known = Path(f"{given.name}.toml"), given.like, built_in_scenes()
     if path.exists():
         raise OutputError(f"{path.name}: is there already")

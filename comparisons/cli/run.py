@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from shutil import rmtree
 
-from comparisons.cli.command import STOPPED, report
+from comparisons.cli.command import STOPPED, report, told
 from comparisons.cli.options import refuse, workers
 from comparisons.cli.screen import ended, shown, teller
 from comparisons.files import writable_folder
@@ -79,8 +79,7 @@ def _trade(given: Namespace) -> int:
         with running(folder / "results", workers(given, 1), quiet=given.quiet) as run_cases:
             found = trade(scene, run_cases, quick=given.quick)
     except NoReferenceError as error:
-        report(f"crossval: {error}")
-        return STOPPED
+        return told(error, STOPPED)
     return shown(found, folder)
 
 

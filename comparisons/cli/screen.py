@@ -9,14 +9,13 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 from comparisons.answer import Response
-from comparisons.cli.command import DONE, STOPPED, WRONG, report
+from comparisons.cli.command import DONE, STOPPED, WRONG, report, told
 from comparisons.models.model import REDRAW, Count, Reached, Watch, bar
 from comparisons.scene import Scene
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from comparisons.report.brief import Brief
     from comparisons.suites.found import Found
 
 PATIENCE = 2.0
@@ -28,42 +27,26 @@ def teller(*, quiet: bool) -> Callable[[str], None]:
     return (lambda _: None) if quiet else report
 
 
-def files_named(*files: object) -> None:
-    """Print the names of the files that were written."""
-    print("files:", *(f"  {path}" for path in files), sep="\n")
-
-
-def say(brief: "Brief") -> None:
-    """Print what is found, its sentence in bold on a terminal that may have it."""
-    print(brief.text(bold=sys.stdout.isatty() and not os.environ.get("NO_COLOR")), end="\n\n")
-
-
 def ended(files: Iterable[object], reasons: Iterable[str] = (), status: int = STOPPED) -> int:
     """Name the files, and what is wrong; return the exit status."""
-    files_named(*files)
-    wrong = [f"crossval: {reason}" for reason in reasons]
-    for line in wrong:
-        report(line)
-    return status if wrong else DONE
+    print("files:", *(f"  {path}" for path in files), sep="\n")
+    return max((told(reason, status) for reason in reasons), default=DONE)
 
 
 def shown(found: "Found", folder: "Path") -> int:
-    """Write what a suite found to a folder, print it, and return the exit status."""
+    """Write what a suite found to a folder, print it, in bold what a terminal may have so, and return the exit status."""
     files = found.write(folder)
-    say(found.brief)
-    if found.text:
-        print(found.text, end="\n\n")
+    brief = found.brief.text(bold=sys.stdout.isatty() and not os.environ.get("NO_COLOR"))
+    print(*filter(None, (brief, found.text)), sep="\n\n", end="\n\n")
     for line in found.remarks:
-        report(f"crossval: {line}")
+        told(line, DONE)
     return ended(files, found.wrong or found.stopped, WRONG if found.wrong else STOPPED)
 
 
 def exit_status(scene: Scene, responses: Iterable[tuple[str, Response]]) -> int:
     """Name every solution that stopped, by its label, and what was reached; return the exit status."""
-    stopped = [(label, response) for label, response in responses if not response.completed]
-    for label, response in stopped:
-        report(f"crossval: {label}{response.stop(scene)}")
-    return STOPPED if stopped else DONE
+    stopped = (f"{label}{response.stop(scene)}" for label, response in responses if not response.completed)
+    return max((told(reason, STOPPED) for reason in stopped), default=DONE)
 
 
 @contextmanager

@@ -1,14 +1,15 @@
 """``crossval solve``: one scene, one model."""
 
 from argparse import Namespace
-from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from numpy import isnan
 
 from comparisons.answer import Response
 from comparisons.answer.material import frictions_found
 from comparisons.answer.page import text
-from comparisons.cli.command import DONE, STOPPED, report
+from comparisons.cli.command import DONE, STOPPED, report, told
 from comparisons.cli.options import STANDARD, chosen, outputs, refuse, write
 from comparisons.cli.screen import exit_status, watching
 from comparisons.files import writable_folder
@@ -43,13 +44,13 @@ def run(given: Namespace) -> int:
     response = certified(response, scene, given.certify)
     for kind, path in files:
         _write(kind, path, response, scene, more)
-    if STANDARD not in dict(files).values():
+    if (".json", STANDARD) not in files:
         print(text(response, [*_found(response, scene), *lines], rule))
     status = exit_status(scene, [("", response)])
     if answer is None or answer.reached or status != DONE:
         return status
-    report(f"crossval: ACCURACY_NOT_REACHED: estimated error {answer.estimate:.2g}, asked {answer.asked:g}")
-    return STOPPED
+    reason = f"ACCURACY_NOT_REACHED: estimated error {answer.estimate:.2g}, asked {answer.asked:g}"
+    return told(reason, STOPPED)
 
 
 def _write(kind: str, path: Path, response: Response, scene: Scene, more: dict[str, Any]) -> None:
@@ -80,13 +81,11 @@ def _write(kind: str, path: Path, response: Response, scene: Scene, more: dict[s
 def _found(response: Response, scene: Scene) -> list[tuple[str, str]]:
     """Return the coefficient of friction that a clamp's reactions show, at the last load parameter in contact, and the scene's."""
     given = {contact.beam: contact.friction for contact in scene.contacts}
-    rows = []
-    for beam, found in frictions_found(response, scene).items():
-        known = [value for value in found.tolist() if not isnan(value)]
-        if known:
-            said = f"{abs(known[-1]):.6g} by the reactions of {beam}, {given[beam]:g} in the scene"
-            rows.append(("friction", said))
-    return rows
+    return [
+        ("friction", f"{abs(value):.6g} by the reactions of {beam}, {given[beam]:g} in the scene")
+        for beam, found in frictions_found(response, scene).items()
+        for value in found[~isnan(found)][-1:]
+    ]
 
 
 def _answer(scene: Scene, given: Namespace) -> "Answer | None":

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from comparisons.answer import Response
 from comparisons.cli.command import DONE, report
-from comparisons.cli.screen import exit_status, files_named, staging, watching
+from comparisons.cli.screen import ended, exit_status, staging, watching
 from comparisons.files import writable_folder
 from comparisons.models import SOLID, TSM, solve
 from comparisons.models.model import ModelError, Options
@@ -20,16 +20,17 @@ BEAMS = Options(elements=20)
 
 def run(given: Namespace) -> int:
     """Solve or read, then show or write."""
-    folder = Path(given.what)
+    folder, status = Path(given.what), DONE
     if folder.is_dir():
-        out = _target(given.out, folder.resolve().name)
-        return _present(read_series(folder), given.scale, out)
-    scene = load_scene(given.what)
-    out = _target(given.out, scene.name)
-    found = _solve(scene)
-    series = [solved_series(one, scene, title) for title, one in found if len(one.load_parameter)]
-    status = exit_status(scene, [(f"{title}: ", response) for title, response in found])
-    return max(status, _present(series, given.scale, out)) if series else status
+        out, series = _target(given.out, folder.resolve().name), read_series(folder)
+    else:
+        scene = load_scene(given.what)
+        out, found = _target(given.out, scene.name), _solve(scene)
+        series = [solved_series(one, scene, title) for title, one in found if len(one.load_parameter)]
+        status = exit_status(scene, [(f"{title}: ", response) for title, response in found])
+    if series:
+        _present(series, given.scale, out)
+    return status
 
 
 def _target(out: Path | None, name: str) -> Path | None:
@@ -55,13 +56,12 @@ def _solve(scene: Scene) -> "list[tuple[str, Response]]":
     return found
 
 
-def _present(series: "list[Series]", factor: float, out: Path | None) -> int:
+def _present(series: "list[Series]", factor: float, out: Path | None) -> None:
     shown = film(series, factor)
     if out is None:
         report("opening a window")
         show(shown)
-        return DONE
+        return
     with staging(f"drawing {len(shown.frames)} pictures") as count:
         files = write_film(shown, out, count)
-    files_named(*files)
-    return DONE
+    ended(files)

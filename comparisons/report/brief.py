@@ -1,9 +1,7 @@
 """What a page and a terminal begin with: one sentence, at most five points, and the answer in units, model by model."""
 
 from collections.abc import Mapping, Sequence
-from shutil import get_terminal_size
-from textwrap import wrap
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,6 +10,7 @@ from comparisons.answer.along import ALONG, extremes_along
 from comparisons.answer.quantities import forces, moments, size
 from comparisons.answer.round_off import round_off
 from comparisons.answer.table import unit_names
+from comparisons.files import filled
 from comparisons.output import Row, tabulated
 from comparisons.scene import Scene
 
@@ -20,12 +19,6 @@ POINTS = 5
 BOLD = "\x1b[1m{}\x1b[0m"
 DIGITS, LEAST = 4, 1e-9
 """Significant digits of an answer in a brief, and the least relative difference that is no round-off."""
-
-
-def filled(words: str, first: str = "", rest: str = "") -> list[str]:
-    """Return lines that fit the terminal, the first one and the others indented; no word is broken."""
-    whole: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
-    return wrap(words, get_terminal_size().columns, initial_indent=first, subsequent_indent=rest, **whole)
 
 
 class Brief(NamedTuple):

@@ -118,7 +118,7 @@ class BeamSpec(Record):
 
     def tangent(self, fraction: float) -> Point:
         """Return the unit tangent of the undeformed axis at a fraction of the length."""
-        return _turned(self.direction, self.turn * (fraction - 0.5)) if self.turn else self.direction
+        return _turned(self.direction, self.turn * (fraction - 0.5))
 
     def place(self, fraction: float) -> Point:
         """Return the point of the undeformed axis at a fraction of the length."""
@@ -179,7 +179,7 @@ class BeamSpec(Record):
 
     def height_at(self, fraction: float) -> float:
         """Return the height of the section at a fraction of the length, zero where the section has none."""
-        return _between(self.height, fraction) or 0.0
+        return _between(self.height, fraction)
 
     @property
     def rectangle_height(self) -> float:
@@ -204,11 +204,9 @@ class BeamSpec(Record):
         return start, -3 * start + 4 * middle - end, 2 * start - 4 * middle + 2 * end
 
 
-def _between(dimension: Dimension | None, fraction: float) -> float | None:
-    """Return a dimension at a fraction of the length."""
-    if not isinstance(dimension, tuple):
-        return dimension
-    a, b = dimension
+def _between(dimension: Dimension | None, fraction: float) -> float:
+    """Return a dimension at a fraction of the length, zero where there is none."""
+    a, b = dimension if isinstance(dimension, tuple) else (dimension or 0.0,) * 2
     return a + fraction * (b - a) if fraction < 0.5 else b - (1.0 - fraction) * (b - a)
 
 

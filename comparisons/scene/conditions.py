@@ -129,16 +129,14 @@ class LoadSpec(Record):
     @property
     def key(self) -> str:
         """The key that says where the load acts."""
-        return "end" if self.end is not None else "at" if self.at is not None else "force_per_length"
+        return "end" if self.end else "at" if self.at else "force_per_length"
 
     @property
     def node(self) -> str:
         """Name of the place: ``upper.end``, ``upper at 0.5`` or ``upper from 0 to 1``."""
-        if self.end is not None:
+        if self.end:
             return f"{self.beam}.{self.end}"
-        return (
-            f"{self.beam} at {self.at!r}" if self.at else "{} from {!r} to {!r}".format(self.beam, *self.span)
-        )
+        return self.beam + (f" at {self.at!r}" if self.at else " from {!r} to {!r}".format(*self.span))
 
 
 class HingeSpec(AtEnd):

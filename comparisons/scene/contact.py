@@ -34,7 +34,7 @@ class Path:
     def position(self, load_parameter: float) -> Point:
         """Return the point at the fraction `load_parameter` of the length."""
         ahead = load_parameter * self._reached[-1]
-        k = min(max(bisect_left(self._reached, ahead), 1), len(self.points) - 1)
+        k = bisect_left(self._reached, ahead, 1, len(self.points) - 1)
         start, end = self.points[k - 1 : k + 1]
         if start == end:
             return start

@@ -29,10 +29,9 @@ def joint_rules(scene: Statement) -> Mistakes:
 
 def _held(scene: Statement) -> Mistakes:
     """Yield the hinges that do nothing, and the structures that are free or, untouched, can move without strain."""
-    for name in (
-        *(beam.name for beam in scene.beams),
-        *(item.beam for item in (*scene.holding, *scene.hinges)),
-    ):
+    names = [beam.name for beam in scene.beams]
+    names += (item.beam for item in (*scene.holding, *scene.hinges))
+    for name in names:
         scene.beam(name)
     useless = list(_useless_hinges(scene))
     yield from useless

@@ -36,5 +36,5 @@ def unstated(scene: Scene, who: str, known: Collection[str] = ()) -> str | None:
     >>> unstated(load_scene("ks-cantilever"), "the elastica") is None
     True
     """
-    missing = next((key for key in special_keys(scene) if key not in known), None)
-    return None if missing is None else f"{who} does not state {SPECIAL[missing]}, which the scene uses"
+    missing = (SPECIAL[key] for key in special_keys(scene) if key not in known)
+    return next((f"{who} does not state {what}, which the scene uses" for what in missing), None)

@@ -6,8 +6,8 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from comparisons.scene.record import Record, lists_of, rule_of
-from comparisons.scene.rules import MISSING, UNREADABLE, RecordError, Records, toml_value
+from comparisons.scene.record import Record, lists_of
+from comparisons.scene.rules import MISSING, UNREADABLE, RecordError, toml_value
 from comparisons.scene.scene import Scene
 from comparisons.scene.tables import (
     InputError,
@@ -74,9 +74,9 @@ def read_scene(text: str, source: str) -> Scene:
         head = dict.fromkeys(HEAD, UNREADABLE)
     mistakes = [*check_keys(tables, known, required=("scene", "beam")), *check_table(tables, "scene")]
     mistakes += (mistake.within("scene.") for mistake in check_keys(head, HEAD))
-    given: Table = {name: head.get(name, UNREADABLE) for name in HEAD if name in stated(head, HEAD)}
-    for kind in (kind for kind in LISTS if kind in {"beam", *stated(tables, known)}):
-        given[f"{kind}s"] = tables.get(kind, UNREADABLE)
+    given = {name: head.get(name, UNREADABLE) for name in HEAD & stated(head, HEAD)}
+    kinds = LISTS.keys() & {"beam", *stated(tables, known)}
+    given |= {f"{kind}s": tables.get(kind, UNREADABLE) for kind in kinds}
     try:
         scene = Scene(**given)
     except RecordError as error:
@@ -142,10 +142,10 @@ def _schema(kind: type[Record], known: Collection[str]) -> Table:
     """Return the schema of a table with some keys of a record."""
     properties, declared = {}, [item for item in fields(kind) if item.name in known]
     for item in declared:
-        rule, meaning = rule_of(item), item.metadata["meaning"].replace("``", "`")
-        properties[item.name] = {"description": meaning, **rule.schema}
-        if isinstance(rule, Records):
-            properties[item.name]["items"] = _schema(rule.kind, {one.name for one in fields(rule.kind)})
+        meaning = item.metadata["meaning"].replace("``", "`")
+        properties[item.name] = {"description": meaning, **kind.rules[item.name].schema}
+        if listed := lists_of(kind).get(item.name):
+            properties[item.name]["items"] = _schema(listed, listed.rules)
         elif item.default not in (MISSING, None):
             properties[item.name]["default"] = item.default
     return {

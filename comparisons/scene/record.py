@@ -6,15 +6,14 @@ attributes. Where a value is itself wrong, reading it raises `Unjudged`, and the
 
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import Field, field, fields
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, dataclass_transform
+from dataclasses import field
+from typing import TYPE_CHECKING, Any, ClassVar, dataclass_transform
 
 from comparisons.frozen import Value
 from comparisons.scene.rules import MISSING, FieldError, Mistakes, RecordError, Records, ValueRule
 from comparisons.scene.tables import stated, table_values
 
-R = TypeVar("R", bound="Record")
-RAISES = "Raises\n------\nFieldError\n    With all mistakes, each in one line: field, value and rule."
+RAISES = "\nRaises\n------\nFieldError\n    With all mistakes, each in one line: field, value and rule."
 
 
 class Unjudged(KeyError):  # noqa: N818 - no error of the user: the value is reported where it stands
@@ -23,7 +22,7 @@ class Unjudged(KeyError):  # noqa: N818 - no error of the user: the value is rep
 
 def key(rule: ValueRule, meaning: str) -> Any:
     """Declare a key that must be given by its rule and its meaning with the unit."""
-    return field(metadata={"rule": rule, "meaning": meaning})
+    return optional(rule, meaning, MISSING)
 
 
 def optional(rule: ValueRule, meaning: str, default: Any = None) -> Any:
@@ -44,22 +43,23 @@ class Record(Value):
     """
 
     obeys: ClassVar[tuple[Callable[[Any], Mistakes], ...]] = ()
-    _rules: ClassVar[dict[str, ValueRule]]
+    rules: ClassVar[dict[str, ValueRule]]
+    """The rules of its keys."""
     _free: ClassVar[dict[str, Any]]
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
-        declared = cls._fields.values()
-        cls._rules = {item.name: rule_of(item) for item in declared}
-        cls._free = {item.name: item.default for item in declared if item.default is not MISSING}
-        for name in cls._rules.keys() & vars(cls).keys():
+        said = {name: item.metadata for name, item in cls._fields.items()}
+        cls.rules = {name: one["rule"] for name, one in said.items()}
+        cls._free = {name: item.default for name, item in cls._fields.items() if item.default is not MISSING}
+        for name in said.keys() & vars(cls).keys():
             delattr(cls, name)  # so that a value which is wrong is not there
-        rows = (f"{item.name} : {rule_of(item).accepts}\n    {item.metadata['meaning']}" for item in declared)
-        said = (cls.__doc__ or "").replace("\n    ", "\n").rstrip()
-        cls.__doc__ = "\n".join([said, "\nParameters\n----------", *rows, f"\n{RAISES}"])
+        rows = (f"{name} : {one['rule'].accepts}\n    {one['meaning']}" for name, one in said.items())
+        own = (cls.__doc__ or "").replace("\n    ", "\n").rstrip()
+        cls.__doc__ = "\n".join([own, "\nParameters\n----------", *rows, RAISES])
 
     def __init__(self, /, **given: Any) -> None:
-        free, rules = self._free, self._rules
+        free, rules = self._free, self.rules
         given = {k: value for k, value in given.items() if value is not None or free.get(k, 0) is not None}
         values, mistakes = table_values(given, rules, [name for name in rules if name not in free])
         there = stated(given, rules)
@@ -79,36 +79,20 @@ class Record(Value):
 
     def records(self, name: str) -> tuple[Any, ...]:
         """Return the records that a value lists; none where it is wrong."""
-        records: tuple[Any, ...] = vars(self).get(name, ())
-        return records
+        return tuple(vars(self).get(name, ()))
 
     if not TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any:
             """Refuse a value that is wrong."""
-            if name in self._rules:
+            if name in self.rules:
                 raise Unjudged(name)
             raise AttributeError(f"{type(self).__name__} has no attribute {name}")
 
 
-def rule_of(item: Field[Any]) -> ValueRule:
-    """Return the rule of a field."""
-    rule: ValueRule = item.metadata["rule"]
-    return rule
-
-
 def lists_of(kind: type[Record]) -> dict[str, type[Record]]:
     """Return the kinds of records that the fields of a record list, by field."""
-    rules = ((item.name, rule_of(item)) for item in fields(kind))
-    return {name: rule.kind for name, rule in rules if isinstance(rule, Records)}
-
-
-def copied(record: R, **attributes: object) -> R:
-    """Return a copy of a record, wrong values included, with further attributes that are no keys."""
-    copy = object.__new__(type(record))
-    own = {name: value for name, value in vars(record).items() if name in record._rules}  # noqa: SLF001
-    vars(copy).update(own, **attributes)
-    return copy
+    return {name: rule.kind for name, rule in kind.rules.items() if isinstance(rule, Records)}
 
 
 def refused(key: str, sentence: str, when: Callable[[Any], object]) -> Callable[[Record], Mistakes]:
@@ -126,16 +110,15 @@ def one_of(*groups: tuple[str, ...]) -> Callable[[Record], Mistakes]:
     wanted = " or ".join(" and ".join(group) for group in groups)
 
     def judged(record: Record) -> Mistakes:
-        given = [[item for item in group if vars(record).get(item, MISSING) is not None] for group in groups]
-        present = [k for k, some in enumerate(given) if some]
+        there = {item for group in groups for item in group if vars(record).get(item, MISSING) is not None}
+        present = [group for group in groups if there & {*group}]
         if not present:
             yield FieldError(groups[0][0], MISSING, f"give {wanted}")
         elif len(present) > 1:
-            extra = given[present[1]][0]
+            extra = next(item for item in present[1] if item in there)
             yield FieldError(extra, getattr(record, extra), f"give either {wanted}, not both")
         else:
-            group = groups[present[0]]
-            rule = f"must be given, {' and '.join(group)} belong together"
-            yield from (FieldError(item, MISSING, rule) for item in group if item not in given[present[0]])
+            rule = f"must be given, {' and '.join(present[0])} belong together"
+            yield from (FieldError(item, MISSING, rule) for item in present[0] if item not in there)
 
     return judged

@@ -1,6 +1,6 @@
 """Rules for single values of a scene, and the mistakes that they state.
 
-A rule is a value: called, it returns the stored form of a value, or raises its sentence, "must be" before what it accepts.
+A rule is a value: called, it returns the stored form of a value, or raises a `FieldError`, "must be" before what it accepts.
 """
 
 import dataclasses
@@ -28,17 +28,13 @@ UNREADABLE: Any = object()
 """The value of a key that is stated, and wrong in a way that is reported elsewhere."""
 
 
-class RuleError(ValueError):
-    """The sentence of a rule that a value breaks."""
-
-
 class FieldError(ValueError):
     """A mistake: a value of a record breaks a rule, ``KEY = VALUE: RULE`` in one line.
 
     Parameters
     ----------
     key : str
-        The field, with its place in the scene where that is known (``beam[0].height``).
+        The field, with its place in the scene where that is known (``beam[0].height``); a rule does not know it.
     value : object
         The value found; `MISSING` where there is none.
     rule : str
@@ -50,24 +46,22 @@ class FieldError(ValueError):
         self.key, self.value, self.rule = key, value, rule
         self.mistakes: tuple[FieldError, ...] = (self,)
         """Every single mistake."""
+        self.found: Any = UNREADABLE
+        """What is right nevertheless, of a value with parts."""
 
-    def within(self, prefix: str) -> "FieldError":
-        """Return the same error with `prefix` before every key."""
-        return FieldError(prefix + self.key, self.value, self.rule)
+    def within(self, prefix: str) -> "RecordError":
+        """Return the same mistakes with `prefix` before every key."""
+        return RecordError([FieldError(prefix + one.key, one.value, one.rule) for one in self.mistakes])
 
 
 class RecordError(FieldError):
-    """Several mistakes, each in one line, the first one's key, value and rule; `found` has the values that are right."""
+    """Several mistakes, each in one line, the first one's key, value and rule."""
 
-    def __init__(self, mistakes: Collection[FieldError], found: Any = None) -> None:
+    def __init__(self, mistakes: Collection[FieldError], found: Any = UNREADABLE) -> None:
         first, *_ = mistakes
         super().__init__(first.key, first.value, first.rule)
         self.args = ("\n".join(map(str, mistakes)),)
         self.mistakes, self.found = tuple(mistakes), found
-
-    def within(self, prefix: str) -> FieldError:
-        """Return the same error with `prefix` before every key."""
-        return RecordError([mistake.within(prefix) for mistake in self.mistakes])
 
 
 Mistakes = Iterator[FieldError]
@@ -100,10 +94,8 @@ TYPES: dict[str, Any] = {
     "number": int | float,
     "integer": int,
     "string": str,
-    "boolean": bool,
     "array": list | tuple,
 }
-NUMBERS = ("number", "integer")
 LIMITS = {"minimum": ge, "maximum": le, "exclusiveMinimum": gt, "exclusiveMaximum": lt}
 """Types and limits of values by their names in JSON Schema; a truth value is no number."""
 
@@ -113,7 +105,7 @@ def fits(value: Any, schema: Schema) -> bool:
     if "anyOf" in schema:
         return any(fits(value, one) for one in schema["anyOf"])
     kind = schema["type"]
-    if not isinstance(value, TYPES.get(kind, object)) or (isinstance(value, bool) and kind in NUMBERS):
+    if not isinstance(value, TYPES.get(kind, object)) or isinstance(value, bool) != (kind == "boolean"):
         return False
     if kind == "array":
         sized = schema["minItems"] <= len(value) <= schema.get("maxItems", math.inf)
@@ -141,9 +133,9 @@ class ValueRule:
         self.form = form or (lambda value: stored(value, schema))
 
     def __call__(self, value: object) -> Any:
-        """Return the stored form of `value`, or raise `RuleError`."""
+        """Return the stored form of `value`, or raise `FieldError`."""
         if not (fits(value, self.schema) and self.also(value)):
-            raise RuleError(f"must be {self.accepts}")
+            raise FieldError("", value, f"must be {self.accepts}")
         return self.form(value)
 
 
@@ -222,12 +214,14 @@ whole_number = whole()
 mesh = ValueRule("[elements along, elements across]", several(whole_number.schema, 2, 2))
 
 
-def mesh_text(value: object) -> tuple[int, int]:
+def mesh_text(value: object) -> object:
     """Accept the numbers of elements along and across as ``50x2``."""
     if not re.fullmatch(r"[0-9]{1,9}x[0-9]{1,9}", str(value)):
-        raise RuleError("must be NXxNY, as 50x2")
-    found: tuple[int, int] = mesh(tuple(map(int, str(value).split("x"))))
-    return found
+        raise FieldError("", value, "must be NXxNY, as 50x2")
+    try:
+        return mesh(tuple(map(int, str(value).split("x"))))
+    except FieldError as error:
+        raise FieldError("", value, error.rule) from None
 
 
 def polyline(at_least: int) -> ValueRule:
@@ -272,10 +266,10 @@ class Records(ValueRule):
             try:
                 found.append(self.kind(**item) if isinstance(item, dict) else item)
             except RecordError as error:
-                mistakes += (mistake.within(f"{self.name}[{i}].") for mistake in error.mistakes)
+                mistakes += error.within(f"[{i}].").mistakes
                 found.append(error.found)
             if len(mistakes) > MOST:
-                raise RecordError(mistakes, UNREADABLE)
+                raise RecordError(mistakes)
         if mistakes:
             raise RecordError(mistakes, tuple(found))
         return tuple(found)

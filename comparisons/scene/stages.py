@@ -86,11 +86,8 @@ def stage_of(load_parameter: float, stages: int) -> int:
 def amount(increments: Sequence[tuple[float, ...]], load_parameter: float) -> tuple[float, ...]:
     """Return quantities that rise from zero by `increments[k]` in the stage k, in proportion to the load parameter."""
     stage = stage_of(load_parameter, len(increments))
-    if stage == 0:
-        return tuple(load_parameter * value for value in increments[0])
-    before = (math.fsum(values) for values in zip(*increments[:stage], strict=True))
     part = load_parameter - stage
-    return tuple(a + part * b for a, b in zip(before, increments[stage], strict=True))
+    return tuple(math.fsum(every[:stage]) + part * every[stage] for every in zip(*increments, strict=True))
 
 
 class PrescribedMotion(NamedTuple):

@@ -1,6 +1,7 @@
 """What a scene states: its keys, and the records that names in it mean."""
 
 from collections import defaultdict
+from contextlib import suppress
 from functools import cached_property
 from typing import Any
 
@@ -8,9 +9,9 @@ from comparisons.scene import rules
 from comparisons.scene.beam import BeamSpec
 from comparisons.scene.conditions import HingeSpec, LoadSpec, SpringSpec, SupportSpec
 from comparisons.scene.contact import ContactSpec, PinSpec
-from comparisons.scene.record import Record, Unjudged, copied, key, listed, optional
+from comparisons.scene.record import Record, Unjudged, key, listed, optional
 from comparisons.scene.rules import FieldError, Point
-from comparisons.scene.stages import PinMove, StageSpec
+from comparisons.scene.stages import StageSpec
 
 
 class Found(dict[str, tuple[str, Any]]):
@@ -24,19 +25,17 @@ class Names:
     """Beams and pins by their names, a name that appears twice left out. They are `complete` if all names are right."""
 
     def __init__(self, scene: "Statement") -> None:
-        there = defaultdict[str, list[tuple[str, Any]]](list)
-        self.found, count = {"": Found(), "beam": Found(), "pin": Found()}, 0
-        for kind in ("beam", "pin"):
-            for i, record in enumerate(scene.records(f"{kind}s")):
-                count += 1
-                if record.has("name"):
-                    there[record.name].append((f"{kind}[{i}]", record))
-        self.repeated = list[FieldError]()
-        for name, (first, *more) in there.items():
+        self.found, self.repeated = {"": Found(), "beam": Found(), "pin": Found()}, list[FieldError]()
+        records = [(kind, *one) for kind in ("beam", "pin") for one in enumerate(scene.records(f"{kind}s"))]
+        there = defaultdict[str, list[tuple[str, int, Any]]](list)
+        for kind, i, record in records:
+            if record.has("name"):
+                there[record.name].append((kind, i, record))
+        for name, ((kind, i, record), *more) in there.items():
             if not more:
-                self.found[""][name] = self.found[first[0].partition("[")[0]][name] = first
-            self.repeated += (FieldError(f"{place}.name", name, "must not appear twice") for place, _ in more)
-        self.complete = scene.has("beams", "pins") and len(self.found[""]) == count
+                self.found[""][name] = self.found[kind][name] = f"{kind}[{i}]", record
+            self.repeated += (FieldError(f"{k}[{j}].name", name, "must not appear twice") for k, j, _ in more)
+        self.complete = scene.has("beams", "pins") and len(self.found[""]) == len(records)
 
     def place(self, name: str) -> str:
         """Return the place of a beam or pin, as ``beam[0]``."""
@@ -75,14 +74,16 @@ class Statement(Record):
 
     def _settle(self) -> None:
         if self.has("pins"):
-            vars(self)["pins"] = tuple(copied(pin, moves=self._moves(pin)) for pin in self.pins)
+            vars(self)["pins"] = tuple(map(self._staged, self.pins))
 
-    def _moves(self, pin: PinSpec) -> tuple[PinMove | None, ...] | None:
-        """Return the motions of a pin in the stages; None where one is wrong."""
-        try:
-            return tuple({move.name: move for move in stage.pin}.get(pin.name) for stage in self.stages)
-        except Unjudged:
-            return None
+    def _staged(self, pin: PinSpec) -> PinSpec:
+        """Return a pin, wrong values included, with its motions in the stages; None where one is wrong."""
+        staged, moves = object.__new__(PinSpec), None
+        with suppress(Unjudged):
+            moves = tuple({move.name: move for move in stage.pin}.get(pin.name) for stage in self.stages)
+        own = {name: value for name, value in vars(pin).items() if name in pin.rules}
+        vars(staged).update(own, moves=moves)
+        return staged
 
     @cached_property
     def names(self) -> Names:

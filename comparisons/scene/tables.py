@@ -7,7 +7,7 @@ from itertools import islice
 from typing import Any
 
 from comparisons.files import read_regular
-from comparisons.scene.rules import MISSING, MOST, UNREADABLE, FieldError, RecordError, Rule, RuleError, shown
+from comparisons.scene.rules import MISSING, MOST, UNREADABLE, FieldError, RecordError, Rule, shown
 
 LARGEST_FILE = 16_000_000
 """Largest size of an input file [byte]."""
@@ -47,7 +47,7 @@ def read_text(path: str, absent: str = "no such file") -> str:
     except UnicodeDecodeError as error:
         raise InputError(path, f"must be UTF-8 text, byte {error.start} is not") from None
     except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        reason = getattr(error, "strerror", None) or error
         raise InputError(path, f"cannot be read: {reason}") from None
 
 
@@ -123,11 +123,9 @@ def table_values(
     for key in (key for key in table if key in rules and table[key] is not UNREADABLE):
         try:
             values[key] = rules[key](table[key])
-        except RecordError as error:
-            mistakes += error.mistakes
+        except FieldError as error:
+            mistakes += error.within(getattr(rules[key], "name", key)).mistakes
             values |= {} if error.found is UNREADABLE else {key: error.found}
-        except RuleError as error:
-            mistakes.append(FieldError(getattr(rules[key], "name", key), table[key], str(error)))
     return values, mistakes
 
 

@@ -18,7 +18,7 @@ from comparisons.models.model import BRANCHES, ModelError, Options
 from comparisons.output import keys, tabulated
 from comparisons.scene import Scene, built_in_scenes, load_scene, rules
 from comparisons.scene.read import LISTS
-from comparisons.scene.rules import FieldError, RecordError, Rule, RuleError
+from comparisons.scene.rules import FieldError, RecordError, Rule
 from comparisons.scene.tables import (
     check_keys,
     check_tables,
@@ -123,7 +123,7 @@ def _known(value: object, find_it: Callable[[str], str]) -> str:
     try:
         return find_it(rules.text(value))
     except ModelError as error:
-        raise RuleError(str(error).partition(": ")[2]) from None
+        raise FieldError("", value, str(error).partition(": ")[2]) from None
 
 
 def _model(name: str, folder: Path) -> str:

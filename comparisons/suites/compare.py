@@ -12,12 +12,12 @@ from comparisons import models
 from comparisons.answer import Response
 from comparisons.answer.file import as_dict
 from comparisons.answer.quantities import event_differences, names, table_columns
-from comparisons.files import writable_folder
+from comparisons.files import filled, writable_folder
 from comparisons.models import Model, certified, find, solve
 from comparisons.models.model import Count, ModelError, Options, Watch, unwatched
 from comparisons.models.theory import bending
 from comparisons.output import NO_VALUE, Report, tabulated
-from comparisons.report.brief import at_largest, filled
+from comparisons.report.brief import at_largest
 from comparisons.report.export import check_series
 from comparisons.report.findings import BUDGET, findings
 from comparisons.report.motion import motion_section, states_section, tracks

@@ -7,7 +7,7 @@ from typing import Any
 
 from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.frozen import Frozen
-from comparisons.output import write_numbers, write_rows
+from comparisons.output import json_text, write_rows
 from comparisons.report.brief import Brief
 from comparisons.report.export import write_series
 from comparisons.report.pages import Section, page, piece
@@ -16,7 +16,7 @@ from comparisons.version import machine, versions
 
 WRITERS: dict[str, Callable[[Path, Any], object]] = {
     ".csv": write_rows,
-    ".json": write_numbers,
+    ".json": lambda path, numbers: write_text(path, json_text({**numbers, "versions": versions()})),
     ".pvd": lambda path, answered: write_series(writable_folder(path.parent), *answered),
 }
 """How a file is written, by its suffix; any other is a text."""

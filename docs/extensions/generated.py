@@ -19,7 +19,7 @@ from comparisons.output import markdown
 from comparisons.referee import Verdict
 from comparisons.scene import Scene, load_scene, read_scene
 from comparisons.scene.read import LISTS
-from comparisons.scene.record import Record, lists_of, rule_of
+from comparisons.scene.record import Record, lists_of
 from comparisons.scene.rules import toml_value
 from comparisons.scene.stages import StageSpec
 from comparisons.scene.words import NOT_MODELLED
@@ -77,7 +77,8 @@ def _record(header: str, kind: type[Record], leave: Collection[str] = ()) -> str
     for item in (one for one in fields(kind) if one.name not in leave):
         has = {MISSING: "required", None: ""}
         default = has[item.default] if item.default in has else f"`{toml_value(item.default)}`"
-        rows.append((f"`{item.name}`", line(rule_of(item).accepts), default, line(item.metadata["meaning"])))
+        accepts, meaning = kind.rules[item.name].accepts, item.metadata["meaning"]
+        rows.append((f"`{item.name}`", line(accepts), default, line(meaning)))
     parts = [f"## `{header}`", *map(line, said), table(("key", "value", "default", "meaning"), rows)]
     return "\n\n".join(parts)
 

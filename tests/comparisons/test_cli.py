@@ -53,6 +53,12 @@ def test_solve_to_an_accuracy(in_folder, capsys, monkeypatch):
     assert "ACCURACY_NOT_REACHED: estimated error" in capsys.readouterr().err
 
 
+def test_an_answer_on_standard_output_is_alone_there(in_folder, capsys):
+    Path("my.toml").write_text(KS)
+    assert run("solve my.toml --elements 4 --quiet --out - --out a.json") == 0
+    assert json.loads(capsys.readouterr().out) == json.loads(Path("a.json").read_text())
+
+
 def test_the_version_names_what_is_missing_and_the_extra_that_installs_it(monkeypatch, capsys):
     version = metadata.version
 

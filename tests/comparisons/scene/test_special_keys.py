@@ -26,7 +26,7 @@ from comparisons.scene import (
 
 # where a key is declared, and what follows from it
 from comparisons.scene.read import LISTS, json_schema
-from comparisons.scene.record import optional, rule_of
+from comparisons.scene.record import optional
 from docs.extensions.generated import scene_file
 
 SCHEMA = json_schema()
@@ -117,7 +117,7 @@ class Worn(ContactSpec):
 def test_a_new_key_is_one_declaration(monkeypatch):
     """Its check, message, default, schema, line of the reference and way back to TOML follow."""
     monkeypatch.setitem(LISTS, "contact", Worn)
-    monkeypatch.setattr(rule_of(Scene.__dataclass_fields__["contacts"]), "kind", Worn)
+    monkeypatch.setattr(Scene.rules["contacts"], "kind", Worn)
     text = HEAD + BEAM + PIN
     assert [contact.wear for contact in read_scene(text, "s").contacts] == [0.25]
     scene = read_scene(text + "wear = 0.5\n", "s")
