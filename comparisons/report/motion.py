@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.answer import CONTACT_STATES, SLIPS, Array, Response
+from comparisons.answer.axis import place_of
 from comparisons.answer.errors import error_columns
 from comparisons.answer.quantities import QUANTITIES, size
 from comparisons.answer.table import unit_names
@@ -101,7 +102,7 @@ def motion_section(
     ordered = sorted(labels, key=lambda label: -palette.style(label).width)
     ends = np.array([[beam.start, beam.end] for beam in scene.beams]).reshape(-1, 2)
     extent = float(np.ptp(ends, axis=0).max())
-    decimals, steps = DIGITS - int(np.floor(np.log10(extent))), range(len(times))
+    decimals = DIGITS - int(np.floor(np.log10(extent)))
     axes = {label: _lines(scene, response, decimals) for label, response in responses.items()}
     runs = list[dict[str, Any]]()
     for number, label in enumerate(ordered):
@@ -111,6 +112,9 @@ def motion_section(
         runs.append({"label": label, "shown": not first or label in first, **drawn})
     way, exact = travel(scene, times), responses[focus]
     start = at_largest(exact) if len(exact.load_parameter) else len(times) - 1
+    reached = np.minimum(
+        np.arange(len(times)), len(exact.load_parameter) - 1
+    ).tolist()  # the last one reached stays
     length = unit_names(scene.units)["length"]
     across = {"title": "load parameter", "values": times}
     if way is not None:
@@ -134,7 +138,7 @@ def motion_section(
         "symbols": [
             {
                 "lines": np.round(SYMBOL * extent * one.segments, decimals),
-                "at": np.round([one.at(_axis(scene, exact, one.item.beam, k)) for k in steps], decimals),
+                "at": np.round([place_of(exact, scene, one.item.node, k) for k in reached], decimals),
             }
             for one in end_symbols(scene)
         ],
@@ -146,14 +150,6 @@ def motion_section(
     picture = rendered("motion", runs=runs, pins=scene.pins, last=len(times) - 1, start=start)
     more = rendered("charts", runs=runs, tracks=shown, across=across["title"])
     return Section(title, picture.rstrip("\n"), data, more.rstrip("\n"))
-
-
-def _axis(scene: Scene, response: Response, beam: str, k: int) -> Array:
-    """Return the axis of a beam at load parameter number k or the last one reached; its ends before that."""
-    last = min(k, len(response.load_parameter) - 1)
-    if last >= 0:
-        return response.axis_line(beam, last)[1]
-    return np.array([scene.beam(beam).start, scene.beam(beam).end])
 
 
 def _lines(scene: Scene, response: Response, decimals: int) -> list[list[Array]]:

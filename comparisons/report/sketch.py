@@ -15,7 +15,17 @@ from comparisons.models.model import ModelError
 from comparisons.models.outside.programs import offered
 from comparisons.report import palette
 from comparisons.report.plot import WIDTH, arrow, figure, legend_below, save
-from comparisons.report.symbols import LEFT, Axis, arc, at_arcs, axis, chain, draw_symbols, legend_symbol
+from comparisons.report.symbols import (
+    LEFT,
+    Axis,
+    arc,
+    at_arcs,
+    axis,
+    chain,
+    draw_symbols,
+    inward,
+    legend_symbol,
+)
 from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene
 from comparisons.scene.conditions import LoadSpec
 
@@ -131,7 +141,9 @@ class Sketch:
         """Draw the arrow of a force, or those of a force per length, shorter and thinner."""
         if not any(vector):
             return
-        many, pulls = len(tips) > 1, load is not None and _pulls(self.scene.beam(load.beam), load.end, vector)
+        # an arrow along the beam would lie on it where the force points away from the end
+        pulls = bool(load and load.end and np.dot(_unit(vector), inward(self.scene, load)) < -PULL)
+        many = len(tips) > 1
         width, named = (0.9, "force per length, arrows") if many else (2.0, "force, arrow")
         drawn = ARROW / (1 + many) * self.size * _unit(vector)
         self.arrows(tips + pulls * drawn, drawn, words, LOAD, width, at_tip=pulls)
@@ -239,14 +251,6 @@ def _motions(sketch: Sketch) -> None:
                 sketch.turn(place, turn, f"{abs(turn):.6g} rad{_after(stage)}", HELD)
             if any(path) or turn:
                 sketch.named("motion of a support", HELD, marker=">")
-
-
-def _pulls(beam: BeamSpec, end: str | None, force: Sequence[float]) -> bool:
-    """Whether a force on a beam's end points away from the beam, along which its arrow would lie."""
-    if end is None:
-        return False
-    outward = np.array(beam.tangent(1.0)) if end == "end" else -np.array(beam.tangent(0.0))
-    return float(_unit(force) @ outward) > PULL
 
 
 def _pin(sketch: Sketch, pin: PinSpec) -> None:

@@ -1,7 +1,7 @@
 """Symbols of mechanics as line segments of unit size: supports by what they hold, springs, hinges, moments as arcs.
 
-Every symbol has its node at the origin. A picture turns, enlarges and moves its segments, so that the same symbols are drawn by
-matplotlib and by pyvista, and stand in a legend.
+Every symbol has its node at the origin. A picture turns, enlarges and moves its segments, so that the same symbols are in a picture
+and in its legend.
 """
 
 import tomllib
@@ -16,7 +16,7 @@ from comparisons.answer import Array
 from comparisons.answer.table import unit_names
 from comparisons.report import palette
 from comparisons.scene import BeamSpec, HingeSpec, Scene, SpringSpec, SupportSpec
-from comparisons.scene.conditions import COMPONENTS
+from comparisons.scene.conditions import COMPONENTS, LoadSpec
 
 Segments = NDArray[np.float64]
 """Line segments, shape (n, 2, 2)."""
@@ -97,11 +97,9 @@ def fixings(kinds: Iterable[int], away: Array) -> Iterator[tuple[tuple[str, ...]
         yield (name,), _SPIRAL if name == "rotation" else _turned(_SPRING, (name,), away)
 
 
-def fixed(scene: Scene) -> NDArray[np.int64]:
-    """Return the kinds of `fixings`, shape (n, 3), of everything in `scene.holding`."""
-    kinds = [1] * len(scene.all_supports) + [2] * len(scene.springs)
-    held = [[name in one.held for name in COMPONENTS] for one in scene.holding]
-    return np.asarray(np.array(kinds)[:, None] * np.array(held).reshape(-1, 3))
+def kinds(one: SupportSpec | SpringSpec) -> list[int]:
+    """Return the kinds of `fixings` of the components of an end."""
+    return [(1 + isinstance(one, SpringSpec)) * (name in one.held) for name in COMPONENTS]
 
 
 class Symbol(NamedTuple):
@@ -111,18 +109,14 @@ class Symbol(NamedTuple):
     words: str
     segments: Segments
 
-    def at(self, line: Array) -> Array:
-        """Return the place of the node on its beam's deformed axis, a line of shape (m, 2)."""
-        return np.asarray(line[0 if self.item.end == "start" else -1])
-
 
 def end_symbols(scene: Scene) -> list[Symbol]:
     """Return the symbols of the supports, springs and hinges of a scene."""
     units = unit_names(scene.units)
     stiff = f"{units['moment']}/rad"
     found = []
-    for one, kinds in zip(scene.holding, fixed(scene), strict=True):
-        for names, segments in fixings(kinds, inward(scene, one)):
+    for one in scene.holding:
+        for names, segments in fixings(kinds(one), inward(scene, one)):
             words = SUPPORTS[names][0]
             if isinstance(one, SpringSpec):
                 stiffness = dict(zip(COMPONENTS, (*one.stiffness, one.rotation), strict=True))[names[0]]
@@ -141,7 +135,7 @@ def draw_symbols(axes: Any, scene: Scene, lines: Mapping[str, Array], size: floa
 
     symbols = end_symbols(scene)
     for one in symbols:
-        drawn = one.at(lines[one.item.beam]) + size * one.segments
+        drawn = lines[one.item.beam][0 if one.item.end == "start" else -1] + size * one.segments
         axes.add_collection(LineCollection(list(drawn), colors=palette.BLACK, linewidths=1.0, zorder=4))
         axes.update_datalim(drawn.reshape(-1, 2))
     return {one.words: legend_symbol(one.segments) for one in symbols}
@@ -160,7 +154,7 @@ def legend_symbol(segments: Segments, colour: str = palette.BLACK) -> Any:
     return Line2D([], [], color=colour, linestyle="none", **style)
 
 
-def inward(scene: Scene, support: SupportSpec | SpringSpec) -> Array:
-    """Return the unit vector from a support or a spring into its beam."""
-    beam = scene.beam(support.beam)
-    return np.array(beam.tangent(0.0)) if support.end == "start" else -np.array(beam.tangent(1.0))
+def inward(scene: Scene, one: SupportSpec | SpringSpec | LoadSpec) -> Array:
+    """Return the unit vector from an end, where there is a support, a spring or a load, into its beam."""
+    beam = scene.beam(one.beam)
+    return np.array(beam.tangent(0.0)) if one.end == "start" else -np.array(beam.tangent(1.0))
