@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,8 +30,8 @@ ALONG = {
 nominal ones at the faces, ``N/A + M h/2I`` and ``N/A - M h/2I``; the other sign counts as 0."""
 
 
-Curve = tuple[Array, Array, Callable[[], Any]]
-"""Arc lengths, values of a quantity at them, and what chooses the stations without doubles."""
+Curve = tuple[Array, Array]
+"""Arc lengths, and the values of a quantity at them."""
 
 
 class Extreme(NamedTuple):
@@ -59,7 +59,7 @@ def _along(response: Answer, beam: BeamSpec, every: bool, steps: Iterable[int]) 
     for k in steps:
         found = {} if response.sections is None else _forces(response.sections(beam.name, k), beam, section)
         arc, line = response.axis_line(beam.name, k)
-        found["displacement"] = [(arc, np.hypot(*(line - undeformed(tuple(arc))).T), lambda: slice(None))]
+        found["displacement"] = [(arc, np.hypot(*(line - undeformed(tuple(arc))).T))]
         for name, curves in found.items():
             rows.setdefault(name, []).append(curves)
     return {name: _extreme(curves, every) for name, curves in rows.items()}
@@ -67,12 +67,11 @@ def _along(response: Answer, beam: BeamSpec, every: bool, steps: Iterable[int]) 
 
 def _extreme(rows: list[list[Curve]], every: bool) -> Extreme:
     """Return one extreme per row (load parameter); of equal curves, the first."""
-    sizes = [max(float(np.abs(values).max()) for _, values, _ in curves) for curves in rows]
+    sizes = [max(float(np.abs(values).max()) for _, values in curves) for curves in rows]
     least = 0.0 if every else CLOSE * max(sizes)
-    peaks = ((peak(arc[own()], values[own()]) for arc, values, own in curves) for curves in rows)
     found = [
-        max(row, key=lambda one: abs(one[0])) if size >= least else (0.0, 0.0)
-        for row, size in zip(peaks, sizes, strict=True)
+        max((peak(*curve) for curve in row), key=lambda one: abs(one[0])) if size >= least else (0.0, 0.0)
+        for row, size in zip(rows, sizes, strict=True)
     ]
     return Extreme(*np.array(found).T)
 
@@ -90,15 +89,15 @@ def _sections(beam: BeamSpec, arcs: tuple[float, ...]) -> Array:
 def _forces(
     at: Sections, beam: BeamSpec, section: Callable[[tuple[float, ...]], Array]
 ) -> dict[str, list[Curve]]:
-    curves = {"axial_force": [at.N], "shear_force": [at.V], "bending_moment": [at.M]}
+    own = _once(at, APART * beam.length)
+    arc, N, V, M = (values[own] for values in (at.arc, at.N, at.V, at.M))
+    curves = {"axial_force": [N], "shear_force": [V], "bending_moment": [M]}
     if beam.height is not None:
-        area, lever = section(tuple(at.arc) if beam.tapers else (0.0,))
-        axial, bending = at.N / area, at.M * lever
-        faces = axial + bending, axial - bending
+        area, lever = section(tuple(arc) if beam.tapers else (0.0,))
+        faces = N / area + M * lever, N / area - M * lever
         curves["tensile_stress"] = [np.maximum(face, 0.0) for face in faces]
         curves["compressive_stress"] = [np.minimum(face, 0.0) for face in faces]
-    own = cache(lambda: _once(at, APART * beam.length))
-    return {name: [(at.arc, values, own) for values in found] for name, found in curves.items()}
+    return {name: [(arc, values) for values in found] for name, found in curves.items()}
 
 
 def _once(at: Sections, apart: float) -> NDArray[np.bool_]:

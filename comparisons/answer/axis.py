@@ -36,25 +36,25 @@ def place_of(response: Response, scene: Scene, node: str, k: int) -> Array:
     )
 
 
-def axes_at_stations(response: Response, beam: str, steps: Iterable[int]) -> Array:
-    """Return the deformed axes of a beam at n load parameters, shape (n, 101, 2), by cubic splines through the model's points."""
+def axes_at_stations(response: Response, beam: str, steps: Iterable[int], at: Array = STATIONS) -> Array:
+    """Return the deformed axes of a beam at n load parameters and m parts of its length, shape (n, m, 2), by cubic splines through the model's points."""
     from scipy.interpolate import CubicSpline
 
     lines = [response.axis_line(beam, k) for k in steps]
     if not lines:
-        return np.empty((0, len(STATIONS), 2))
+        return np.empty((0, len(at), 2))
     first = lines[0][0]
     if all(np.array_equal(arc, first) for arc, _ in lines):
-        found = CubicSpline(first, np.stack([line for _, line in lines]), axis=1)(_stations(first))
+        found = CubicSpline(first, np.stack([line for _, line in lines]), axis=1)(_arcs(first, at))
     else:
-        found = np.array([CubicSpline(arc, line)(_stations(arc)) for arc, line in lines])
+        found = np.array([CubicSpline(arc, line)(_arcs(arc, at)) for arc, line in lines])
     # a spline passes through its points up to round-off only; the ends keep the exact values of the model
     found[:, 0], found[:, -1] = [line[0] for _, line in lines], [line[-1] for _, line in lines]
     return np.asarray(found)
 
 
-def _stations(arc: Array) -> Array:
-    return np.asarray(arc[0] + STATIONS * (arc[-1] - arc[0]))
+def _arcs(arc: Array, at: Array = STATIONS) -> Array:
+    return np.asarray(arc[0] + at * (arc[-1] - arc[0]))
 
 
 def sampled_axes(response: Response) -> SampledAxes:
@@ -64,7 +64,7 @@ def sampled_axes(response: Response) -> SampledAxes:
     steps = range(len(response.load_parameter))
     arcs = {beam: response.axis_line(beam, 0)[0] for beam in response.tips} if steps else {}
     return SampledAxes(
-        arc_length={beam: _stations(arc) for beam, arc in arcs.items()},
+        arc_length={beam: _arcs(arc) for beam, arc in arcs.items()},
         position={beam: axes_at_stations(response, beam, steps) for beam in arcs},
     )
 

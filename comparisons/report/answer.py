@@ -1,5 +1,6 @@
 """One answer: a picture of its shape, section forces and forces, and an engineer's sheet, which fits on one page of paper."""
 
+from itertools import cycle
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -14,7 +15,7 @@ from comparisons.answer.round_off import round_off
 from comparisons.answer.table import unit_names
 from comparisons.files import write_text
 from comparisons.report import palette
-from comparisons.report.brief import Brief, at_largest, in_units, spring_rate, travel
+from comparisons.report.brief import Brief, across, at_largest, in_units, spring_rate
 from comparisons.report.pages import Section, page
 from comparisons.report.pages import picture as image
 from comparisons.report.plot import WIDTH, figure, save, tag
@@ -70,9 +71,9 @@ def _shape(axes: Any, response: Response, scene: Scene, k: int) -> None:
     title = " ".join(filter(None, (response.model, response.setting)))
     title = f"{scene.name}, {title}: {response.status}, load parameter {t:.6g}"
     sketch = Sketch(axes, scene, lines, title, "x-small")
-    for number, beam in enumerate(scene.beams):
+    for colour, beam in zip(cycle(COLOURS), scene.beams):
         (dashed,) = axes.plot(*axis(beam)[1].T, color="0.6", linewidth=0.9, linestyle="--")
-        _, drawn = sketch.body(beam, COLOURS[number % len(COLOURS)], 1.6)
+        _, drawn = sketch.body(beam, colour, 1.6)
         sketch.legend |= {"undeformed": dashed, beam.name: drawn}
     for pin in scene.pins:
         at = np.array(pin.position(t))
@@ -100,8 +101,8 @@ def _shape(axes: Any, response: Response, scene: Scene, k: int) -> None:
 def _diagram(axes: Any, response: Response, scene: Scene, name: str, kind: str, k: int) -> None:
     assert response.sections is not None, "diagrams are those of a model that states section forces"
     least = getattr(round_off(response, scene), kind)
-    for number, beam in enumerate(scene.beams):
-        at, colour = response.sections(beam.name, k), COLOURS[number % len(COLOURS)]
+    for colour, beam in zip(cycle(COLOURS), scene.beams):
+        at = response.sections(beam.name, k)
         values = np.where(np.abs(getattr(at, name)) > least, getattr(at, name), 0.0)
         axes.fill_between(at.arc, values, color=colour, alpha=0.25, linewidth=0.0)
         axes.plot(at.arc, values, color=colour, linewidth=1.2, label=beam.name)
@@ -118,19 +119,18 @@ def _diagram(axes: Any, response: Response, scene: Scene, name: str, kind: str, 
 
 def _history(axes: Any, response: Response, scene: Scene) -> None:
     """Draw the forces over the travel of the one moving pin, with its spring rate, or over the load parameter."""
-    t, units = response.load_parameter, unit_names(scene.units)
-    way, rate = travel(scene, t), spring_rate(response, scene)
-    across, words = (t, "load parameter") if way is None else (way, f"travel of the pin [{units['length']}]")
-    for number, (name, values) in enumerate(forces(response).items()):
-        style = {"color": COLOURS[number % len(COLOURS)], "marker": ".", "markersize": 3, "linewidth": 1.2}
-        axes.plot(np.append(0.0, across), np.append(0.0, size(values)), label=name, **style)
+    units, rate = unit_names(scene.units), spring_rate(response, scene)
+    words, over = across(scene, response.load_parameter)
+    for colour, (name, values) in zip(cycle(COLOURS), forces(response).items()):
+        style = {"color": colour, "marker": ".", "markersize": 3, "linewidth": 1.2}
+        axes.plot(np.append(0.0, over), np.append(0.0, size(values)), label=name, **style)
     what = "contact force" if response.contacts else "reaction"
     axes.set_xlabel(words)
     axes.set_ylabel(f"{what}\n[{units['force']}]", fontsize="small")
     axes.grid(visible=True, linewidth=0.3)
     axes.set_xlim(left=0.0)
-    title = f"spring rate at first touch {rate:.4g} {units['force']}/{units['length']}"
-    title = title if np.isfinite(rate) else ""
+    rated = f"spring rate at first touch {rate:.4g} {units['force']}/{units['length']}"
+    title = rated if np.isfinite(rate) else ""
     axes.legend(loc="best", fontsize="x-small", title=title, title_fontsize="x-small")
 
 

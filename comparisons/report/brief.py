@@ -60,6 +60,14 @@ def travel(scene: Scene, load_parameter: Array) -> Array | None:
     return np.asarray(np.interp(load_parameter, fine, np.append(0.0, np.cumsum(steps))))
 
 
+def across(scene: Scene, load_parameter: Array) -> tuple[str, Array]:
+    """Return what histories are drawn over, with its words: the `travel` of a pin, or the load parameter."""
+    way = travel(scene, load_parameter)
+    if way is None:
+        return "load parameter", load_parameter
+    return f"travel of the pin [{unit_names(scene.units)['length']}]", way
+
+
 def spring_rate(response: Response, scene: Scene) -> float:
     """Return the rise of the force of the one moving pin over its travel as it begins to push; nan without one."""
     way = travel(scene, response.load_parameter)

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from comparisons.answer import CONTACT_STATES, OPEN, SLIPS, Array, Grid, Response
 from comparisons.report.export import CONTACTS, HINGES, POINTS, SUPPORTS, blocks
 from comparisons.report.palette import PIN
-from comparisons.report.symbols import HINGE, LEFT, SYMBOL, Segments, at_arcs, axis, fixings
-from comparisons.scene import BeamSpec, Scene
+from comparisons.report.symbols import HINGE, LEFT, SYMBOL, Segments, at_arcs, fixings
+from comparisons.scene import Scene
 
 Body = tuple[Array, Array]
 """Quadrilaterals (m, 4, 2) of a deformed body, and the stress (m, 4) at their corners."""
@@ -27,8 +27,6 @@ PARTS, LAYERS = 8, (4, 8)
 """Quadrilaterals along an element of a beam, and over its height for a stress linear in it or not."""
 VISIBLE = 0.06
 """Least height of the tallest beam in a picture of stress, over the size of the undeformed beams; its heights are enlarged to it."""
-FINE = 1001
-"""Points of an undeformed axis near which the nodes of a solid lie."""
 THIN = 2e-3
 """Height of a beam whose section has none, over the size of the picture."""
 ARROW = 0.2
@@ -72,16 +70,16 @@ def mises_panels(beams: Response, solid: Response, scene: Scene, t: float) -> tu
     ribbons, bodies = (blocks(one, scene, k) for one, k in zip((beams, solid), steps, strict=True))
     less = dict(bodies)
     reach = np.ptp(np.concatenate([ribbons[beam.name].points for beam in scene.beams]), axis=0).max()
-    ends = np.concatenate([_section(beam, np.array([0.0, beam.length])) for beam in scene.beams], axis=1)
-    wide = max(1.0, float(np.round(VISIBLE * reach / np.sqrt(12.0 * ends[1] / ends[0]).max())))
+    wide = max(1.0, round(VISIBLE * reach / max(beam.rectangle_height for beam in scene.beams)))
     for beam in scene.beams:
         data, body = ribbons[beam.name].point_data, bodies[beam.name]
-        area, inertia = _section(beam, data["arc"])
+        area, inertia, _ = np.array([beam.section(part) for part in data["arc"] / beam.length]).T
         height = np.sqrt(12.0 * inertia / area)
         direct, bent = data["N"] / area, data["M"] * height / (2.0 * inertia)
         data["axial_stress_right"], data["axial_stress_left"] = direct + bent, direct - bent
         data["shear_stress"], data["height"] = 1.5 * data["V"] / area, wide * height
-        arc, y = _material(beam, body.points)
+        y, fraction = np.array([beam.projected(point) for point in body.points.tolist()]).T
+        arc = fraction * beam.length
         middle = at_arcs(arc, *solid.axis_line(beam.name, steps[1]))
         body.point_data["deformed"] = middle + wide * (body.point_data["deformed"] - middle)
         stress = _stress(data, data["arc"], arc, 2.0 * y / np.interp(arc, data["arc"], height))
@@ -90,21 +88,6 @@ def mises_panels(beams: Response, solid: Response, scene: Scene, t: float) -> tu
     named = {"beams": ribbons, "the solid": bodies, "beams less solid": less}
     found = [panel(grids, title, stress="von_mises") for title, grids in named.items()]
     return [one._replace(forces=0.0 * one.forces) for one in found], wide
-
-
-def _section(beam: BeamSpec, arc: Array) -> Array:
-    """Return areas and second moments at arc lengths, shape (2, n)."""
-    return np.array([beam.section(part)[:2] for part in arc / beam.length]).T
-
-
-def _material(beam: BeamSpec, points: Array) -> tuple[Array, Array]:
-    """Return the arc lengths and the distances to the left of points (n, 2) of an undeformed body."""
-    from scipy.spatial import cKDTree
-
-    arcs, line, left = axis(beam, FINE)
-    _, foot = cKDTree(line).query(points)
-    apart, normal = points - line[foot], left[foot]
-    return arcs[foot] + np.sum(apart * (normal @ LEFT.T), axis=1), np.sum(apart * normal, axis=1)
 
 
 def panel(

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
+from itertools import cycle
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -161,14 +162,13 @@ def plot_shapes(scene: Scene, responses: dict[str, Response], *paths: Path) -> N
     if last is not None:
         lines = {beam.name: last.axis_line(beam.name, -1)[1] for beam in scene.beams}
         symbols = draw_symbols(whole, scene, lines, SYMBOL * max(whole.dataLim.width, whole.dataLim.height))
+        _zoom_on_tip(whole, detail, scene, last)
     length = unit_names(scene.units)["length"]
     whole.set(xlabel=f"x [{length}]", ylabel=f"y [{length}]", title=f"{scene.name}: deflected axes")
     whole.margins(0.06)
     tall = float(np.clip(0.85 * WIDTH * whole.dataLim.height / max(whole.dataLim.width, 1e-300), 1.2, 5.5))
     whole.get_gridspec().set_height_ratios((tall + 0.8, 2.8))
     fig.set_figheight(tall + 3.6)
-    if last is not None:
-        _zoom_on_tip(whole, detail, scene, last)
     places["legend"].set_axis_off()
     handles, words = whole.get_legend_handles_labels()
     entries = ([*handles, *symbols.values()], [*words, *symbols])
@@ -177,7 +177,7 @@ def plot_shapes(scene: Scene, responses: dict[str, Response], *paths: Path) -> N
 
 
 def _draw_shapes(axes: Any, scene: Scene, responses: dict[str, Response]) -> None:
-    beam_styles = iter(BEAMS * len(responses))
+    beam_styles = cycle(BEAMS)
     drawn: set[float] = set()
     for label, response in responses.items():
         style = {"color": palette.colour(label), **_style(response, scene, beam_styles)}

@@ -138,7 +138,7 @@ def row_of(scene: Scene, run: Run, response: Response, reference: Response) -> R
     case = Case(scene=scene, model=run.model, options=run.options)
     judged, cause = verdict(response), _cause(case, reference)
     row = Row(case=case, response=response, verdict=judged, name=run.label, cause=cause)
-    return row if response is reference else row.against(reference, names(mesh=False))
+    return row if response is reference else row.against(reference, names("mesh"))
 
 
 def _cause(case: Case, reference: Response) -> str:
@@ -185,7 +185,7 @@ def _found(
     by = {row.label: row for row in rows}
     responses, shown = {label: row.response for label, row in by.items()}, [line(row) for row in rows]
     beam, solid = by.get(MIXED.label), by.get(SOLID.label)
-    bodies = None if beam is None or solid is None else beam.against(solid.response, names(mesh=False))
+    bodies = None if beam is None or solid is None else beam.against(solid.response, names("mesh"))
     exported = {run: responses[run.label] for run in EXPORTED if run.label in responses}
     drawn = {run.label: responses[run.label] for run in DRAWN if run.label in responses}
     pictures: dict[str, Callable[..., None]] = {"shapes.png": partial(plot_shapes, scene, drawn)}

@@ -96,8 +96,8 @@ def solve_to(
     ModelError
         If the quantity is unknown, or the model cannot state it or the scene.
     """
-    if quantity not in names(path=False):
-        raise ModelError(f"quantity = {quantity}: must be one of {', '.join(names(path=False))}")
+    if quantity not in names("path"):
+        raise ModelError(f"quantity = {quantity}: must be one of {', '.join(names('path'))}")
     began, said = perf_counter(), list[str]()
     if model is None:
         model, reason = _required(scene, quantity, element)

@@ -49,7 +49,7 @@ def budget(**parts: float) -> Budget:
 
 
 def told(rows: list[Row], made: Budget | None = None, left_out: dict[str, str] | None = None) -> str:
-    bodies = rows[2].against(rows[3].response, names(mesh=False))
+    bodies = rows[2].against(rows[3].response, names("mesh"))
     found = findings(KS, rows, ROD.label, bodies, made, left_out or {})
     return " ".join([found.sentence, *found.points])
 
