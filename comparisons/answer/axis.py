@@ -28,12 +28,11 @@ class SampledAxes(Frozen):
 
 def place_of(response: Response, scene: Scene, node: str, k: int) -> Array:
     """Return the position (2,) of a pin, or of a beam's end such as ``upper.end``, at load parameter number k; at rest for k = -1."""
-    beam, dot, end = node.partition(".")
-    if not dot:
-        return np.array(scene.pin(node).position(float(response.load_parameter[k]) if k >= 0 else 0.0))
-    return (
-        response.axis_line(beam, k)[1][0 if end == "start" else -1] if k >= 0 else np.array(scene.place(node))
-    )
+    name, _, end = node.partition(".")
+    if end and k >= 0:
+        return np.asarray(response.axis_line(name, k)[1][0 if end == "start" else -1])
+    t = float(response.load_parameter[k]) if k >= 0 else 0.0
+    return np.array(scene.place(node) if end else scene.pin(node).position(t))
 
 
 def axes_at_stations(response: Response, beam: str, steps: Iterable[int], at: Array = STATIONS) -> Array:

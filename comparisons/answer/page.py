@@ -15,6 +15,7 @@ from comparisons.answer.record import Answer, ContactEvent
 from comparisons.answer.round_off import RoundOff, round_off
 from comparisons.answer.table import unit_names
 from comparisons.output import aligned
+from comparisons.scene import Scene
 
 PLACE = 4
 """Significant digits of the place of an extreme, which is not sharp where the extreme is flat."""
@@ -67,12 +68,17 @@ def _blocks(
         yield from (block for block in (make() for make in made) if block.rows)
 
 
+def counted(scene: Scene, least: int = 0) -> str:
+    """Return how many beams, pins and contact pairs a scene has, of each at least so many."""
+    counts = {"beam": len(scene.beams), "pin": len(scene.pins), "contact pair": len(scene.contacts)}
+    parts = (f"{n} {what}{'' if n == 1 else 's'}" for what, n in counts.items() if n >= least)
+    return ", ".join(parts)
+
+
 def _head(response: Answer, rule: str) -> Iterator[tuple[str, str]]:
     scene = response.definition
     if scene is not None:
-        counts = ((len(scene.beams), "beam"), (len(scene.pins), "pin"), (len(scene.contacts), "contact pair"))
-        parts = [f"{count} {what}{'' if count == 1 else 's'}" for count, what in counts if count]
-        yield "scene", f"{', '.join(parts)}, {len(scene.times)} load parameters, units {scene.units}"
+        yield "scene", f"{counted(scene, 1)}, {len(scene.times)} load parameters, units {scene.units}"
     size = f"{response.unknowns} unknowns" if response.unknowns else ""
     yield "model", ", ".join(filter(None, (response.model, response.setting, size)))
     if rule:
@@ -117,13 +123,13 @@ class _Page:
         self.now = f"at load parameter {self.t:.6g}"
 
     def with_unit(self, value: float, kind: str) -> str:
-        return f"{self.round_off.text(float(value), kind)} {self.units.get(kind, '')}".rstrip()
+        return f"{self.round_off.text(value, kind)} {self.units.get(kind, '')}".rstrip()
 
     def block(self, title: str, columns: dict[str, str], rows: Sequence[Row]) -> Block:
         """Return a table whose columns have the kinds of their numbers by name, empty for texts."""
 
         def cell(value: str | float, kind: str) -> str:
-            return value if isinstance(value, str) else self.round_off.text(float(value), kind)
+            return value if isinstance(value, str) else self.round_off.text(value, kind)
 
         units = {kind: f" [{unit}]" for kind, unit in self.units.items()}
         names = [name + units.get(kind, "") for name, kind in columns.items()]
@@ -133,10 +139,10 @@ class _Page:
         scene, response = self.scene, self.response
         rows: list[Row] = []
         for what, reactions, specs in (
-            ("", response.supports, () if scene is None else scene.all_supports),
-            (", spring", response.springs, () if scene is None else scene.springs),
+            ("", response.supports, scene and scene.all_supports),
+            (", spring", response.springs, scene and scene.springs),
         ):
-            held = {spec.node: ", ".join(spec.held) for spec in specs}
+            held = {spec.node: ", ".join(spec.held) for spec in specs or ()}
             for node, one in reactions.items():
                 rows.append((f"{node}{what}", held.get(node, ""), *one.force[self.k], one.moment[self.k]))
         if len(rows) > 1:
@@ -156,11 +162,10 @@ class _Page:
 
     def friction(self) -> Block:
         columns = {"contact": "", "tangential": "force", "normal": "force", "dissipated": "energy"}
-        found = {pair: contact.friction for pair, contact in self.response.contacts.items()}
         rows: list[Row] = [
-            (pair, *(float(values[self.k]) for values in (one.tangential, one.normal, one.dissipated)))
-            for pair, one in found.items()
-            if one is not None
+            (pair, one.tangential[self.k], one.normal[self.k], one.dissipated[self.k])
+            for pair, contact in self.response.contacts.items()
+            if (one := contact.friction) is not None
         ]
         return self.block(f"Friction on the beams {self.now}", columns, rows)
 
@@ -234,11 +239,12 @@ class _Page:
         return f"{beam}, arc position {arc:.{PLACE}g} {self.units['length']}"
 
     def events(self) -> Block:
-        stage = ("stage",) * bool(self.response.stage[-1] > 1)
+        staged = int(self.response.stage[-1] > 1)
         said = ((event, self._said(event)) for event in self.response.events or ())
-        told = ((f"{one.load_parameter:.6g}", str(one.stage), words) for one, words in said if words)
-        rows = [(t, number, words) if stage else (t, words) for t, number, words in told]
-        return self.block("Events", dict.fromkeys(("load parameter", *stage, ""), ""), rows)
+        rows = [
+            (f"{one.load_parameter:.6g}", *[str(one.stage)] * staged, words) for one, words in said if words
+        ]
+        return self.block("Events", dict.fromkeys(("load parameter", *["stage"] * staged, ""), ""), rows)
 
     def _said(self, event: ContactEvent) -> str:
         """Return an event in words; empty for one that changes nothing but the element in contact."""
@@ -263,8 +269,9 @@ def _lines(block: Block) -> str:
 def _markup(block: Block) -> str:
     from html import escape
 
-    heading = f"<h4>{escape(block.title)}</h4>"
-    head = "".join(f"<th>{escape(name)}</th>" for name in block.columns)
-    body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in block.rows)
-    names = f"<thead><tr>{head}</tr></thead>" if head else ""
-    return f"{heading}<table>{names}<tbody>{body}</tbody></table>"
+    def row(tag: str, cells: Sequence[str]) -> str:
+        return f"<tr>{''.join(f'<{tag}>{escape(cell)}</{tag}>' for cell in cells)}</tr>"
+
+    head = f"<thead>{row('th', block.columns)}</thead>" if block.columns else ""
+    body = "".join(row("td", cells) for cells in block.rows)
+    return f"<h4>{escape(block.title)}</h4><table>{head}<tbody>{body}</tbody></table>"

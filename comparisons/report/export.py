@@ -150,7 +150,7 @@ def write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
                 whole, *parts = _names(model, k, len(grids))
                 for name, grid in zip(parts, grids.values(), strict=True):
                     write_grid(aside / name, grid, units)
-                fields = {field for grid in grids.values() for field in grid.point_data}
+                fields = set().union(*(grid.point_data for grid in grids.values()))
                 there = {field: unit for field, unit in units.items() if field in fields}
                 write_blocks(aside / whole, dict(zip(grids, parts, strict=True)), there)
                 files += [*parts, whole]

@@ -178,16 +178,17 @@ def band(response: Response, pair: str) -> list[tuple[str, float, float]]:
     """Return the states of a contact in their order, each with the load parameters between which it lasts."""
     contact, times = response.contacts[pair], response.load_parameter
     assert contact.friction is not None, "a band belongs to a contact with friction"
-    events = [event for event in response.events or () if event.pair == pair and event.kind != "pass-through"]
-    located = sorted(event.load_parameter for event in events)
+    located = [
+        event.load_parameter
+        for event in response.events or ()
+        if event.pair == pair and event.kind != "pass-through"
+    ]
     parts: list[tuple[str, float, float]] = []
     begin, last = 0.0, 0
     for state, same in groupby(contact.friction.states(contact.force)):
         last += len(list(same))
-        end = float(times[-1])
-        if last < len(times):
-            between = [t for t in located if times[last - 1] <= t <= times[last]]
-            end = between[-1] if between else float(np.mean(times[last - 1 : last + 1]))
+        around = times[last - 1 : last + 1]
+        end = max((t for t in located if around[0] <= t <= around[-1]), default=float(around.mean()))
         parts.append((state, begin, end))
         begin = end
     return parts

@@ -195,8 +195,8 @@ class Scale(NamedTuple):
     says what the longest one is, nothing without forces.
     """
 
-    centre: tuple[float, float]
-    extent: tuple[float, float]
+    centre: Array
+    extent: Array
     stress: tuple[float, float]
     force: float
     label: str
@@ -213,8 +213,8 @@ class Scale(NamedTuple):
         top = max(float(np.abs(one.stress).max()) for one in panels)
         signed = any(float(one.stress.min()) < 0.0 for one in panels)
         return cls(
-            centre=tuple(((low + high) / 2.0).tolist()),
-            extent=tuple(((high - low) / 2.0).tolist()),
+            centre=(low + high) / 2.0,
+            extent=(high - low) / 2.0,
             stress=(-top if signed else 0.0, top),
             force=force if largest else 0.0,
             label=label,
@@ -224,7 +224,7 @@ class Scale(NamedTuple):
     @property
     def half(self) -> float:
         """Half the size of what is shown."""
-        return max(self.extent)
+        return float(self.extent.max())
 
     @property
     def colours(self) -> str:

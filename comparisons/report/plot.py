@@ -160,7 +160,7 @@ def plot_shapes(scene: Scene, responses: dict[str, Response], *paths: Path) -> N
     last = next(reversed(reached.values()), None)
     symbols = {}
     if last is not None:
-        lines = {beam.name: last.axis_line(beam.name, -1)[1] for beam in scene.beams}
+        lines = {beam.name: last.axis_line(beam.name, -1) for beam in scene.beams}
         symbols = draw_symbols(whole, scene, lines, SYMBOL * max(whole.dataLim.width, whole.dataLim.height))
         _zoom_on_tip(whole, detail, scene, last)
     length = unit_names(scene.units)["length"]

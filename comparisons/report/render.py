@@ -116,7 +116,7 @@ class _Drawing:
 
         count, scale = len(shown.scales), shown.scales[0]
         states = {state for one in chain.from_iterable(shown.frames) for state in one.states}
-        wide, tall = (max(half, 0.15 * scale.half) for half in scale.extent)
+        wide, tall = half = np.maximum(scale.extent, 0.15 * scale.half)
         columns = 1 if wide > 1.5 * tall else count
         named = {state: (".", COLOURS[state]) for state in COLOURS if state in states}
         named |= {scale.arrow: (">", palette.BLACK)} if scale.arrow else {}
@@ -124,10 +124,8 @@ class _Drawing:
         if marks:
             legend_below(made, marks, 4)
         height = min(TALL, WIDTH / columns * tall / wide) + 0.35
-        self.figure, self.scales, self.barred = made, shown.scales, set[Scale]()
-        self.view = [
-            (x - 1.04 * half, x + 1.04 * half) for x, half in zip(scale.centre, (wide, tall), strict=True)
-        ]
+        self.figure, self.scales, self.labels = made, shown.scales, set[str]()
+        self.view = np.transpose([scale.centre - 1.04 * half, scale.centre + 1.04 * half])
         rows = count // columns
         made.set_size_inches(WIDTH, rows * height + 1.4)
         self.panels = made.subplots(rows, columns, squeeze=False).ravel()
@@ -138,8 +136,8 @@ class _Drawing:
             axes.clear()
             bodies = _draw(axes, one, scale)
             axes.set(xlim=self.view[0], ylim=self.view[1], aspect="equal")
-            if scale not in self.barred:
-                self.barred.add(scale)
+            if scale.label not in self.labels:
+                self.labels.add(scale.label)
                 own = [own for own, other in zip(self.panels, self.scales, strict=True) if other is scale]
                 place: dict[str, Any] = {"location": "bottom", "fraction": 0.05, "pad": 0.02}
                 bar = self.figure.colorbar(bodies, ax=own, **place)

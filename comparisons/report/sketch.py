@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from comparisons.answer import Array
+from comparisons.answer.page import counted
 from comparisons.answer.table import unit_names
 from comparisons.models import MODELS, find
 from comparisons.models.model import ModelError
@@ -48,10 +49,8 @@ CORNER = np.array([1.0, 1.0])
 
 def stated(scene: Scene, others: Sequence[str] = ()) -> Iterator[str]:
     """Yield a line on what the scene has, and one for every model: whether it can state it, or why not."""
-    counts = ((len(scene.beams), "beam"), (len(scene.pins), "pin"), (len(scene.contacts), "contact pair"))
-    parts = (f"{count} {what}{'' if count == 1 else 's'}" for count, what in counts)
     stages = f" in {1 + len(scene.stages)} stages" if scene.stages else ""
-    yield f"{scene.name}: {', '.join(parts)}, {len(scene.times)} load parameters{stages}, in {scene.units}"
+    yield f"{scene.name}: {counted(scene)}, {len(scene.times)} load parameters{stages}, in {scene.units}"
     for name in dict.fromkeys((*MODELS, *offered(), *others)):
         try:
             model = find(name)
@@ -71,7 +70,7 @@ class Sketch:
         self.axes, self.scene, self.lines, self.letters = axes, scene, lines, letters
         self.size, self.units = float(np.ptp(_reach(scene, lines), axis=0).max()), unit_names(scene.units)
         self.legend: dict[str, Any] = {}
-        self.labels: list[tuple[Any, float]] = []  # -1 is beside one that moves down in favour of others
+        self.labels: list[Any] = []
         axes.set_aspect("equal", adjustable="datalim")
         axes.set(xlabel=f"x [{self.units['length']}]", ylabel=f"y [{self.units['length']}]")
         axes.set_title(title, fontsize="large" if letters == "medium" else "medium")
@@ -98,8 +97,7 @@ class Sketch:
 
     def symbols(self) -> None:
         """Draw supports, springs and hinges at the ends of the axes."""
-        lines = {name: points for name, (_, points, _) in self.lines.items()}
-        self.legend |= draw_symbols(self.axes, self.scene, lines, SYMBOL * self.size)
+        self.legend |= draw_symbols(self.axes, self.scene, self.lines, SYMBOL * self.size)
 
     def disc(self, at: Array, radius: float | None, **style: Any) -> None:
         """Draw a round pin with its true radius, nothing for a point."""
@@ -162,17 +160,17 @@ class Sketch:
         style: dict[str, Any] = {"color": colour, "fontsize": self.letters, "zorder": 6}
         style |= {"ha": ("center", "left", "right")[x], "va": ("center", "bottom", "top")[y]}
         label = self.axes.annotate(words, at, 7 * _unit(direction), textcoords="offset points", **style)
-        self.labels.append((label, -1.0 if y < 0.0 else 1.0))
+        self.labels.append(label)
 
     def separate(self, rounds: int) -> None:
-        """Move labels up or down that lie on others, and let the axes reach around all labels."""
+        """Move labels that lie on others up, those below their places down, and let the axes reach around all labels."""
         for _ in range(rounds):
             self.axes.figure.draw_without_rendering()
             free: list[Any] = []
-            for label, way in self.labels:
+            for label in self.labels:
+                step = -4.0 if label.get_va() == "top" else 4.0
                 while any(label.get_window_extent().overlaps(other) for other in free):
-                    x, y = label.xyann
-                    label.xyann = (x, y + 4.0 * way)
+                    label.xyann = label.xyann[0], label.xyann[1] + step
                 free.append(label.get_window_extent())
                 corners = free[-1].transformed(self.axes.transData.inverted()).corners()
                 self.axes.update_datalim(corners)
@@ -200,9 +198,9 @@ def draw(scene: Scene, path: Path) -> None:
         _side(sketch, contact)
     sketch.symbols()
     _motions(sketch)
-    for stage, loads in enumerate((scene.loads, *(one.load for one in scene.stages))):
-        amounts = [(load, load.amount) for load in loads]
-        sketch.loads(amounts, scene.stage_gravities[stage], _after(stage + 1))
+    for stage, gravity in enumerate(scene.stage_gravities):
+        loads = [(load, load.amount) for number, load in scene.numbered_loads() if number == stage]
+        sketch.loads(loads, gravity, _after(stage + 1))
     for pin in scene.pins:
         _pin(sketch, pin)
     legend_below(fig, sketch.legend)
@@ -260,7 +258,7 @@ def _pin(sketch: Sketch, pin: PinSpec) -> None:
     for stage in map(np.array, pin.stage_points):
         if len(stage) > 1:
             arrow(sketch.axes, stage[-1] - 0.01 * sketch.size * _unit(stage[-1] - stage[-2]), stage[-1], PIN)
-    (mark,) = sketch.axes.plot(*points[0], "*", color=PIN, markersize=9, linestyle="none", zorder=5)
+    (mark,) = sketch.axes.plot(*points[0], "*", color=PIN, markersize=9, zorder=5)
     sketch.label(pin.name, points[0] + (pin.radius or 0.0) * behind, behind, PIN)
     sketch.disc(points[0], pin.radius, facecolor=PIN, edgecolor=PIN, alpha=0.35)
     if pin.radius:

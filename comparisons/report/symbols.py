@@ -5,7 +5,7 @@ and in its legend.
 """
 
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -84,7 +84,7 @@ def _turned(segments: Segments, held: tuple[str, ...], away: Array) -> Segments:
     if held != COMPONENTS:
         up = np.array([1.0, 0.0] if held in (("x",), ("x", "rotation")) else [0.0, 1.0])
         up = -up if away @ up < -0.5 else up
-    return np.asarray(segments @ np.array([[up[1], -up[0]], [up[0], up[1]]]))
+    return np.asarray(segments @ np.array([up @ LEFT.T, up]))
 
 
 def fixings(kinds: Iterable[int], away: Array) -> Iterator[tuple[tuple[str, ...], Segments]]:
@@ -129,13 +129,15 @@ def end_symbols(scene: Scene) -> list[Symbol]:
     return found
 
 
-def draw_symbols(axes: Any, scene: Scene, lines: Mapping[str, Array], size: float) -> dict[str, Any]:
-    """Draw the symbols at the ends of axes (m, 2) by beam; return their entries in a legend."""
+def draw_symbols(
+    axes: Any, scene: Scene, lines: Mapping[str, Sequence[Array]], size: float
+) -> dict[str, Any]:
+    """Draw the symbols at the ends of axes, arc lengths and points (m, 2), by beam; return their entries in a legend."""
     from matplotlib.collections import LineCollection
 
     symbols = end_symbols(scene)
     for one in symbols:
-        drawn = lines[one.item.beam][0 if one.item.end == "start" else -1] + size * one.segments
+        drawn = lines[one.item.beam][1][0 if one.item.end == "start" else -1] + size * one.segments
         axes.add_collection(LineCollection(list(drawn), colors=palette.BLACK, linewidths=1.0, zorder=4))
         axes.update_datalim(drawn.reshape(-1, 2))
     return {one.words: legend_symbol(one.segments) for one in symbols}

@@ -230,7 +230,7 @@ def _found(
     }
     return Found(
         title=f"{scene.name}: beams, solid and exact answers",
-        brief=findings(scene, rows, ROD.label, bodies, budget, left_out),
+        brief=findings(rows, ROD.label, bodies, budget, left_out),
         files=files,
         sections=sections,
         pictures=pictures,
