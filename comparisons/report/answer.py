@@ -127,7 +127,7 @@ def _history(axes: Any, response: Response, scene: Scene) -> None:
     axes.set_ylabel(f"{what}\n[{units['force']}]", fontsize="small")
     axes.grid(visible=True, linewidth=0.3)
     axes.set_xlim(left=0.0)
-    rated = f"spring rate at first touch {rate:.4g} {units['force']}/{units['length']}"
+    rated = f"spring rate at first touch {rate:.4g} {units['stiffness']}"
     title = rated if np.isfinite(rate) else ""
     axes.legend(loc="best", fontsize="x-small", title=title, title_fontsize="x-small")
 

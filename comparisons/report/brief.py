@@ -122,9 +122,8 @@ def values_at(scene: Scene, response: Response, t: float) -> dict[tuple[str, str
             words = words.removeprefix("nominal axial ").removesuffix(" of the axis")
             found[f"largest {words}"] = kind, max(sizes, key=abs)
     rate = spring_rate(response, scene)
-    units["rate"] = f"{units['force']}/{units['length']}"
     if np.isfinite(rate):
-        found["spring rate at first touch"] = "rate", rate
+        found["spring rate at first touch"] = "stiffness", rate
     return {
         (name, units[kind]): value if abs(value) > getattr(least, kind, 0.0) else 0.0
         for name, (kind, value) in found.items()

@@ -180,7 +180,7 @@ def _draw_shapes(axes: Any, scene: Scene, responses: dict[str, Response]) -> Non
     beam_styles = cycle(BEAMS)
     drawn: set[float] = set()
     for label, response in responses.items():
-        style = {"color": palette.colour(label), **_style(response, scene, beam_styles)}
+        style = {"color": palette.style(label).colour, **_style(response, scene, beam_styles)}
         for k in nearest_steps(response.load_parameter, scene.times[-1]):
             drawn.add(float(response.load_parameter[k]))
             for beam in scene.beams:

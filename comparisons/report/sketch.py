@@ -14,19 +14,8 @@ from comparisons.answer.table import unit_names
 from comparisons.models import MODELS, find
 from comparisons.models.model import ModelError
 from comparisons.models.outside.programs import offered
-from comparisons.report import palette
+from comparisons.report import palette, symbols
 from comparisons.report.plot import WIDTH, arrow, figure, legend_below, save
-from comparisons.report.symbols import (
-    LEFT,
-    Axis,
-    arc,
-    at_arcs,
-    axis,
-    chain,
-    draw_symbols,
-    inward,
-    legend_symbol,
-)
 from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene
 from comparisons.scene.conditions import LoadSpec
 
@@ -65,7 +54,7 @@ class Sketch:
     """A drawing of a scene that grows, about axes by beam, deformed or not."""
 
     def __init__(
-        self, axes: Any, scene: Scene, lines: Mapping[str, Axis], title: str, letters: str = "medium"
+        self, axes: Any, scene: Scene, lines: Mapping[str, symbols.Axis], title: str, letters: str = "medium"
     ) -> None:
         self.axes, self.scene, self.lines, self.letters = axes, scene, lines, letters
         self.size, self.units = float(np.ptp(_reach(scene, lines), axis=0).max()), unit_names(scene.units)
@@ -93,11 +82,11 @@ class Sketch:
 
     def at(self, beam: str, parts: ArrayLike) -> Array:
         """Return the points (n, 2) of an axis at parts of the undeformed length."""
-        return at_arcs(self.scene.beam(beam).length * np.asarray(parts), *self.lines[beam][:2])
+        return symbols.at_arcs(self.scene.beam(beam).length * np.asarray(parts), *self.lines[beam][:2])
 
     def symbols(self) -> None:
         """Draw supports, springs and hinges at the ends of the axes."""
-        self.legend |= draw_symbols(self.axes, self.scene, self.lines, SYMBOL * self.size)
+        self.legend |= symbols.draw_symbols(self.axes, self.scene, self.lines, SYMBOL * self.size)
 
     def disc(self, at: Array, radius: float | None, **style: Any) -> None:
         """Draw a round pin with its true radius, nothing for a point."""
@@ -122,17 +111,16 @@ class Sketch:
         self, loads: Sequence[tuple[LoadSpec, Sequence[float]]], gravity: Sequence[float], after: str = ""
     ) -> None:
         """Draw loads (force or force per length, and moment) and weights as arrows of one length."""
-        force = self.units["force"]
         for load, (*vector, moment) in loads:
             along, one = load.force_per_length is not None, load.end == "end" if load.at is None else load.at
             at = np.linspace(*load.span, ROW) if along else [one]
-            tips, unit = self.at(load.beam, at), f"{force}/{self.units['length']}" if along else force
+            tips, unit = self.at(load.beam, at), self.units["stiffness" if along else "force"]
             self._force(tips, vector, f"{hypot(*vector):.6g} {unit}{after}", load)
             if moment:
                 self.turn(tips[0], moment, f"{abs(moment):.6g} {self.units['moment']}{after}", LOAD)
-                self.legend.setdefault("moment", legend_symbol(chain(arc(1.0)), LOAD))
+                self.legend.setdefault("moment", symbols.legend_symbol(symbols.chain(symbols.arc(1.0)), LOAD))
         for beam in (beam for beam in self.scene.beams if beam.density):
-            words = f"weight {hypot(*gravity) * beam.mass:.4g} {force}{after}"
+            words = f"weight {hypot(*gravity) * beam.mass:.4g} {self.units['force']}{after}"
             self._force(self.at(beam.name, [WEIGHT]), gravity, words)
 
     def _force(self, tips: Array, vector: Sequence[float], words: str, load: LoadSpec | None = None) -> None:
@@ -140,7 +128,7 @@ class Sketch:
         if not any(vector):
             return
         # an arrow along the beam would lie on it where the force points away from the end
-        pulls = bool(load and load.end and np.dot(_unit(vector), inward(self.scene, load)) < -PULL)
+        pulls = bool(load and load.end and np.dot(_unit(vector), symbols.inward(self.scene, load)) < -PULL)
         many = len(tips) > 1
         width, named = (0.9, "force per length, arrows") if many else (2.0, "force, arrow")
         drawn = ARROW / (1 + many) * self.size * _unit(vector)
@@ -149,7 +137,7 @@ class Sketch:
 
     def turn(self, at: Array, turn: float, words: str, colour: str) -> None:
         """Draw a moment or a rotation as an arc with its value."""
-        points = at + TURN * self.size * arc(turn)
+        points = at + TURN * self.size * symbols.arc(turn)
         self.axes.plot(*points.T, color=colour, linewidth=2.0)
         arrow(self.axes, points[-2], points[-1], colour, 2.0)
         self.label(words, at + TURN * self.size * _unit(CORNER), CORNER, colour)
@@ -177,7 +165,7 @@ class Sketch:
             self.axes.autoscale_view()
 
 
-def _reach(scene: Scene, lines: Mapping[str, Axis]) -> Array:
+def _reach(scene: Scene, lines: Mapping[str, symbols.Axis]) -> Array:
     """Return points (n, 2) within which beams and pins are."""
     points = [line for _, line, _ in lines.values()]
     for pin in scene.pins:
@@ -187,7 +175,7 @@ def _reach(scene: Scene, lines: Mapping[str, Axis]) -> Array:
 
 def draw(scene: Scene, path: Path) -> None:
     """Draw the scene to `path` with a legend of everything in it; beams and pins have their true size."""
-    lines = {beam.name: axis(beam) for beam in scene.beams}
+    lines = {beam.name: symbols.axis(beam) for beam in scene.beams}
     extent = np.ptp(_reach(scene, lines), axis=0)
     width, height = np.maximum(extent, 0.2 * extent.max()) + 0.2 * extent.max()
     fig = figure(figsize=(WIDTH, float(np.clip(0.85 * WIDTH * height / width, 1.6, 6.5)) + 1.4))
@@ -213,7 +201,7 @@ def _beam(sketch: Sketch, beam: BeamSpec) -> None:
     outline, line = sketch.body(beam, BEAM, 1.0)
     middle, tangent = np.array(beam.place(0.5)), np.array(beam.tangent(0.5))
     arrow(sketch.axes, middle, middle + 0.03 * sketch.size * tangent, BEAM)
-    left = np.array(beam.tangent(NAME)) @ LEFT
+    left = np.array(beam.tangent(NAME)) @ symbols.LEFT
     sketch.label(beam.name, beam.place(NAME) + beam.height_at(NAME) / 2 * left, left, BEAM)
     flat = beam.height is None
     words = "beam: axis, without a height" if flat else "beam, height to scale"
@@ -228,7 +216,9 @@ def _side(sketch: Sketch, contact: ContactSpec) -> None:
     normal, radius = left if contact.side == "left" else -left, sketch.scene.radius(contact)
     offsets = np.array([sketch.scene.offset(contact, part) for part in PARTS]) - radius
     feet = line + offsets[:, None] * normal
-    drawn = np.concatenate([chain(feet), np.stack([feet, feet + STROKE * sketch.size * normal], axis=1)])
+    drawn = np.concatenate(
+        [symbols.chain(feet), np.stack([feet, feet + STROKE * sketch.size * normal], axis=1)]
+    )
     sketch.axes.add_collection(LineCollection(list(drawn), colors=SIDE, linewidths=0.9, zorder=4))
     sketch.axes.update_datalim(drawn.reshape(-1, 2))
     friction = f", friction {contact.friction:g}" if contact.friction else ""

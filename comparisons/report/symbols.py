@@ -120,7 +120,7 @@ def end_symbols(scene: Scene) -> list[Symbol]:
             words = SUPPORTS[names][0]
             if isinstance(one, SpringSpec):
                 stiffness = dict(zip(COMPONENTS, (*one.stiffness, one.rotation), strict=True))[names[0]]
-                unit = stiff if names == ("rotation",) else f"{units['force']}/{units['length']}"
+                unit = stiff if names == ("rotation",) else units["stiffness"]
                 words = f"spring of {stiffness:.6g} {unit} in {names[0]}"
             found.append(Symbol(one, words, segments))
     for hinge in scene.hinges:

@@ -112,7 +112,7 @@ def draw_case(case: Sequence[Judgement], *paths: Path) -> None:
     # the first model on top, each line wider than those above it, so that those that agree are all seen
     for number, one in reversed(list(enumerate(case))):
         key, _, element = one.trial.model.partition(" ")
-        colour = palette.colour(f"{registry.find(key).label} {element}".strip())
+        colour = palette.style(f"{registry.find(key).label} {element}".strip()).colour
         size = {"marker": "o", "markersize": 10.0} if picture.guide else {"linewidth": 1.5 + 2.0 * number}
         own = {"color": colour, **size}
         lines += (drawn._replace(style=STYLES.get(drawn.label, own)) for drawn in one.lines)
