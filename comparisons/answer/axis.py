@@ -68,18 +68,13 @@ def sampled_axes(response: Response) -> SampledAxes:
     )
 
 
-def axis_grid(scene: Scene, axis_line: Callable[[str, int], tuple[Array, Array]], k: int) -> Grid:
-    """Return the axes of all beams at load parameter k as lines, with their displacements."""
-    points, lines, beams = [], [], []
-    for number, beam in enumerate(scene.beams):
-        arc, line = axis_line(beam.name, k)
-        points += [beam.place(part) for part in (arc / beam.length).tolist()]
-        beams += [number] * len(arc)
-        lines.append(line)
-    deformed, first = np.concatenate(lines), np.flatnonzero(np.diff(beams) == 0)
-    data = {"displacement": deformed - points, "deformed": deformed, "beam": np.array(beams)}
-    cells = {"line": np.stack([first, first + 1], axis=1)}
-    return Grid(points=np.array(points), cells=cells, point_data=data)
+def axis_grid(scene: Scene, axis_line: Callable[[str, int], tuple[Array, Array]], beam: str, k: int) -> Grid:
+    """Return the axis of a beam at load parameter k as lines, with its displacements."""
+    spec, (arc, line) = scene.beam(beam), axis_line(beam, k)
+    points = np.array([spec.place(part) for part in (arc / spec.length).tolist()])
+    first = np.arange(len(arc) - 1)
+    data = {"displacement": line - points, "deformed": line}
+    return Grid(points=points, cells={"line": np.stack([first, first + 1], axis=1)}, point_data=data)
 
 
 def storable(response: Response, *, axes: bool = True) -> Response:

@@ -252,10 +252,9 @@ class _Page:
         arc, force = self.with_unit(event.arc_position, "length"), self.with_unit(event.force, "force")
         words = EVENTS.get(event.kind, f"{event.kind} {event.pair}")
         words = words.format(node=node, beam=beam, arc=arc, force=force)
-        released = (
-            f"; {self.with_unit(event.released, 'energy')} released" if words and event.released else ""
-        )
-        return words + released
+        if words and event.released:
+            words += f"; {self.with_unit(event.released, 'energy')} released"
+        return words
 
 
 def _lines(block: Block) -> str:

@@ -154,7 +154,8 @@ def _stress(pair: Pair) -> Columns:
 
 def _face_stress(response: Response, scene: Scene, k: int) -> Array:
     """Principal stress of the larger magnitude along both faces of the only beam, nan near clamp, tip and contacts (`AWAY`)."""
-    beam, grid = scene.beams[0], response.grid(k)
+    beam = scene.beams[0]
+    grid = response.grid(beam.name, k)
     (tx, ty), height = beam.direction, beam.rectangle_height
     from_start = grid.points - np.array(beam.start)
     arc, across = from_start @ (tx, ty), from_start @ (-ty, tx)

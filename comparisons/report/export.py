@@ -43,15 +43,10 @@ def blocks(response: Response, scene: Scene, k: int) -> dict[str, Grid]:
     Every point of a beam has the index: 0 where the equilibrium is stable, -1 where it is not known. The other fields are those of
     ``docs/how-to/paraview.md``; what a model does not state is nan.
     """
-    grid, found = response.grid(k), {}
-    for number, beam in enumerate(scene.beams):
-        own = grid.point_data["beam"] == number
-        place = np.cumsum(own) - 1
-        cells = {kind: place[table[own[table[:, 0]]]] for kind, table in grid.cells.items()}
-        data = {name: values[own] for name, values in grid.point_data.items() if name != "beam"}
-        if response.index is not None:
-            data["index"] = np.full(own.sum(), int(response.index[k]))
-        found[beam.name] = Grid(points=grid.points[own], cells=cells, point_data=data)
+    found = {beam.name: response.grid(beam.name, k) for beam in scene.beams}
+    if response.index is not None:
+        for grid in found.values():
+            grid.point_data["index"] = np.full(len(grid.points), int(response.index[k]))
     if scene.contacts:
         found[CONTACTS] = _points(response, scene, k, scene.contacts, _touching(response, scene, k))
     if scene.holding:

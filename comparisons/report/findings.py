@@ -130,9 +130,10 @@ def _causes(others: Sequence[Row], *, explained: bool) -> str:
     said = []
     for family, own in groupby(others, key=lambda row: row.family):
         rows = list(own)
-        agrees = max(_worst(row)[0] for row in rows) < AGREES
-        cause = "" if agrees or (explained and rows[0].response.continuum) else rows[0].cause
-        falls = "" if agrees else _falling(rows)
+        if max(_worst(row)[0] for row in rows) < AGREES:
+            continue
+        cause = "" if explained and rows[0].response.continuum else rows[0].cause
+        falls = _falling(rows)
         if cause or falls:
             said.append(f"{family}, {cause or 'discretisation'} {falls}".rstrip())
     return f"Why models are off: {'; '.join(said)}." if said else ""

@@ -36,21 +36,18 @@ COLOURS = {OPEN: CONTACT_STATES[OPEN], "contact": PIN, **CONTACT_STATES}
 
 
 class Panel(NamedTuple):
-    """Deformed bodies as m quadrilaterals with a stress at their corners, the p nodes that touch them, and the supports.
-
-    The nodes are pins, and ends of beams that touch other beams. `radii` are zero for a point. `forces` are what they exert on the beams,
-    drawn as arrows; zero where none are to be drawn. `states` are keys of `COLOURS`. `supports` are the line segments of the symbols of
-    supports, springs and hinges.
-    """
+    """Deformed bodies as m quadrilaterals, the p nodes that touch them, pins and ends of other beams, and the supports."""
 
     title: str
-    quads: Array  # (m, 4, 2)
-    stress: Array  # (m, 4)
-    pins: Array  # (p, 2)
-    radii: Array  # (p,)
-    forces: Array  # (p, 2)
-    states: NDArray[np.str_]  # (p,)
-    supports: Segments  # (l, 2, 2)
+    quads: Array  #: Shape (m, 4, 2).
+    stress: Array  #: At the corners (m, 4).
+    pins: Array  #: Places of the nodes (p, 2).
+    radii: Array  #: Zero for a point (p,).
+    forces: (
+        Array  #: What the nodes exert on the beams, drawn as arrows; zero where none are to be drawn (p, 2).
+    )
+    states: NDArray[np.str_]  #: Keys of `COLOURS` (p,).
+    supports: Segments  #: The symbols of supports, springs and hinges (l, 2, 2).
 
     def outline(self) -> list[Array]:
         """Return points (..., 2) within which all is drawn but the arrows."""
@@ -188,19 +185,14 @@ def _state(force: Array, slip: float) -> str:
 
 
 class Scale(NamedTuple):
-    """What pictures of panels share.
+    """What pictures of panels share."""
 
-    The view has a centre and an `extent`, half its width and half its height. `stress` are the lowest and the
-    highest stress of the colours, with their label. `force` is the length of an arrow per force, and `arrow`
-    says what the longest one is, nothing without forces.
-    """
-
-    centre: Array
-    extent: Array
-    stress: tuple[float, float]
-    force: float
-    label: str
-    arrow: str = ""
+    centre: Array  #: Of the view.
+    extent: Array  #: Half the width and half the height of the view.
+    stress: tuple[float, float]  #: The lowest and the highest one of the colours.
+    force: float  #: Length of an arrow per force.
+    label: str  #: Of the colours.
+    arrow: str = ""  #: What the longest arrow is, nothing without forces.
 
     @classmethod
     def of(cls, panels: Sequence[Panel], label: str, unit: str = "") -> "Scale":
