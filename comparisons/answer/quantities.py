@@ -85,11 +85,12 @@ class Quantity(Frozen):
 
 def scales(reference: Response, steps: Steps | slice = slice(None)) -> Scales:
     """Return the scales of a reference over all its load parameters, or over the given ones."""
-    read = {row.words: row.read(reference).values() for row in QUANTITIES.values() if row.over == "largest"}
-    sizes = {
-        words: (size(values[steps]).max(initial=0.0) for values in found) for words, found in read.items()
-    }
-    return {words: float(max(found, default=0.0)) or 1.0 for words, found in sizes.items()}
+    found = {}
+    for row in QUANTITIES.values():
+        if row.over == "largest":
+            sizes = [float(size(values[steps]).max(initial=0.0)) for values in row.read(reference).values()]
+            found[row.words] = max(sizes, default=0.0) or 1.0
+    return found
 
 
 def names(*without: str) -> tuple[str, ...]:
