@@ -1,8 +1,7 @@
 """Extremes of section forces, axial stress and displacement along the beams, with their places."""
 
-from collections.abc import Callable, Iterable
-from functools import cache
-from typing import Any, NamedTuple
+from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,8 +29,8 @@ ALONG = {
 nominal ones at the faces, ``N/A + M h/2I`` and ``N/A - M h/2I``; the other sign counts as 0."""
 
 
-Curve = tuple[Array, Array, Callable[[], Any]]
-"""Arc lengths, values of a quantity at them, and what chooses the stations without doubles."""
+Curve = tuple[Array, Array]
+"""Arc lengths, and the values of a quantity at them."""
 
 
 class Extreme(NamedTuple):
@@ -54,12 +53,11 @@ def extremes_along(
 
 def _along(response: Answer, beam: BeamSpec, every: bool, steps: Iterable[int]) -> dict[str, Extreme]:
     rows: dict[str, list[list[Curve]]] = {}
-    undeformed = cache(lambda arcs: np.array([beam.place(arc / beam.length) for arc in arcs]))
-    section = cache(lambda arcs: _sections(beam, arcs))
     for k in steps:
-        found = {} if response.sections is None else _forces(response.sections(beam.name, k), beam, section)
+        found = {} if response.sections is None else _forces(response.sections(beam.name, k), beam)
         arc, line = response.axis_line(beam.name, k)
-        found["displacement"] = [(arc, np.hypot(*(line - undeformed(tuple(arc))).T), lambda: slice(None))]
+        undeformed = [beam.place(part) for part in (arc / beam.length).tolist()]
+        found["displacement"] = [(arc, np.hypot(*(line - undeformed).T))]
         for name, curves in found.items():
             rows.setdefault(name, []).append(curves)
     return {name: _extreme(curves, every) for name, curves in rows.items()}
@@ -67,38 +65,27 @@ def _along(response: Answer, beam: BeamSpec, every: bool, steps: Iterable[int]) 
 
 def _extreme(rows: list[list[Curve]], every: bool) -> Extreme:
     """Return one extreme per row (load parameter); of equal curves, the first."""
-    sizes = [max(float(np.abs(values).max()) for _, values, _ in curves) for curves in rows]
+    sizes = [max(float(np.abs(values).max()) for _, values in curves) for curves in rows]
     least = 0.0 if every else CLOSE * max(sizes)
-    peaks = ((peak(arc[own()], values[own()]) for arc, values, own in curves) for curves in rows)
     found = [
-        max(row, key=lambda one: abs(one[0])) if size >= least else (0.0, 0.0)
-        for row, size in zip(peaks, sizes, strict=True)
+        max((peak(*curve) for curve in row), key=lambda one: abs(one[0])) if size >= least else (0.0, 0.0)
+        for row, size in zip(rows, sizes, strict=True)
     ]
     return Extreme(*np.array(found).T)
 
 
-def _sections(beam: BeamSpec, arcs: tuple[float, ...]) -> Array:
-    """Return area and half the height over the second moment at arc lengths, shape (2, m)."""
-    found = []
-    for arc in arcs:
-        fraction = min(arc / beam.length, 1.0)
-        area, inertia, _ = beam.section(fraction)
-        found.append((area, beam.height_at(fraction) / (2.0 * inertia)))
-    return np.array(found).T
-
-
-def _forces(
-    at: Sections, beam: BeamSpec, section: Callable[[tuple[float, ...]], Array]
-) -> dict[str, list[Curve]]:
-    curves = {"axial_force": [at.N], "shear_force": [at.V], "bending_moment": [at.M]}
+def _forces(at: Sections, beam: BeamSpec) -> dict[str, list[Curve]]:
+    own = _once(at, APART * beam.length)
+    arc, N, V, M = (values[own] for values in (at.arc, at.N, at.V, at.M))
+    curves = {"axial_force": [N], "shear_force": [V], "bending_moment": [M]}
     if beam.height is not None:
-        area, lever = section(tuple(at.arc) if beam.tapers else (0.0,))
-        axial, bending = at.N / area, at.M * lever
-        faces = axial + bending, axial - bending
+        parts = np.minimum(arc / beam.length, 1.0).tolist() if beam.tapers else [0.0]
+        area, inertia, _ = np.array([beam.section(part) for part in parts]).T
+        bending = M * (np.array([beam.height_at(part) for part in parts]) / (2.0 * inertia))
+        faces = N / area + bending, N / area - bending
         curves["tensile_stress"] = [np.maximum(face, 0.0) for face in faces]
         curves["compressive_stress"] = [np.minimum(face, 0.0) for face in faces]
-    own = cache(lambda: _once(at, APART * beam.length))
-    return {name: [(at.arc, values, own) for values in found] for name, found in curves.items()}
+    return {name: [(arc, values) for values in found] for name, found in curves.items()}
 
 
 def _once(at: Sections, apart: float) -> NDArray[np.bool_]:

@@ -28,33 +28,32 @@ class SampledAxes(Frozen):
 
 def place_of(response: Response, scene: Scene, node: str, k: int) -> Array:
     """Return the position (2,) of a pin, or of a beam's end such as ``upper.end``, at load parameter number k; at rest for k = -1."""
-    beam, dot, end = node.partition(".")
-    if not dot:
-        return np.array(scene.pin(node).position(float(response.load_parameter[k]) if k >= 0 else 0.0))
-    return (
-        response.axis_line(beam, k)[1][0 if end == "start" else -1] if k >= 0 else np.array(scene.place(node))
-    )
+    name, _, end = node.partition(".")
+    if end and k >= 0:
+        return np.asarray(response.axis_line(name, k)[1][0 if end == "start" else -1])
+    t = float(response.load_parameter[k]) if k >= 0 else 0.0
+    return np.array(scene.place(node) if end else scene.pin(node).position(t))
 
 
-def axes_at_stations(response: Response, beam: str, steps: Iterable[int]) -> Array:
-    """Return the deformed axes of a beam at n load parameters, shape (n, 101, 2), by cubic splines through the model's points."""
+def axes_at_stations(response: Response, beam: str, steps: Iterable[int], at: Array = STATIONS) -> Array:
+    """Return the deformed axes of a beam at n load parameters and m parts of its length, shape (n, m, 2), by cubic splines through the model's points."""
     from scipy.interpolate import CubicSpline
 
     lines = [response.axis_line(beam, k) for k in steps]
     if not lines:
-        return np.empty((0, len(STATIONS), 2))
+        return np.empty((0, len(at), 2))
     first = lines[0][0]
     if all(np.array_equal(arc, first) for arc, _ in lines):
-        found = CubicSpline(first, np.stack([line for _, line in lines]), axis=1)(_stations(first))
+        found = CubicSpline(first, np.stack([line for _, line in lines]), axis=1)(_arcs(first, at))
     else:
-        found = np.array([CubicSpline(arc, line)(_stations(arc)) for arc, line in lines])
+        found = np.array([CubicSpline(arc, line)(_arcs(arc, at)) for arc, line in lines])
     # a spline passes through its points up to round-off only; the ends keep the exact values of the model
     found[:, 0], found[:, -1] = [line[0] for _, line in lines], [line[-1] for _, line in lines]
     return np.asarray(found)
 
 
-def _stations(arc: Array) -> Array:
-    return np.asarray(arc[0] + STATIONS * (arc[-1] - arc[0]))
+def _arcs(arc: Array, at: Array = STATIONS) -> Array:
+    return np.asarray(arc[0] + at * (arc[-1] - arc[0]))
 
 
 def sampled_axes(response: Response) -> SampledAxes:
@@ -64,23 +63,18 @@ def sampled_axes(response: Response) -> SampledAxes:
     steps = range(len(response.load_parameter))
     arcs = {beam: response.axis_line(beam, 0)[0] for beam in response.tips} if steps else {}
     return SampledAxes(
-        arc_length={beam: _stations(arc) for beam, arc in arcs.items()},
+        arc_length={beam: _arcs(arc) for beam, arc in arcs.items()},
         position={beam: axes_at_stations(response, beam, steps) for beam in arcs},
     )
 
 
-def axis_grid(scene: Scene, axis_line: Callable[[str, int], tuple[Array, Array]], k: int) -> Grid:
-    """Return the axes of all beams at load parameter k as lines, with their displacements."""
-    points, lines, beams = [], [], []
-    for number, beam in enumerate(scene.beams):
-        arc, line = axis_line(beam.name, k)
-        points += [beam.place(part) for part in (arc / beam.length).tolist()]
-        beams += [number] * len(arc)
-        lines.append(line)
-    deformed, first = np.concatenate(lines), np.flatnonzero(np.diff(beams) == 0)
-    data = {"displacement": deformed - points, "deformed": deformed, "beam": np.array(beams)}
-    cells = {"line": np.stack([first, first + 1], axis=1)}
-    return Grid(points=np.array(points), cells=cells, point_data=data)
+def axis_grid(scene: Scene, axis_line: Callable[[str, int], tuple[Array, Array]], beam: str, k: int) -> Grid:
+    """Return the axis of a beam at load parameter k as lines, with its displacements."""
+    spec, (arc, line) = scene.beam(beam), axis_line(beam, k)
+    points = np.array([spec.place(part) for part in (arc / spec.length).tolist()])
+    first = np.arange(len(arc) - 1)
+    data = {"displacement": line - points, "deformed": line}
+    return Grid(points=points, cells={"line": np.stack([first, first + 1], axis=1)}, point_data=data)
 
 
 def storable(response: Response, *, axes: bool = True) -> Response:

@@ -87,10 +87,8 @@ def error_columns(
 ) -> Columns:
     """Return the errors of every pair, support or beam, shape (n,), at the n load parameters that both responses have."""
     _, own, true = np.intersect1d(response.load_parameter, reference.load_parameter, return_indices=True)
-    steps = {"own_steps": own, "reference_steps": true}
-    divisors = scale or scales(reference)
-    pair = Pair(response=response, reference=reference, scene=scene, scale=divisors, **steps)
-    return QUANTITIES[quantity].columns(pair)
+    sides = (response, own), (reference, true)
+    return QUANTITIES[quantity].columns(Pair(sides=sides, scene=scene, scale=scale or scales(reference)))
 
 
 def largest(columns: Columns, at: Any = slice(None)) -> float:

@@ -49,10 +49,8 @@ def as_json(response: Response, **more: Any) -> str:
 
 def as_dict(response: Response) -> dict[str, Any]:
     """Return what a response states, by the names of the JSON file; `restated` reads all of it but the certificate."""
-    axes = sampled_axes(response)
-    found = {
-        beam: {"arc_length": arc, "position": axes.position[beam]} for beam, arc in axes.arc_length.items()
-    }
+    axes = vars(sampled_axes(response))
+    found = {beam: {key: one[beam] for key, one in axes.items()} for beam in axes["arc_length"]}
     judged = response.certificate and response.certificate.as_dict()
     values = {**vars(response), "stage": response.stage, "axes": found, "certificate": judged}
     stated: dict[str, Any] = _stated(SCHEMA, values)
@@ -123,8 +121,8 @@ def restated(data: Any) -> Response:
         found["reported_success"] = found["status"] == "COMPLETED"
     if found["newton_iterations"] is None:
         found["newton_iterations"] = np.zeros(len(found["load_parameter"]), dtype=np.int64)
-    arcs, places = ({beam: axis[key] for beam, axis in axes.items()} for key in ("arc_length", "position"))
-    return Response(**found, axis_line=SampledAxes(arc_length=arcs, position=places))
+    line = {key: {beam: axis[key] for beam, axis in axes.items()} for key in ("arc_length", "position")}
+    return Response(**found, axis_line=SampledAxes(**line))
 
 
 def resolved(field: Field) -> Field:

@@ -4,17 +4,18 @@ Numbers have six significant digits, fewer where the last ones are round-off; a 
 (`comparisons.answer.round_off`).
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
 
 from comparisons.answer.along import ALONG, FIRST, extremes_along
-from comparisons.answer.record import Answer, ContactEvent
+from comparisons.answer.record import Answer, Array, ContactEvent
 from comparisons.answer.round_off import RoundOff, round_off
 from comparisons.answer.table import unit_names
 from comparisons.output import aligned
+from comparisons.scene import Scene
 
 PLACE = 4
 """Significant digits of the place of an extreme, which is not sharp where the extreme is flat."""
@@ -62,17 +63,20 @@ def _blocks(
 ) -> Iterator[Block]:
     yield Block(response.scene, (), [*_head(response, rule), *more])
     if len(response.load_parameter):
-        page = _Page(response, k)
-        made = (page.reactions, page.contacts, page.friction, page.tips, page.extremes, page.events)
-        yield from (block for block in (make() for make in made) if block.rows)
+        yield from (block for block in _Page(response, k).blocks() if block.rows)
+
+
+def counted(scene: Scene, least: int = 0) -> str:
+    """Return how many beams, pins and contact pairs a scene has, of each at least so many."""
+    counts = {"beam": len(scene.beams), "pin": len(scene.pins), "contact pair": len(scene.contacts)}
+    parts = (f"{n} {what}{'' if n == 1 else 's'}" for what, n in counts.items() if n >= least)
+    return ", ".join(parts)
 
 
 def _head(response: Answer, rule: str) -> Iterator[tuple[str, str]]:
     scene = response.definition
     if scene is not None:
-        counts = ((len(scene.beams), "beam"), (len(scene.pins), "pin"), (len(scene.contacts), "contact pair"))
-        parts = [f"{count} {what}{'' if count == 1 else 's'}" for count, what in counts if count]
-        yield "scene", f"{', '.join(parts)}, {len(scene.times)} load parameters, units {scene.units}"
+        yield "scene", f"{counted(scene, 1)}, {len(scene.times)} load parameters, units {scene.units}"
     size = f"{response.unknowns} unknowns" if response.unknowns else ""
     yield "model", ", ".join(filter(None, (response.model, response.setting, size)))
     if rule:
@@ -114,55 +118,60 @@ class _Page:
         self.round_off = RoundOff() if scene is None else round_off(response, scene)
         self.units = {} if scene is None else unit_names(scene.units)
         self.t = float(response.load_parameter[k])
-        self.now = f"at load parameter {self.t:.6g}"
+
+    def blocks(self) -> Iterator[Block]:
+        """Yield the tables, which may have no rows."""
+        now, forces = f"at load parameter {self.t:.6g}", {"x": "force", "y": "force"}
+        columns = {"support": "", "holds": "", **forces, "moment": "moment"}
+        yield self.block(f"Reactions on the beams {now}", columns, self.reactions())
+        columns = {"contact": "", "state": "", "force": "force", **forces, "arc position": "length"}
+        yield self.block(f"Contact forces on the beams {now}", columns, self.contacts())
+        columns = {"contact": "", "tangential": "force", "normal": "force", "dissipated": "energy"}
+        yield self.block(f"Friction on the beams {now}", columns, self.friction())
+        moved = () if self.scene is None else ("displacement x", "displacement y")
+        columns = {"tip": "", **dict.fromkeys(("x", "y", *moved), "length")}
+        yield self.block(f"Tips {now}", columns, self.tips())
+        columns = dict.fromkeys(("quantity", "value", "load parameter", "place"), "")
+        yield self.block("Extremes over the load parameters", columns, self.extremes())
+        staged = int(self.response.stage[-1] > 1)
+        columns = dict.fromkeys(("load parameter", *["stage"] * staged, ""), "")
+        yield self.block("Events", columns, self.events(staged))
 
     def with_unit(self, value: float, kind: str) -> str:
-        return f"{self.round_off.text(float(value), kind)} {self.units.get(kind, '')}".rstrip()
+        return f"{self.round_off.text(value, kind)} {self.units.get(kind, '')}".rstrip()
 
-    def block(self, title: str, columns: dict[str, str], rows: Sequence[Row]) -> Block:
+    def block(self, title: str, columns: dict[str, str], rows: Iterable[Row]) -> Block:
         """Return a table whose columns have the kinds of their numbers by name, empty for texts."""
 
         def cell(value: str | float, kind: str) -> str:
-            return value if isinstance(value, str) else self.round_off.text(float(value), kind)
+            return value if isinstance(value, str) else self.round_off.text(value, kind)
 
         units = {kind: f" [{unit}]" for kind, unit in self.units.items()}
         names = [name + units.get(kind, "") for name, kind in columns.items()]
         return Block(title, names, [[*map(cell, row, columns.values())] for row in rows])
 
-    def reactions(self) -> Block:
-        scene, response = self.scene, self.response
-        rows: list[Row] = []
+    def reactions(self) -> Iterator[Row]:
+        scene, response, acting = self.scene, self.response, list[Array]()
         for what, reactions, specs in (
-            ("", response.supports, () if scene is None else scene.all_supports),
-            (", spring", response.springs, () if scene is None else scene.springs),
+            ("", response.supports, scene and scene.all_supports),
+            (", spring", response.springs, scene and scene.springs),
         ):
-            held = {spec.node: ", ".join(spec.held) for spec in specs}
+            held = {spec.node: ", ".join(spec.held) for spec in specs or ()}
             for node, one in reactions.items():
-                rows.append((f"{node}{what}", held.get(node, ""), *one.force[self.k], one.moment[self.k]))
-        if len(rows) > 1:
-            rows.append(("sum", "", *(sum(float(row[k]) for row in rows) for k in (2, 3)), ""))
-        columns = {"support": "", "holds": "", "x": "force", "y": "force", "moment": "moment"}
-        return self.block(f"Reactions on the beams {self.now}", columns, rows)
+                acting.append(one.force[self.k])
+                yield f"{node}{what}", held.get(node, ""), *acting[-1], one.moment[self.k]
+        if len(acting) > 1:
+            yield "sum", "", *np.sum(acting, axis=0), ""
 
-    def contacts(self) -> Block:
-        forces = dict.fromkeys(("force", "x", "y"), "force")
-        columns = {"contact": "", "state": "", **forces, "arc position": "length"}
-        rows: list[Row] = []
+    def contacts(self) -> Iterator[Row]:
         for pair, contact in self.response.contacts.items():
             vector = (np.nan, np.nan) if contact.vector is None else contact.vector[self.k]
-            found = contact.force[self.k], *vector, contact.arc_position[self.k]
-            rows.append((pair, self._state(pair), *found))
-        return self.block(f"Contact forces on the beams {self.now}", columns, rows)
+            yield pair, self._state(pair), contact.force[self.k], *vector, contact.arc_position[self.k]
 
-    def friction(self) -> Block:
-        columns = {"contact": "", "tangential": "force", "normal": "force", "dissipated": "energy"}
-        found = {pair: contact.friction for pair, contact in self.response.contacts.items()}
-        rows: list[Row] = [
-            (pair, *(float(values[self.k]) for values in (one.tangential, one.normal, one.dissipated)))
-            for pair, one in found.items()
-            if one is not None
-        ]
-        return self.block(f"Friction on the beams {self.now}", columns, rows)
+    def friction(self) -> Iterator[Row]:
+        for pair, contact in self.response.contacts.items():
+            if (one := contact.friction) is not None:
+                yield pair, one.tangential[self.k], one.normal[self.k], one.dissipated[self.k]
 
     def _state(self, pair: str) -> str:
         contact = self.response.contacts[pair]
@@ -184,19 +193,16 @@ class _Page:
         found += zip(self.response.load_parameter, contact.force, contact.arc_position, strict=True)
         return sorted((one for one in found if one[1] > 0.0), key=itemgetter(0))
 
-    def tips(self) -> Block:
-        columns = {"tip": "", "x": "length", "y": "length"}
-        rows: list[Row] = [(beam, *tip[self.k]) for beam, tip in self.response.tips.items()]
-        if self.scene is not None:
-            columns |= {"displacement x": "length", "displacement y": "length"}
-            ends = {f"{beam}.{self.scene.tip(beam)}": tip[self.k] for beam, tip in self.response.tips.items()}
-            rows = [(end, *tip, *(tip - self.scene.place(end))) for end, tip in ends.items()]
-        return self.block(f"Tips {self.now}", columns, rows)
+    def tips(self) -> Iterator[Row]:
+        for beam, tip in self.response.tips.items():
+            end = beam if self.scene is None else f"{beam}.{self.scene.tip(beam)}"
+            moved = () if self.scene is None else tip[self.k] - self.scene.place(end)
+            yield end, *tip[self.k], *moved
 
-    def extremes(self) -> Block:
-        rows = [row for pair in self.response.contacts for row in self._contact_forces(pair)]
-        columns = dict.fromkeys(("quantity", "value", "load parameter", "place"), "")
-        return self.block("Extremes over the load parameters", columns, [*rows, *self._along()])
+    def extremes(self) -> Iterator[Row]:
+        for pair in self.response.contacts:
+            yield from self._contact_forces(pair)
+        yield from self._along()
 
     def _contact_forces(self, pair: str) -> Iterator[Row]:
         """Yield the first largest contact force, and the last one of a contact that is open again."""
@@ -233,12 +239,10 @@ class _Page:
             return f"{beam}.{'start' if arc < length / 2 else 'end'}"
         return f"{beam}, arc position {arc:.{PLACE}g} {self.units['length']}"
 
-    def events(self) -> Block:
-        stage = ("stage",) * bool(self.response.stage[-1] > 1)
-        said = ((event, self._said(event)) for event in self.response.events or ())
-        told = ((f"{one.load_parameter:.6g}", str(one.stage), words) for one, words in said if words)
-        rows = [(t, number, words) if stage else (t, words) for t, number, words in told]
-        return self.block("Events", dict.fromkeys(("load parameter", *stage, ""), ""), rows)
+    def events(self, staged: int) -> Iterator[Row]:
+        for event in self.response.events or ():
+            if words := self._said(event):
+                yield f"{event.load_parameter:.6g}", *[str(event.stage)] * staged, words
 
     def _said(self, event: ContactEvent) -> str:
         """Return an event in words; empty for one that changes nothing but the element in contact."""
@@ -246,10 +250,9 @@ class _Page:
         arc, force = self.with_unit(event.arc_position, "length"), self.with_unit(event.force, "force")
         words = EVENTS.get(event.kind, f"{event.kind} {event.pair}")
         words = words.format(node=node, beam=beam, arc=arc, force=force)
-        released = (
-            f"; {self.with_unit(event.released, 'energy')} released" if words and event.released else ""
-        )
-        return words + released
+        if words and event.released:
+            words += f"; {self.with_unit(event.released, 'energy')} released"
+        return words
 
 
 def _lines(block: Block) -> str:
@@ -263,8 +266,9 @@ def _lines(block: Block) -> str:
 def _markup(block: Block) -> str:
     from html import escape
 
-    heading = f"<h4>{escape(block.title)}</h4>"
-    head = "".join(f"<th>{escape(name)}</th>" for name in block.columns)
-    body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in block.rows)
-    names = f"<thead><tr>{head}</tr></thead>" if head else ""
-    return f"{heading}<table>{names}<tbody>{body}</tbody></table>"
+    def row(tag: str, cells: Sequence[str]) -> str:
+        return f"<tr>{''.join(f'<{tag}>{escape(cell)}</{tag}>' for cell in cells)}</tr>"
+
+    head = f"<thead>{row('th', block.columns)}</thead>" if block.columns else ""
+    body = "".join(row("td", cells) for cells in block.rows)
+    return f"<h4>{escape(block.title)}</h4><table>{head}<tbody>{body}</tbody></table>"

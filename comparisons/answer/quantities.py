@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from functools import partial
+from itertools import zip_longest
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,12 +25,9 @@ Scales = Mapping[str, float]
 
 
 class Pair(Frozen):
-    """Two responses to a scene, the numbers of the n load parameters that both have, and the scales."""
+    """A response and a reference, each with the numbers of the n load parameters that both have; their scene and the scales."""
 
-    response: Response
-    reference: Response
-    own_steps: Steps
-    reference_steps: Steps
+    sides: tuple[tuple[Response, Steps], ...]
     scene: Scene
     scale: Scales
 
@@ -62,13 +60,14 @@ class Quantity(Frozen):
         """Return the errors by pair, support or beam, shape (n,)."""
         if self.compare is not None:
             return self.compare(pair)
-        own, true = self.read(pair.response), self.read(pair.reference)
+        (response, own_steps), (reference, steps) = pair.sides
+        own, true = self.read(response), self.read(reference)
         found = {}
         for name in {**true, **own}:
             if name not in own or name not in true:
-                found[name] = np.full(len(pair.own_steps), np.inf)
+                found[name] = np.full(len(steps), np.inf)
             elif not self.acting or own[name].any() or true[name].any():
-                mine, other = own[name][pair.own_steps], true[name][pair.reference_steps]
+                mine, other = own[name][own_steps], true[name][steps]
                 alike = np.isfinite(size(mine)) == np.isfinite(size(other))
                 length = pair.scene.beam(name.rpartition("->")[2]).length if self.over == "length" else 1.0
                 found[name] = np.where(alike, size(mine - other), np.inf) / pair.scale.get(self.words, length)
@@ -94,10 +93,9 @@ def scales(reference: Response, steps: Steps | slice = slice(None)) -> Scales:
     return found
 
 
-def names(*, path: bool = True, mesh: bool = True) -> tuple[str, ...]:
-    """Return the names of the quantities, without those of the path or of a mesh."""
-    left_out = {kind for kind, kept in (("path", path), ("mesh", mesh)) if not kept}
-    return tuple(name for name, row in QUANTITIES.items() if row.kind not in left_out)
+def names(*without: str) -> tuple[str, ...]:
+    """Return the names of the quantities, but for those of some kinds, ``path`` or ``mesh``."""
+    return tuple(name for name, row in QUANTITIES.items() if row.kind not in without)
 
 
 def table_columns() -> dict[str, Quantity]:
@@ -132,9 +130,9 @@ def _each(records: Mapping[str, object], field: str) -> dict[str, Any]:
 def _gap(pair: Pair) -> Columns:
     columns = {}
     for contact in pair.scene.contacts:
-        own, true = pair.response.contacts[contact.pair], pair.reference.contacts[contact.pair]
-        apart = np.abs(own.gap[pair.own_steps] - true.gap[pair.reference_steps])
-        closed = (own.force[pair.own_steps] != 0.0) & (true.force[pair.reference_steps] != 0.0)
+        found = [(one.contacts[contact.pair], steps) for one, steps in pair.sides]
+        apart = np.abs(np.subtract(*(one.gap[steps] for one, steps in found)))
+        closed = np.all([one.force[steps] for one, steps in found], axis=0)
         columns[contact.pair] = np.where(closed, np.nan, apart / pair.scene.beam(contact.beam).length)
     return columns
 
@@ -142,15 +140,14 @@ def _gap(pair: Pair) -> Columns:
 def _shape(norm: Callable[..., Array], pair: Pair) -> Columns:
     columns = {}
     for beam in pair.scene.beams:
-        own = axes_at_stations(pair.response, beam.name, pair.own_steps)
-        true = axes_at_stations(pair.reference, beam.name, pair.reference_steps)
+        own, true = (axes_at_stations(one, beam.name, steps) for one, steps in pair.sides)
         columns[beam.name] = norm(np.nan_to_num(size(own - true), nan=np.inf), axis=1) / beam.length
     return columns
 
 
 def _stress(pair: Pair) -> Columns:
-    own = np.array([_face_stress(pair.response, pair.scene, int(k)) for k in pair.own_steps])
-    true = np.array([_face_stress(pair.reference, pair.scene, int(k)) for k in pair.reference_steps])
+    found = ([_face_stress(one, pair.scene, k) for k in steps.tolist()] for one, steps in pair.sides)
+    own, true = map(np.array, found)
     both = np.isfinite(own) & np.isfinite(true)
     apart = np.where(both, np.abs(own - true), 0.0).max(axis=1, initial=0.0)
     return {pair.scene.beams[0].name: np.asarray(apart / np.abs(true[both]).max(initial=1e-300))}
@@ -158,7 +155,8 @@ def _stress(pair: Pair) -> Columns:
 
 def _face_stress(response: Response, scene: Scene, k: int) -> Array:
     """Principal stress of the larger magnitude along both faces of the only beam, nan near clamp, tip and contacts (`AWAY`)."""
-    beam, grid = scene.beams[0], response.grid(k)
+    beam = scene.beams[0]
+    grid = response.grid(beam.name, k)
     (tx, ty), height = beam.direction, beam.rectangle_height
     from_start = grid.points - np.array(beam.start)
     arc, across = from_start @ (tx, ty), from_start @ (-ty, tx)
@@ -214,11 +212,11 @@ def event_differences(response: Response, reference: Response) -> list[EventDiff
     stated = response.events is not None and reference.events is not None
     found = []
     for key in sorted(own.keys() | true.keys() if stated else own.keys() & true.keys()):
-        first, second = own.get(key, []), true.get(key, [])
-        rows, columns = linear_sum_assignment(np.abs(np.subtract.outer(first, second)))
-        pairs = [(first[i], second[j]) for i, j in zip(rows, columns, strict=True)]
-        pairs += [(t, np.nan) for t in np.delete(first, rows)]
-        pairs += [(np.nan, t) for t in np.delete(second, columns)]
+        sides = zip_longest(own.get(key, ()), true.get(key, ()), fillvalue=np.nan)
+        first, second = np.array(list(sides)).T
+        # an event without another one costs nothing, as there are as many of them in every assignment
+        rows, columns = linear_sum_assignment(np.nan_to_num(np.abs(np.subtract.outer(first, second))))
+        pairs = zip(first[rows], second[columns], strict=True)
         found += [EventDifference(*key, *pair) for pair in sorted(pairs, key=lambda pair: np.fmin(*pair))]
     return found
 
@@ -238,9 +236,9 @@ def _events(response: Response, last: float) -> dict[tuple[str, str], list[float
 
 def _event(pair: Pair) -> Columns:
     """Differences of events, each at the first load parameter behind it in one of the responses."""
-    times = pair.response.load_parameter[pair.own_steps]
-    columns: dict[str, Array] = {}
-    for item in event_differences(pair.response, pair.reference):
+    (response, steps), (reference, _) = pair.sides
+    times, columns = response.load_parameter[steps], dict[str, Array]()
+    for item in event_differences(response, reference):
         column = columns.setdefault(item.pair, np.full(len(times), np.nan))
         k = int(np.searchsorted(times, np.fmin(item.own, item.true)))
         column[k] = np.fmax(column[k], item.apart)
@@ -307,5 +305,5 @@ QUANTITIES: dict[str, Quantity] = {
     ),
 }  # fmt: skip
 """The quantities by name. `crossval compare --max-error` can bound each, `crossval solve --accuracy` takes those that are not of the path."""
-KEPT = names(path=False, mesh=False)
+KEPT = names("path", "mesh")
 """The quantities that every model states and that a stored response keeps."""

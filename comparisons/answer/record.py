@@ -87,11 +87,11 @@ class Deformation(Frozen):
 
 
 class Grid(Frozen):
-    """A mesh in its undeformed state with fields at its points."""
+    """The mesh of a beam in its undeformed state with fields at its points."""
 
     points: Array  #: Undeformed positions, shape (n, 2).
     cells: dict[str, Ints]  #: Points of the cells (e, k) by VTK type in its order, as ``quad9``.
-    #: Fields (n,) or (n, c); always ``displacement``, ``deformed`` (n, 2), ``beam`` (n,), the number of the beam in the scene.
+    #: Fields (n,) or (n, c); always ``displacement`` and ``deformed`` (n, 2).
     point_data: dict[str, Array]
 
 
@@ -130,7 +130,7 @@ class Answer(Frozen):
     #: ``axis_line(beam, k)``: arc length (m,) and deformed positions (m, 2) of an axis at load parameter k. A stored response has
     #: `comparisons.answer.axis.SampledAxes` here.
     axis_line: Callable[[str, int], tuple[Array, Array]] = not_kept
-    grid: Callable[[int], Grid] = not_kept  #: ``grid(k)``: mesh and fields; not of a stored response.
+    grid: Callable[[str, int], Grid] = not_kept  #: ``grid(beam, k)``; not of a stored response.
     sections: Callable[[str, int], Sections] | None = None  #: ``sections(beam, k)``; not stored.
     events: tuple[ContactEvent, ...] | None = None  #: Contact events in their order.
     continuum: bool = False  #: Whether the model is a two-dimensional body and not a rod.

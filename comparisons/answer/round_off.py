@@ -66,12 +66,11 @@ class RoundOff(Value):
 
 def round_off(response: Answer, scene: Scene) -> RoundOff:
     """Return the round-off of an answer to a scene."""
-    forces = [one.force for one in response.contacts.values()]
-    forces += [one.force for one in response.supports.values()]
-    largest = max((float(np.abs(force).max(initial=0.0)) for force in forces), default=0.0)
+    acting = (response.contacts | response.supports).values()
+    largest = max((float(np.abs(one.force).max(initial=0.0)) for one in acting), default=0.0)
     force = max(force_round_off(scene, max(largest, least_force(scene))), residual_force(scene))
     longest = max(beam.length for beam in scene.beams)
-    places = [*(point for beam in scene.beams for point in (beam.start, beam.end)), (longest, 0.0)]
+    places = [*scene.meeting, (longest, 0.0)]
     deflections = (force * beam.length**3 / beam.EI for beam in scene.beams)
     return RoundOff(
         force=force,

@@ -57,9 +57,8 @@ def csv_history(response: Answer, units: str) -> str:
 def unit_names(units: str) -> dict[str, str]:
     """Return the unit of each kind of quantity, from the units of force and length."""
     force, length = (unit.strip() for unit in units.split(","))
-    moment = f"{force} {length}"
-    stress = f"{force}/{length}^2"
-    return {"force": force, "length": length, "moment": moment, "energy": moment, "stress": stress}
+    moment, more = f"{force} {length}", {"stress": f"{force}/{length}^2", "stiffness": f"{force}/{length}"}
+    return {"force": force, "length": length, "moment": moment, "energy": moment, **more}
 
 
 def _histories(response: Answer, *, along: bool) -> Iterator[tuple[str, str, NDArray[Any] | None]]:

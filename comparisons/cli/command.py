@@ -161,16 +161,16 @@ def _models(option: str = "") -> Iterable[str]:
     return (*MODELS, *ADAPTERS)
 
 
-def _quantities(*, path: bool) -> Iterable[str]:
+def _quantities(*without: str) -> Iterable[str]:
     from comparisons.answer.quantities import names
 
-    return names(path=path)
+    return names(*without)
 
 
 LISTED = {
     "--model": Listed(_models),
-    "--accuracy": Listed(partial(_quantities, path=False)),
-    "--max-error": Listed(partial(_quantities, path=True)),
+    "--accuracy": Listed(partial(_quantities, "path")),
+    "--max-error": Listed(_quantities),
 }
 """The names that an argument takes."""
 

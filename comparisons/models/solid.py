@@ -1,6 +1,7 @@
 """The two-dimensional solid."""
 
 from collections.abc import Iterator
+from functools import lru_cache
 from math import ceil, nan
 from typing import TYPE_CHECKING, Any
 
@@ -66,19 +67,31 @@ class Solid(Model):
         problem = to_solid(scene, mesh=options.mesh)
         settings = fem_reference.Settings(branch=options.branch or "stop")
         result = fem_reference.solve(problem, np.array(scene.times), settings, throw=False, watch=report)
-        beam = np.repeat(np.arange(len(scene.beams)), [len(body.mesh.nodes) for body in result.model.bodies])
 
         def axis_line(beam: str, k: int) -> tuple[Array, Array]:
             return fem_reference.axis_stations(result, beam), fem_reference.axis_line(result, beam, k)
 
-        def grid(k: int) -> Grid:
-            displacement, (xx, yy, xy) = result.displacement[k], fem_reference.nodal_stress(result, k).T
+        @lru_cache(maxsize=1)  # one load parameter, of which every beam is asked for
+        def stresses(k: int) -> Array:
+            return np.column_stack(
+                [fem_reference.nodal_stress(result, k), fem_reference.fibre_stress(result, k)]
+            )
+
+        def grid(beam: str, k: int) -> Grid:
+            own = result.model.body(beam).part
+            points, displacement = result.mesh_points[own], result.displacement[k][own]
+            xx, yy, xy, along = stresses(k)[own].T
             data = {
-                "displacement": displacement, "deformed": result.mesh_points + displacement, "beam": beam,
+                "displacement": displacement, "deformed": points + displacement,
                 "stress_xx": xx, "stress_yy": yy, "stress_xy": xy, "von_mises": np.sqrt(xx**2 - xx * yy + yy**2 + 3.0 * xy**2),
-                "axial_stress": fem_reference.fibre_stress(result, k),
+                "axial_stress": along,
             }  # fmt: skip
-            return Grid(points=result.mesh_points, cells=result.mesh_cells, point_data=data)
+            nodes = np.arange(own.start, own.stop)
+            cells = {
+                kind: table[np.isin(table[:, 0], nodes)] - own.start
+                for kind, table in result.mesh_cells.items()
+            }
+            return Grid(points=points, cells=cells, point_data=data)
 
         def half_turns(beam: str) -> Array:
             """Largest angle between neighbouring chords of the axis; a quadratic element has two chords."""

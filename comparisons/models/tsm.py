@@ -111,7 +111,7 @@ class Tsm(Model):
             result,
             cache(result.axis_line),
             lambda beam, k: result.shape(beam, k)[:, :2],
-            grid=lambda k: _grid(scene, result, k),
+            grid=lambda beam, k: _grid(scene, result, beam, k),
             contacts=contacts,
             events=events,
             integration_error=result.integration_error,
@@ -204,25 +204,24 @@ def _reporter(structure: tsm.Structure, watch: Watch) -> Callable[[Any], None]:
     return report
 
 
-def _grid(scene: Scene, result: Any, k: int) -> Grid:
-    """Return the elements as lines that share no points, since forces jump at a contact; `height` is 0 where the section has none."""
-    parts = []
-    for number, beam in enumerate(scene.beams):
-        stations = result.stations(beam.name, k)
-        arc, deformed = stations.arc.ravel(), stations.position.reshape(-1, 2)
-        places = [(beam.place(part), beam.section(part), beam.height_at(part)) for part in arc / beam.length]
-        reference, section, height = (np.array(column) for column in zip(*places, strict=True))
-        (area, inertia, _), (N, V, M) = section.T, stations.forces.reshape(-1, 3).T
-        bending = M * height / (2.0 * inertia)
-        parts.append({
-            "reference": reference, "displacement": deformed - reference, "deformed": deformed,
-            "rotation": stations.rotation.ravel(), "N": N, "V": V, "M": M,
-            "beam": np.full(len(arc), number), "arc": arc, "height": height,
-            "axial_stress_right": N / area + bending, "axial_stress_left": N / area - bending,
-        })  # fmt: skip
-    data = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    points = data.pop("reference")
-    return Grid(points=points, cells={"line": np.arange(len(points)).reshape(-1, 2)}, point_data=data)
+def _grid(scene: Scene, result: Any, beam: str, k: int) -> Grid:
+    """Return the elements of a beam as lines, which share no points, because section forces jump at a contact.
+
+    The field `arc` is the distance along the undeformed axis. Axial stresses are given at
+    the right and the left face, seen along the beam. `height` is 0 where the section has no height.
+    """
+    spec, stations = scene.beam(beam), result.stations(beam, k)
+    arc, deformed = stations.arc.ravel(), stations.position.reshape(-1, 2)
+    places = [(spec.place(part), spec.section(part), spec.height_at(part)) for part in arc / spec.length]
+    points, section, height = (np.array(column) for column in zip(*places, strict=True))
+    (area, inertia, _), (N, V, M) = section.T, stations.forces.reshape(-1, 3).T
+    bending = M * height / (2.0 * inertia)
+    data = {
+        "displacement": deformed - points, "deformed": deformed,
+        "rotation": stations.rotation.ravel(), "N": N, "V": V, "M": M, "arc": arc, "height": height,
+        "axial_stress_right": N / area + bending, "axial_stress_left": N / area - bending,
+    }  # fmt: skip
+    return Grid(points=points, cells={"line": np.arange(len(arc)).reshape(-1, 2)}, point_data=data)
 
 
 def to_structure(scene: Scene, *, elements: int | None = None, element: str | None = None) -> tsm.Structure:

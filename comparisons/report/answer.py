@@ -1,5 +1,6 @@
 """One answer: a picture of its shape, section forces and forces, and an engineer's sheet, which fits on one page of paper."""
 
+from itertools import cycle
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -14,12 +15,12 @@ from comparisons.answer.round_off import round_off
 from comparisons.answer.table import unit_names
 from comparisons.files import write_text
 from comparisons.report import palette
-from comparisons.report.brief import Brief, at_largest, in_units, spring_rate, travel
+from comparisons.report.brief import Brief, across, at_largest, in_units, spring_rate, values_at
 from comparisons.report.pages import Section, page
 from comparisons.report.pages import picture as image
 from comparisons.report.plot import WIDTH, figure, save, tag
 from comparisons.report.sketch import ARROW, Sketch, draw
-from comparisons.report.symbols import LEFT, axis
+from comparisons.report.symbols import LEFT, at_arcs, axis
 from comparisons.scene import Scene
 from comparisons.version import release
 
@@ -67,12 +68,11 @@ def _shape(axes: Any, response: Response, scene: Scene, k: int) -> None:
         arcs, line = response.axis_line(beam.name, k)
         tangent = np.gradient(line, axis=0)
         lines[beam.name] = arcs, line, tangent @ LEFT / np.maximum(np.hypot(*tangent.T), 1e-300)[:, None]
-    title = " ".join(filter(None, (response.model, response.setting)))
-    title = f"{scene.name}, {title}: {response.status}, load parameter {t:.6g}"
+    title = f"{scene.name}, {response.named}: {response.status}, load parameter {t:.6g}"
     sketch = Sketch(axes, scene, lines, title, "x-small")
-    for number, beam in enumerate(scene.beams):
+    for colour, beam in zip(cycle(COLOURS), scene.beams):
         (dashed,) = axes.plot(*axis(beam)[1].T, color="0.6", linewidth=0.9, linestyle="--")
-        _, drawn = sketch.body(beam, COLOURS[number % len(COLOURS)], 1.6)
+        _, drawn = sketch.body(beam, colour, 1.6)
         sketch.legend |= {"undeformed": dashed, beam.name: drawn}
     for pin in scene.pins:
         at = np.array(pin.position(t))
@@ -82,17 +82,16 @@ def _shape(axes: Any, response: Response, scene: Scene, k: int) -> None:
     acting = {one: vector[k] for one, vector in vectors.items() if vector is not None and vector[k].any()}
     largest = max((float(np.hypot(*force)) for force in acting.values()), default=0.0)
     for one, force in acting.items():
-        tip = sketch.at(one.beam, [response.contacts[one.pair].arc_position[k] / scene.beam(one.beam).length])
+        tip = at_arcs(response.contacts[one.pair].arc_position[[k]], *lines[one.beam][:2])
         # four significant digits, without an exponent below a million
         words = f"{float(f'{np.hypot(*force):.4g}'):.6g} {sketch.units['force']}"
         sketch.arrows(tip, ARROW * sketch.size / largest * force, words, palette.PIN, 1.3)
         sketch.named("contact force on the beam", palette.PIN, marker=">", markersize=4, linewidth=1.3)
-    loads = [(history.load, history.at(t)) for history in scene.load_histories]
-    sketch.loads(loads, scene.gravity_at(t))
+    sketch.loads([(history.load, history.at(t)) for history in scene.load_histories], scene.gravity_at(t))
     sketch.symbols()
     entries = {words.partition(" of ")[0]: entry for words, entry in sketch.legend.items()}
-    style: dict[str, Any] = {"fontsize": "x-small", "frameon": False, "labelspacing": 1.2}
-    place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.17), "ncols": 5 - (len(entries) > 5)}
+    style = {"fontsize": "x-small", "frameon": False, "labelspacing": 1.2, "loc": "upper center"}
+    place = {"bbox_to_anchor": (0.5, -0.17), "ncols": 5 - (len(entries) > 5)}
     axes.legend(entries.values(), entries, **place, **style)
     sketch.separate(1)
 
@@ -100,8 +99,8 @@ def _shape(axes: Any, response: Response, scene: Scene, k: int) -> None:
 def _diagram(axes: Any, response: Response, scene: Scene, name: str, kind: str, k: int) -> None:
     assert response.sections is not None, "diagrams are those of a model that states section forces"
     least = getattr(round_off(response, scene), kind)
-    for number, beam in enumerate(scene.beams):
-        at, colour = response.sections(beam.name, k), COLOURS[number % len(COLOURS)]
+    for colour, beam in zip(cycle(COLOURS), scene.beams):
+        at = response.sections(beam.name, k)
         values = np.where(np.abs(getattr(at, name)) > least, getattr(at, name), 0.0)
         axes.fill_between(at.arc, values, color=colour, alpha=0.25, linewidth=0.0)
         axes.plot(at.arc, values, color=colour, linewidth=1.2, label=beam.name)
@@ -118,19 +117,18 @@ def _diagram(axes: Any, response: Response, scene: Scene, name: str, kind: str, 
 
 def _history(axes: Any, response: Response, scene: Scene) -> None:
     """Draw the forces over the travel of the one moving pin, with its spring rate, or over the load parameter."""
-    t, units = response.load_parameter, unit_names(scene.units)
-    way, rate = travel(scene, t), spring_rate(response, scene)
-    across, words = (t, "load parameter") if way is None else (way, f"travel of the pin [{units['length']}]")
-    for number, (name, values) in enumerate(forces(response).items()):
-        style = {"color": COLOURS[number % len(COLOURS)], "marker": ".", "markersize": 3, "linewidth": 1.2}
-        axes.plot(np.append(0.0, across), np.append(0.0, size(values)), label=name, **style)
+    units, rate = unit_names(scene.units), spring_rate(response, scene)
+    words, over = across(scene, response.load_parameter)
+    for colour, (name, values) in zip(cycle(COLOURS), forces(response).items()):
+        style = {"color": colour, "marker": ".", "markersize": 3, "linewidth": 1.2}
+        axes.plot(np.append(0.0, over), np.append(0.0, size(values)), label=name, **style)
     what = "contact force" if response.contacts else "reaction"
     axes.set_xlabel(words)
     axes.set_ylabel(f"{what}\n[{units['force']}]", fontsize="small")
     axes.grid(visible=True, linewidth=0.3)
     axes.set_xlim(left=0.0)
-    title = f"spring rate at first touch {rate:.4g} {units['force']}/{units['length']}"
-    title = title if np.isfinite(rate) else ""
+    rated = f"spring rate at first touch {rate:.4g} {units['stiffness']}"
+    title = rated if np.isfinite(rate) else ""
     axes.legend(loc="best", fontsize="x-small", title=title, title_fontsize="x-small")
 
 
@@ -158,16 +156,14 @@ def _brief(response: Response, scene: Scene) -> Brief:
     if not len(response.load_parameter):
         return Brief(response.ended, points)
     t = float(response.load_parameter[at_largest(response)])
-    answer = in_units(scene, {response.named: response}, t)
     said: dict[str, str] = {}  # the first quantity of each unit that acts
-    for name, value in map(dict.values, answer):
-        words, unit = name.removesuffix("]").split(" [")
-        if value != "0":
-            number = f"{value} {unit}".replace(" ", "\N{NO-BREAK SPACE}")
+    for (words, unit), value in values_at(scene, response, t).items():
+        if value:
+            number = f"{value:.4g} {unit}".replace(" ", "\N{NO-BREAK SPACE}")
             said.setdefault(unit, f"{words} {number}")
     sentence = f"At load parameter {t:.4g}, where the force is largest: {', '.join(said.values())}."
     if not response.completed:
         points.insert(0, sentence)
         sentence = f"{response.ended}."
     about = "The answer there; moments of supports act on the beam, anticlockwise positive:"
-    return Brief(sentence, points, answer, about)
+    return Brief(sentence, points, in_units(scene, {response.named: response}, t), about)

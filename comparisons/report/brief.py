@@ -53,6 +53,14 @@ def travel(scene: Scene, load_parameter: Array) -> Array | None:
     return np.asarray(np.interp(load_parameter, fine, np.append(0.0, np.cumsum(steps))))
 
 
+def across(scene: Scene, load_parameter: Array) -> tuple[str, Array]:
+    """Return what histories are drawn over, with its words: the `travel` of a pin, or the load parameter."""
+    way = travel(scene, load_parameter)
+    if way is None:
+        return "load parameter", load_parameter
+    return f"travel of the pin [{unit_names(scene.units)['length']}]", way
+
+
 def spring_rate(response: Response, scene: Scene) -> float:
     """Return the rise of the force of the one moving pin over its travel as it begins to push; nan without one."""
     way = travel(scene, response.load_parameter)
@@ -70,13 +78,13 @@ def in_units(scene: Scene, responses: Mapping[str, Response], t: float) -> list[
 
     With several models a column says how far the second is apart from the first.
     """
-    columns = {label: _values(scene, one, t) for label, one in responses.items()}
+    columns = {label: values_at(scene, one, t) for label, one in responses.items()}
     named = dict.fromkeys(name for values in columns.values() for name in values)
     rows = []
     for name in named:
         found = [values.get(name) for values in columns.values()]
         cells = ["-" if value is None else f"{value:.{DIGITS}g}" for value in found]
-        row = {"": name, **dict(zip(columns, cells, strict=True))}
+        row = {"": "{} [{}]".format(*name), **dict(zip(columns, cells, strict=True))}
         if len(found) > 1:
             one, other = found[:2]
             apart = other / one - 1.0 if one and other is not None else np.nan
@@ -85,8 +93,8 @@ def in_units(scene: Scene, responses: Mapping[str, Response], t: float) -> list[
     return rows
 
 
-def _values(scene: Scene, response: Response, t: float) -> dict[str, float]:
-    """Return quantities by their names with units; zero for what is below round-off."""
+def values_at(scene: Scene, response: Response, t: float) -> dict[tuple[str, str], float]:
+    """Return quantities at a load parameter by their names and units; zero for what is below round-off."""
     at = np.flatnonzero(np.isclose(response.load_parameter, t, rtol=0.0, atol=1e-9))
     if not len(at):
         return {}
@@ -107,10 +115,9 @@ def _values(scene: Scene, response: Response, t: float) -> dict[str, float]:
             words = words.removeprefix("nominal axial ").removesuffix(" of the axis")
             found[f"largest {words}"] = kind, max(sizes, key=abs)
     rate = spring_rate(response, scene)
-    units["rate"] = f"{units['force']}/{units['length']}"
     if np.isfinite(rate):
-        found["spring rate at first touch"] = "rate", rate
+        found["spring rate at first touch"] = "stiffness", rate
     return {
-        f"{name} [{units[kind]}]": value if abs(value) > getattr(least, kind, 0.0) else 0.0
+        (name, units[kind]): value if abs(value) > getattr(least, kind, 0.0) else 0.0
         for name, (kind, value) in found.items()
     }

@@ -5,16 +5,17 @@ The PVD file lists the load parameters.
 """
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from comparisons.answer import Array, Grid, Response
+from comparisons.answer.axis import place_of
 from comparisons.answer.table import unit_names
 from comparisons.files import OutputError, alone_in, check_free, interrupts_held, move, own, staging
-from comparisons.report.symbols import at_arcs, fixed, inward
+from comparisons.report.symbols import at_arcs, inward, kinds
 from comparisons.report.vtk import read_entries, read_grid, read_units, write_blocks, write_grid, write_list
 from comparisons.scene import ContactSpec, Scene
 
@@ -42,57 +43,43 @@ def blocks(response: Response, scene: Scene, k: int) -> dict[str, Grid]:
     Every point of a beam has the index: 0 where the equilibrium is stable, -1 where it is not known. The other fields are those of
     ``docs/how-to/paraview.md``; what a model does not state is nan.
     """
-    grid, found = response.grid(k), {}
-    for number, beam in enumerate(scene.beams):
-        own = grid.point_data["beam"] == number
-        place = np.cumsum(own) - 1
-        cells = {kind: place[table[own[table[:, 0]]]] for kind, table in grid.cells.items()}
-        data = {name: values[own] for name, values in grid.point_data.items() if name != "beam"}
-        if response.index is not None:
-            data["index"] = np.full(own.sum(), int(response.index[k]))
-        found[beam.name] = Grid(points=grid.points[own], cells=cells, point_data=data)
+    found = {beam.name: response.grid(beam.name, k) for beam in scene.beams}
+    if response.index is not None:
+        for grid in found.values():
+            grid.point_data["index"] = np.full(len(grid.points), int(response.index[k]))
     if scene.contacts:
-        found[CONTACTS] = _contacts(response, scene, k)
+        found[CONTACTS] = _points(response, scene, k, scene.contacts, _touching(response, scene, k))
     if scene.holding:
-        found[SUPPORTS] = _ends(response, scene, k, scene.holding, _reactions(response, scene, k))
+        found[SUPPORTS] = _points(response, scene, k, scene.holding, _reactions(response, scene, k))
     if scene.hinges:
-        found[HINGES] = _ends(response, scene, k, scene.hinges, {})
+        found[HINGES] = _points(response, scene, k, scene.hinges, {})
     return found
 
 
-def _contacts(response: Response, scene: Scene, k: int) -> Grid:
-    """Return the nodes of the contacts: pins, and ends that touch another beam; with what acts on the beam there."""
-    found = zip(*(_contact(response, scene, one, k) for one in scene.contacts), strict=True)
-    start, deformed, touched, force = map(np.array, found)
+def _touching(response: Response, scene: Scene, k: int) -> dict[str, Array]:
+    """Return what acts on the beams at the contacts: at pins, and at ends that touch another beam."""
     histories = [response.contacts[contact.pair] for contact in scene.contacts]
+    # a model without force vectors has one pair, which the supports balance
+    balance = -sum((one.force[k] for one in response.supports.values()), np.zeros(2))
+    forces = [balance if one.vector is None else one.vector[k] for one in histories]
     data = {
-        "beam_displacement": touched,
+        "beam_displacement": np.array([_touched(response, scene, contact, k) for contact in scene.contacts]),
         "radius": np.array([scene.radius(contact) for contact in scene.contacts]),
-        "contact_force": force,
+        "contact_force": np.array(forces),
         "gap": np.array([history.gap[k] for history in histories]),
     }
     rubbed = [history.friction for history in histories]
     for name in ("tangential", "normal", "slip", "dissipated") if any(rubbed) else ():
         data[name] = np.array([np.nan if one is None else getattr(one, name)[k] for one in rubbed])
-    return _points(start, deformed, data)
+    return data
 
 
-def _contact(response: Response, scene: Scene, contact: ContactSpec, k: int) -> tuple[Array, ...]:
-    """Return a contact's undeformed and deformed place, the displacement where it touches, of the node where it is open, and the force."""
-    name, _, end = contact.node.partition(".")
-    pin = None if end else scene.pin(name)
-    start = np.array(pin.points[0] if pin else scene.place(contact.node))
-    t = float(response.load_parameter[k])
-    deformed = np.array(pin.position(t)) if pin else _end(response, name, end, k)
-    history, moved = response.contacts[contact.pair], deformed - start
-    arc = float(history.arc_position[k])
+def _touched(response: Response, scene: Scene, contact: ContactSpec, k: int) -> Array:
+    """Return the displacement of the beam where a contact is closed, of its node where it is open."""
+    arc, beam = response.contacts[contact.pair].arc_position[k], scene.beam(contact.beam)
     if np.isfinite(arc):
-        beam = scene.beam(contact.beam)
-        moved = at_arcs(history.arc_position[k], *response.axis_line(beam.name, k))
-        moved = moved - beam.place(arc / beam.length)
-    if history.vector is not None:  # a model without force vectors has one pair, which the supports balance
-        return start, deformed, moved, history.vector[k]
-    return start, deformed, moved, -sum((one.force[k] for one in response.supports.values()), np.zeros(2))
+        return at_arcs(arc, *response.axis_line(beam.name, k)) - beam.place(arc / beam.length)
+    return place_of(response, scene, contact.node, k) - place_of(response, scene, contact.node, -1)
 
 
 def _reactions(response: Response, scene: Scene, k: int) -> dict[str, Array]:
@@ -102,27 +89,19 @@ def _reactions(response: Response, scene: Scene, k: int) -> dict[str, Array]:
     return {
         "reaction_force": np.array([(np.nan, np.nan) if one is None else one.force[k] for one in found]),
         "reaction_moment": np.array([np.nan if one is None else one.moment[k] for one in found]),
-        "held": fixed(scene),
+        "held": np.array([kinds(one) for one in scene.holding]),
         "inward": np.array([inward(scene, one) for one in scene.holding]),
     }
 
 
-def _ends(response: Response, scene: Scene, k: int, items: Any, data: dict[str, Array]) -> Grid:
-    """Return what is at the ends of beams with its displacement and other fields."""
-    start = np.array([scene.place(one.node) for one in items])
-    return _points(start, np.array([_end(response, one.beam, one.end, k) for one in items]), data)
-
-
-def _points(start: Array, deformed: Array, data: dict[str, Array]) -> Grid:
-    """Return places as a grid of points with their displacement and other fields."""
+def _points(response: Response, scene: Scene, k: int, items: Sequence[Any], data: dict[str, Array]) -> Grid:
+    """Return the nodes of some items, pins or ends of beams, as a grid with their displacement and other fields."""
+    start, deformed = (
+        np.array([place_of(response, scene, one.node, step) for one in items]) for step in (-1, k)
+    )
     cells = {"vertex": np.arange(len(start)).reshape(-1, 1)}
     moved = {"displacement": deformed - start, "deformed": deformed}
     return Grid(points=start, cells=cells, point_data={**moved, **data})
-
-
-def _end(response: Response, beam: str, end: str, k: int) -> Array:
-    """Return the deformed position of a beam's end."""
-    return np.asarray(response.axis_line(beam, k)[1][0 if end == "start" else -1])
 
 
 def check_series(folder: Path, model: str, scene: Scene) -> None:
@@ -166,7 +145,7 @@ def write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
                 whole, *parts = _names(model, k, len(grids))
                 for name, grid in zip(parts, grids.values(), strict=True):
                     write_grid(aside / name, grid, units)
-                fields = {field for grid in grids.values() for field in grid.point_data}
+                fields = set().union(*(grid.point_data for grid in grids.values()))
                 there = {field: unit for field, unit in units.items() if field in fields}
                 write_blocks(aside / whole, dict(zip(grids, parts, strict=True)), there)
                 files += [*parts, whole]

@@ -9,10 +9,8 @@ import numpy as np
 
 from comparisons.answer import Response
 from comparisons.answer.quantities import table_columns
-from comparisons.models import find
 from comparisons.referee import Verdict
 from comparisons.report.brief import Brief, at_largest, in_units
-from comparisons.scene import Scene
 from comparisons.suite import Row
 from comparisons.suite.budget import TIMES, Budget
 
@@ -43,7 +41,6 @@ STATES = {
 
 
 def findings(
-    scene: Scene,
     rows: Sequence[Row],
     reference: str,
     bodies: Row | None,
@@ -55,12 +52,12 @@ def findings(
     `bodies` is the row of beams with their errors against the solid, if both answered. `left_out` has reasons by the family of a run, or
     by `BUDGET`.
     """
-    others = [row for row in rows if row.label != reference and isfinite(_worst(row, scene)[0])]
-    sentence = _sentence(others, scene, reference, bodies, budget)
+    others = [row for row in rows if isfinite(_worst(row)[0])]
+    sentence = _sentence(others, reference, bodies, budget)
     points = [
-        _enough(others, scene, reference),
+        _enough(others, reference),
         "" if budget is None else _parts(budget, sentence),
-        _causes(others, scene, explained=budget is not None),
+        _causes(others, explained=budget is not None),
         " ".join([*_stopped(rows), *_apart(others, reference), *_left_out(left_out)]),
         " ".join([_certified(rows), *_stability(rows)]),
     ]
@@ -68,35 +65,33 @@ def findings(
     answer, about = list[dict[str, str]](), ""
     if len(exact.response.load_parameter):
         t = float(exact.response.load_parameter[at_largest(exact.response)])
-        finest = [bodies] if bodies else [row for row in others if find(row.response.model).meshed]
+        finest = [bodies] if bodies else [row for row in others if row.case.found.meshed]
         shown = {"beam": finest[-1].response} if finest else {}
         shown |= {row.family: row.response for row in others if row.response.continuum}
-        answer = in_units(scene, {**shown, reference: exact.response}, t)
+        answer = in_units(exact.case.scene, {**shown, reference: exact.response}, t)
         other = [*shown, reference][-1 if len(shown) < 2 else 1]
         beam = f" (beam: {finest[-1].label}; apart: {other} less beam)" if finest else ""
         about = f"The answer at load parameter {t:.4g}, where the force is largest{beam}:"
     return Brief(sentence, list(filter(None, points)), answer, about)
 
 
-def _sentence(
-    others: Sequence[Row], scene: Scene, reference: str, bodies: Row | None, budget: Budget | None
-) -> str:
+def _sentence(others: Sequence[Row], reference: str, bodies: Row | None, budget: Budget | None) -> str:
     """Return how far beams and solid are apart, why, and what is enough for `ASKED`."""
-    meshed = [row for row in _near(others, scene) if find(row.response.model).meshed]
-    beams = [row for row in meshed if not row.response.continuum]
+    near = (row for row in _near(others) if not row.response.continuum)
+    beams = [row for row in near if row.case.found.meshed]
     least = min(beams, key=lambda row: row.response.unknowns, default=None)
     enough = f"for {_size(ASKED)} of the {reference} no beam here is enough"
     if least is not None:
-        enough = f"for {_size(ASKED)} a beam is enough: {least.label} ({_size(_worst(least, scene)[0])} off the {reference})"
-    apart, quantity = (nan, "") if bodies is None else _worst(bodies, scene)
-    if not isfinite(apart):
+        enough = f"for {_size(ASKED)} a beam is enough: {least.label} ({_size(_worst(least)[0])} off the {reference})"
+    if bodies is None or not isfinite(_worst(bodies)[0]):
         return f"{enough[0].upper()}{enough[1:]}."
-    over = next(one.relative_to for one in table_columns().values() if one.called(scene) == quantity)
-    over = "its largest value" if over.startswith("the largest") else over
+    apart, quantity = _worst(bodies)
+    compared = next(one for one in table_columns().values() if one.called(bodies.case.scene) == quantity)
+    over = "its largest value" if compared.over == "largest" else compared.relative_to
     said = f"Beam and solid differ in the {quantity} by {_size(apart)} of {over}"
     if budget is not None and apart > AGREES:
         measured, _, parts = _largest(budget)
-        most = max(parts, key=lambda name: abs(parts[name]))
+        most = next(iter(parts))
         # the parts are those of the quantity that differs most in the budget, which may be another one
         same = _named(measured).startswith(quantity)
         if same and 2.0 * abs(parts[most]) > sum(map(abs, parts.values())):
@@ -104,22 +99,22 @@ def _sentence(
     return f"{said}; {enough if apart <= ASKED else f'for {_size(ASKED)} of the solid a beam is not enough'}."
 
 
-def _near(rows: Iterable[Row], scene: Scene) -> list[Row]:
+def _near(rows: Iterable[Row]) -> list[Row]:
     """Return the completed runs with errors up to `ASKED`."""
-    return [row for row in rows if row.response.completed and _worst(row, scene)[0] <= ASKED]
+    return [row for row in rows if row.response.completed and _worst(row)[0] <= ASKED]
 
 
-def _enough(others: Sequence[Row], scene: Scene, reference: str) -> str:
+def _enough(others: Sequence[Row], reference: str) -> str:
     """Return which runs are within `ASKED` of the reference, of each family the coarsest, and which families are not."""
     good, beyond = list[str](), list[str]()
     for family, own in groupby(others, key=lambda row: row.family):
         rows = sorted(own, key=lambda row: row.resolution)
-        if within := _near(rows, scene):
+        if within := _near(rows):
             count = within[0].resolution
             elements = f" with {count:.0f} element{'' if count == 1 else 's'}" if isfinite(count) else ""
-            good.append(f"{family}{elements} ({_size(_worst(within[0], scene)[0])})")
+            good.append(f"{family}{elements} ({_size(_worst(within[0])[0])})")
         else:
-            beyond.append(f"{family} ({_size(_worst(rows[-1], scene)[0])})")
+            beyond.append(f"{family} ({_size(_worst(rows[-1])[0])})")
     said = f"Within {_size(ASKED)} of the {reference}: {', '.join(good) or 'none'}."
     return f"{said} Beyond: {', '.join(beyond)}." if beyond else said
 
@@ -130,31 +125,33 @@ def _apart(others: Sequence[Row], reference: str) -> Iterator[str]:
         yield f"{_listed(open_here)} and the {reference} disagree on whether a contact is closed."
 
 
-def _causes(others: Sequence[Row], scene: Scene, *, explained: bool) -> str:
+def _causes(others: Sequence[Row], *, explained: bool) -> str:
     """Return why the families are off, and how fast their errors fall; of a continuum it is `explained` elsewhere."""
     said = []
     for family, own in groupby(others, key=lambda row: row.family):
         rows = list(own)
-        agrees = max(_worst(row, scene)[0] for row in rows) < AGREES
-        cause = "" if agrees or (explained and rows[0].response.continuum) else rows[0].cause
-        falls = "" if agrees else _falling(rows, scene)
+        if max(_worst(row)[0] for row in rows) < AGREES:
+            continue
+        cause = "" if explained and rows[0].response.continuum else rows[0].cause
+        falls = _falling(rows)
         if cause or falls:
             said.append(f"{family}, {cause or 'discretisation'} {falls}".rstrip())
     return f"Why models are off: {'; '.join(said)}." if said else ""
 
 
-def _worst(row: Row, scene: Scene) -> tuple[float, str]:
+def _worst(row: Row) -> tuple[float, str]:
     """Return the largest finite error over the path, and its quantity; nan without one."""
-    names = {name: one.called(scene) for name, one in table_columns().items() if name != "friction"}
-    path = {} if row.errors is None else row.errors["path"]
-    found = [(path[name], words) for name, words in names.items() if isfinite(path.get(name, inf))]
-    return max(found, default=(nan, ""))
+    compared = {
+        name: one.called(row.case.scene) for name, one in table_columns().items() if name != "friction"
+    }
+    found = ((row.error("path", name), words) for name, words in compared.items())
+    return max((one for one in found if isfinite(one[0])), default=(nan, ""))
 
 
-def _falling(rows: list[Row], scene: Scene) -> str:
+def _falling(rows: list[Row]) -> str:
     """Return the measured order of runs with several resolutions."""
     first, last = (choose(rows, key=lambda row: row.resolution) for choose in (min, max))
-    coarse, fine = _worst(first, scene)[0], _worst(last, scene)[0]
+    coarse, fine = _worst(first)[0], _worst(last)[0]
     if not last.resolution > first.resolution or fine < AGREES or coarse <= fine:
         return ""
     order = log(coarse / fine) / log(last.resolution / first.resolution)
@@ -162,11 +159,12 @@ def _falling(rows: list[Row], scene: Scene) -> str:
 
 
 def _largest(budget: Budget) -> tuple[str, int, dict[str, float]]:
-    """Return the quantity and the number of the load parameter of the largest difference, and its parts."""
+    """Return the quantity and the number of the load parameter of the largest difference, and its parts, the largest first."""
     sizes = np.nan_to_num([np.abs(total) for total in budget.total.values()])
     number, k = map(int, np.unravel_index(np.argmax(sizes), sizes.shape))
     quantity = list(budget.total)[number]
-    return quantity, k, {name: float(values[k]) for name, values in budget.parts[quantity].items()}
+    parts = ((name, float(values[k])) for name, values in budget.parts[quantity].items())
+    return quantity, k, dict(sorted(parts, key=lambda one: -abs(one[1])))
 
 
 def _parts(budget: Budget, sentence: str) -> str:
@@ -176,8 +174,8 @@ def _parts(budget: Budget, sentence: str) -> str:
     if not abs(total) >= AGREES:
         return f"In the error budget, beams and solid agree to {_size(abs(total))}."
     greatest = max(map(abs, parts.values()))
-    shown = sorted((n for n in parts if abs(parts[n]) > LEAST_PART * greatest), key=lambda n: -abs(parts[n]))
     meanings = {name: f" ({words})" for name, words in MEANINGS.items() if words not in sentence}
+    shown = (name for name, part in parts.items() if abs(part) > LEAST_PART * greatest)
     words = _listed(f"{_size(parts[name])} {name}{meanings.get(name, '')}" for name in shown)
     return f"In the error budget, beams and solid differ most in the {_named(quantity)}, at load parameter {TIMES[k]:g}: by {_size(total)} of its value there, made of {words}."
 
@@ -213,35 +211,29 @@ def _left_out(left_out: Mapping[str, str]) -> Iterator[str]:
 
 def _stability(rows: Sequence[Row]) -> Iterator[str]:
     """Yield what is not stable; a family that states an index in one run is not silent."""
-    of = {
-        state: dict.fromkeys(row.family for row in rows if row.stable == state) for state in (*STATES, "yes")
-    }
-    left = {"-": of["in part"] | of["no"] | of["yes"], "in part": of["no"], "no": {}}
+    said = {row.family: "" for row in rows}
+    for state in ("-", "yes", "in part", "no"):
+        said |= {row.family: state for row in rows if row.stable == state}
     for state, words in STATES.items():
-        if families := [family for family in of[state] if family not in left[state]]:
+        if families := [family for family in said if said[family] == state]:
             yield words.format(_listed(families))
 
 
 def _certified(rows: Sequence[Row]) -> str:
     doubtful = [row for row in rows if _judged(row.response)]
-    rest = [
-        f"; {label} was {_judged(one)}"
-        for label, one in _together(doubtful, lambda row: _judged(row.response))
-    ]
+    together = _together(doubtful, lambda row: _judged(row.response))
+    rest = [f"; {label} was {_judged(one)}" for label, one in together]
     count = f"{len(rows) - len(doubtful)} of {len(rows)} answers" if doubtful else "every answer"
     return f"The referee, an independent solver, certified {count}{''.join(rest)}."
 
 
 def _judged(response: Response) -> str:
-    """Return what the referee said of an answer that it did not certify."""
+    """Return what the referee said of an answer that it did not certify; empty for one that it did."""
     found = response.certificate
     if found is None:
         return "not judged"
-    return (
-        ""
-        if found.certified
-        else f"{'not judged' if found.verdict is Verdict.NOT_JUDGED else 'refused'} ({found.reason})"
-    )
+    judged = "not judged" if found.verdict is Verdict.NOT_JUDGED else "refused"
+    return "" if found.certified else f"{judged} ({found.reason})"
 
 
 def _size(value: float) -> str:

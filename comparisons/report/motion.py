@@ -2,24 +2,24 @@
 
 from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import field
-from itertools import groupby
-from typing import Any
+from itertools import cycle, groupby
 
 import numpy as np
 
 from comparisons.answer import CONTACT_STATES, SLIPS, Array, Response
+from comparisons.answer.axis import axes_at_stations, place_of
 from comparisons.answer.errors import error_columns
 from comparisons.answer.quantities import QUANTITIES, size
 from comparisons.answer.table import unit_names
 from comparisons.frozen import Frozen
 from comparisons.report import palette
-from comparisons.report.brief import at_largest, travel
+from comparisons.report.brief import across, at_largest
 from comparisons.report.pages import Section, piece, rendered
-from comparisons.report.symbols import SYMBOL, end_symbols
+from comparisons.report.symbols import SYMBOL, axis, end_symbols
 from comparisons.scene import Scene
 
-POINTS = 41
-"""Points of a deformed axis."""
+STATIONS = np.linspace(0.0, 1.0, 41)
+"""Points of a deformed axis, over its length."""
 ARC = 25
 """Points of an undeformed axis that is an arc."""
 DIGITS = 7
@@ -101,27 +101,34 @@ def motion_section(
     ordered = sorted(labels, key=lambda label: -palette.style(label).width)
     ends = np.array([[beam.start, beam.end] for beam in scene.beams]).reshape(-1, 2)
     extent = float(np.ptp(ends, axis=0).max())
-    decimals, steps = DIGITS - int(np.floor(np.log10(extent))), range(len(times))
-    axes = {label: _lines(scene, response, decimals) for label, response in responses.items()}
-    runs = list[dict[str, Any]]()
-    for number, label in enumerate(ordered):
-        style, dash = palette.style(label), DASHES[number % len(DASHES)]
-        drawn: dict[str, Any] = {"colour": INKS.get(style.colour, style.colour), "width": style.width}
-        drawn |= {"dash": "none" if style.unbroken else dash, "lines": axes.get(label, [])}
-        runs.append({"label": label, "shown": not first or label in first, **drawn})
-    way, exact = travel(scene, times), responses[focus]
+    decimals = DIGITS - int(np.floor(np.log10(extent)))
+    beams = {
+        label: [
+            np.round(axes_at_stations(one, beam.name, range(len(one.load_parameter)), STATIONS), decimals)
+            for beam in scene.beams
+        ]
+        for label, one in responses.items()
+    }
+    runs = [
+        {
+            "label": label,
+            "shown": not first or label in first,
+            "colour": INKS.get(style.colour, style.colour),
+            "width": style.width,
+            "dash": "none" if style.unbroken else dash,
+            "lines": list(zip(*beams.get(label, []), strict=True)),
+        }
+        for label, style, dash in zip(ordered, map(palette.style, ordered), cycle(DASHES))
+    ]
+    exact = responses[focus]
     start = at_largest(exact) if len(exact.load_parameter) else len(times) - 1
-    length = unit_names(scene.units)["length"]
-    across = {"title": "load parameter", "values": times}
-    if way is not None:
-        across = {"title": f"travel of the pin [{length}]", "values": way}
-    rest = (np.linspace(0.0, 1.0, ARC if beam.turn else 2) for beam in scene.beams)
+    words, values = across(scene, times)
     data = {
         "load_parameter": times,
-        "across": across,
+        "across": {"title": words, "values": values},
         "start": start,
-        "length": {"unit": length},
-        "beams": [list(map(beam.place, parts)) for beam, parts in zip(scene.beams, rest, strict=True)],
+        "length": {"unit": unit_names(scene.units)["length"]},
+        "beams": [axis(beam, ARC if beam.turn else 2)[1] for beam in scene.beams],
         "pins": [
             {
                 "name": pin.name,
@@ -134,7 +141,7 @@ def motion_section(
         "symbols": [
             {
                 "lines": np.round(SYMBOL * extent * one.segments, decimals),
-                "at": np.round([one.at(_axis(scene, exact, one.item.beam, k)) for k in steps], decimals),
+                "at": np.round(_places(exact, scene, one.item.node, len(times)), decimals),
             }
             for one in end_symbols(scene)
         ],
@@ -144,28 +151,14 @@ def motion_section(
         "vtu": vtu or {},
     }
     picture = rendered("motion", runs=runs, pins=scene.pins, last=len(times) - 1, start=start)
-    more = rendered("charts", runs=runs, tracks=shown, across=across["title"])
+    more = rendered("charts", runs=runs, tracks=shown, across=words)
     return Section(title, picture.rstrip("\n"), data, more.rstrip("\n"))
 
 
-def _axis(scene: Scene, response: Response, beam: str, k: int) -> Array:
-    """Return the axis of a beam at load parameter number k or the last one reached; its ends before that."""
-    last = min(k, len(response.load_parameter) - 1)
-    if last >= 0:
-        return response.axis_line(beam, last)[1]
-    return np.array([scene.beam(beam).start, scene.beam(beam).end])
-
-
-def _lines(scene: Scene, response: Response, decimals: int) -> list[list[Array]]:
-    """Return the deformed axes (POINTS, 2) of all beams at every load parameter, rounded to what a screen can show."""
-    from scipy.interpolate import CubicSpline  # straight pieces would show where differences are enlarged
-
-    def thinned(arc: Array, line: Array) -> Array:
-        at = np.linspace(arc[0], arc[-1], POINTS)
-        return np.asarray(np.round(CubicSpline(arc, line)(at), decimals))
-
-    steps = range(len(response.load_parameter))
-    return [[thinned(*response.axis_line(beam.name, k)) for beam in scene.beams] for k in steps]
+def _places(response: Response, scene: Scene, node: str, count: int) -> list[Array]:
+    """Return the places of a node at `count` load parameters; it stays at the last one reached, or at rest."""
+    last = len(response.load_parameter) - 1
+    return [place_of(response, scene, node, min(k, last)) for k in range(count)]
 
 
 def states_section(responses: Mapping[str, Response]) -> Iterator[Section]:
@@ -185,16 +178,17 @@ def band(response: Response, pair: str) -> list[tuple[str, float, float]]:
     """Return the states of a contact in their order, each with the load parameters between which it lasts."""
     contact, times = response.contacts[pair], response.load_parameter
     assert contact.friction is not None, "a band belongs to a contact with friction"
-    events = [event for event in response.events or () if event.pair == pair and event.kind != "pass-through"]
-    located = sorted(event.load_parameter for event in events)
+    located = [
+        event.load_parameter
+        for event in response.events or ()
+        if event.pair == pair and event.kind != "pass-through"
+    ]
     parts: list[tuple[str, float, float]] = []
     begin, last = 0.0, 0
     for state, same in groupby(contact.friction.states(contact.force)):
         last += len(list(same))
-        end = float(times[-1])
-        if last < len(times):
-            between = [t for t in located if times[last - 1] <= t <= times[last]]
-            end = between[-1] if between else float(np.mean(times[last - 1 : last + 1]))
+        around = times[last - 1 : last + 1]
+        end = max((t for t in located if around[0] <= t <= around[-1]), default=float(around.mean()))
         parts.append((state, begin, end))
         begin = end
     return parts

@@ -5,6 +5,7 @@ import json
 import re
 from collections.abc import Mapping, Sequence
 from functools import cache
+from mimetypes import types_map
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from markupsafe import Markup
 
 FOLDER = Path(__file__).with_name("templates")
-TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
 
 
 class Section(NamedTuple):
@@ -92,4 +92,4 @@ def picture(path: Path, caption: str) -> str:
         style = b"<style>%s</style><defs>" % (FOLDER / "picture.css").read_bytes()
         content = content.replace(b"<defs>", style, 1)
     text = base64.b64encode(content).decode("ascii")
-    return piece("picture", caption, f"data:{TYPES[path.suffix]};base64,{text}")
+    return piece("picture", caption, f"data:{types_map[path.suffix]};base64,{text}")

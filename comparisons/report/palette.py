@@ -34,8 +34,3 @@ def style(label: str) -> Style:
         if label.startswith(words):
             return found
     raise ValueError(f"label = {label}: must begin with one of {', '.join(_styles())}")
-
-
-def colour(label: str) -> str:
-    """Return the colour of a run, by its label."""
-    return style(label).colour

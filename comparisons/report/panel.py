@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from comparisons.answer import CONTACT_STATES, OPEN, SLIPS, Array, Grid, Response
 from comparisons.report.export import CONTACTS, HINGES, POINTS, SUPPORTS, blocks
 from comparisons.report.palette import PIN
-from comparisons.report.symbols import HINGE, LEFT, SYMBOL, Segments, at_arcs, axis, fixings
-from comparisons.scene import BeamSpec, Scene
+from comparisons.report.symbols import HINGE, LEFT, SYMBOL, Segments, at_arcs, fixings
+from comparisons.scene import Scene
 
 Body = tuple[Array, Array]
 """Quadrilaterals (m, 4, 2) of a deformed body, and the stress (m, 4) at their corners."""
@@ -27,8 +27,6 @@ PARTS, LAYERS = 8, (4, 8)
 """Quadrilaterals along an element of a beam, and over its height for a stress linear in it or not."""
 VISIBLE = 0.06
 """Least height of the tallest beam in a picture of stress, over the size of the undeformed beams; its heights are enlarged to it."""
-FINE = 1001
-"""Points of an undeformed axis near which the nodes of a solid lie."""
 THIN = 2e-3
 """Height of a beam whose section has none, over the size of the picture."""
 ARROW = 0.2
@@ -38,21 +36,18 @@ COLOURS = {OPEN: CONTACT_STATES[OPEN], "contact": PIN, **CONTACT_STATES}
 
 
 class Panel(NamedTuple):
-    """Deformed bodies as m quadrilaterals with a stress at their corners, the p nodes that touch them, and the supports.
-
-    The nodes are pins, and ends of beams that touch other beams. `radii` are zero for a point. `forces` are what they exert on the beams,
-    drawn as arrows; zero where none are to be drawn. `states` are keys of `COLOURS`. `supports` are the line segments of the symbols of
-    supports, springs and hinges.
-    """
+    """Deformed bodies as m quadrilaterals, the p nodes that touch them, pins and ends of other beams, and the supports."""
 
     title: str
-    quads: Array  # (m, 4, 2)
-    stress: Array  # (m, 4)
-    pins: Array  # (p, 2)
-    radii: Array  # (p,)
-    forces: Array  # (p, 2)
-    states: NDArray[np.str_]  # (p,)
-    supports: Segments  # (l, 2, 2)
+    quads: Array  #: Shape (m, 4, 2).
+    stress: Array  #: At the corners (m, 4).
+    pins: Array  #: Places of the nodes (p, 2).
+    radii: Array  #: Zero for a point (p,).
+    forces: (
+        Array  #: What the nodes exert on the beams, drawn as arrows; zero where none are to be drawn (p, 2).
+    )
+    states: NDArray[np.str_]  #: Keys of `COLOURS` (p,).
+    supports: Segments  #: The symbols of supports, springs and hinges (l, 2, 2).
 
     def outline(self) -> list[Array]:
         """Return points (..., 2) within which all is drawn but the arrows."""
@@ -72,16 +67,16 @@ def mises_panels(beams: Response, solid: Response, scene: Scene, t: float) -> tu
     ribbons, bodies = (blocks(one, scene, k) for one, k in zip((beams, solid), steps, strict=True))
     less = dict(bodies)
     reach = np.ptp(np.concatenate([ribbons[beam.name].points for beam in scene.beams]), axis=0).max()
-    ends = np.concatenate([_section(beam, np.array([0.0, beam.length])) for beam in scene.beams], axis=1)
-    wide = max(1.0, float(np.round(VISIBLE * reach / np.sqrt(12.0 * ends[1] / ends[0]).max())))
+    wide = max(1.0, round(VISIBLE * reach / max(beam.rectangle_height for beam in scene.beams)))
     for beam in scene.beams:
         data, body = ribbons[beam.name].point_data, bodies[beam.name]
-        area, inertia = _section(beam, data["arc"])
+        area, inertia, _ = np.array([beam.section(part) for part in data["arc"] / beam.length]).T
         height = np.sqrt(12.0 * inertia / area)
         direct, bent = data["N"] / area, data["M"] * height / (2.0 * inertia)
         data["axial_stress_right"], data["axial_stress_left"] = direct + bent, direct - bent
         data["shear_stress"], data["height"] = 1.5 * data["V"] / area, wide * height
-        arc, y = _material(beam, body.points)
+        y, fraction = np.array([beam.projected(point) for point in body.points.tolist()]).T
+        arc = fraction * beam.length
         middle = at_arcs(arc, *solid.axis_line(beam.name, steps[1]))
         body.point_data["deformed"] = middle + wide * (body.point_data["deformed"] - middle)
         stress = _stress(data, data["arc"], arc, 2.0 * y / np.interp(arc, data["arc"], height))
@@ -90,21 +85,6 @@ def mises_panels(beams: Response, solid: Response, scene: Scene, t: float) -> tu
     named = {"beams": ribbons, "the solid": bodies, "beams less solid": less}
     found = [panel(grids, title, stress="von_mises") for title, grids in named.items()]
     return [one._replace(forces=0.0 * one.forces) for one in found], wide
-
-
-def _section(beam: BeamSpec, arc: Array) -> Array:
-    """Return areas and second moments at arc lengths, shape (2, n)."""
-    return np.array([beam.section(part)[:2] for part in arc / beam.length]).T
-
-
-def _material(beam: BeamSpec, points: Array) -> tuple[Array, Array]:
-    """Return the arc lengths and the distances to the left of points (n, 2) of an undeformed body."""
-    from scipy.spatial import cKDTree
-
-    arcs, line, left = axis(beam, FINE)
-    _, foot = cKDTree(line).query(points)
-    apart, normal = points - line[foot], left[foot]
-    return arcs[foot] + np.sum(apart * (normal @ LEFT.T), axis=1), np.sum(apart * normal, axis=1)
 
 
 def panel(
@@ -205,19 +185,14 @@ def _state(force: Array, slip: float) -> str:
 
 
 class Scale(NamedTuple):
-    """What pictures of panels share.
+    """What pictures of panels share."""
 
-    The view has a centre and an `extent`, half its width and half its height. `stress` are the lowest and the
-    highest stress of the colours, with their label. `force` is the length of an arrow per force, and `arrow`
-    says what the longest one is, nothing without forces.
-    """
-
-    centre: tuple[float, float]
-    extent: tuple[float, float]
-    stress: tuple[float, float]
-    force: float
-    label: str
-    arrow: str = ""
+    centre: Array  #: Of the view.
+    extent: Array  #: Half the width and half the height of the view.
+    stress: tuple[float, float]  #: The lowest and the highest one of the colours.
+    force: float  #: Length of an arrow per force.
+    label: str  #: Of the colours.
+    arrow: str = ""  #: What the longest arrow is, nothing without forces.
 
     @classmethod
     def of(cls, panels: Sequence[Panel], label: str, unit: str = "") -> "Scale":
@@ -230,8 +205,8 @@ class Scale(NamedTuple):
         top = max(float(np.abs(one.stress).max()) for one in panels)
         signed = any(float(one.stress.min()) < 0.0 for one in panels)
         return cls(
-            centre=tuple(((low + high) / 2.0).tolist()),
-            extent=tuple(((high - low) / 2.0).tolist()),
+            centre=(low + high) / 2.0,
+            extent=(high - low) / 2.0,
             stress=(-top if signed else 0.0, top),
             force=force if largest else 0.0,
             label=label,
@@ -241,7 +216,7 @@ class Scale(NamedTuple):
     @property
     def half(self) -> float:
         """Half the size of what is shown."""
-        return max(self.extent)
+        return float(self.extent.max())
 
     @property
     def colours(self) -> str:

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
+from itertools import cycle
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -15,7 +16,7 @@ from comparisons.files import replacing
 from comparisons.models import find
 from comparisons.report import palette
 from comparisons.report.symbols import SYMBOL, draw_symbols
-from comparisons.scene import Scene
+from comparisons.scene import BeamSpec, Scene
 
 SOLID = {"linewidth": 6.0, "alpha": 0.55, "solid_capstyle": "butt", "zorder": 1.8}
 EXACT = {"linewidth": 1.0}
@@ -159,49 +160,46 @@ def plot_shapes(scene: Scene, responses: dict[str, Response], *paths: Path) -> N
     last = next(reversed(reached.values()), None)
     symbols = {}
     if last is not None:
-        lines = {beam.name: last.axis_line(beam.name, -1)[1] for beam in scene.beams}
+        lines = {beam.name: last.axis_line(beam.name, -1) for beam in scene.beams}
         symbols = draw_symbols(whole, scene, lines, SYMBOL * max(whole.dataLim.width, whole.dataLim.height))
+        _zoom_on_tip(whole, detail, scene, last)
     length = unit_names(scene.units)["length"]
     whole.set(xlabel=f"x [{length}]", ylabel=f"y [{length}]", title=f"{scene.name}: deflected axes")
     whole.margins(0.06)
     tall = float(np.clip(0.85 * WIDTH * whole.dataLim.height / max(whole.dataLim.width, 1e-300), 1.2, 5.5))
     whole.get_gridspec().set_height_ratios((tall + 0.8, 2.8))
     fig.set_figheight(tall + 3.6)
-    if last is not None:
-        _zoom_on_tip(whole, detail, scene, last)
     places["legend"].set_axis_off()
     handles, words = whole.get_legend_handles_labels()
-    entries = ([*handles, *symbols.values()], [*words, *symbols])
-    places["legend"].legend(*entries, loc="center", fontsize="small", frameon=False)
+    named = dict(zip(words, handles, strict=True)) | symbols  # a label stands once
+    places["legend"].legend(named.values(), named, loc="center", fontsize="small", frameon=False)
     save(fig, *paths)
 
 
 def _draw_shapes(axes: Any, scene: Scene, responses: dict[str, Response]) -> None:
-    beam_styles = iter(BEAMS * len(responses))
+    beam_styles = cycle(BEAMS)
     drawn: set[float] = set()
     for label, response in responses.items():
-        style = {"color": palette.colour(label), **_style(response, scene, beam_styles)}
+        style = {"color": palette.style(label).colour, **_style(response, scene, beam_styles)}
         for k in nearest_steps(response.load_parameter, scene.times[-1]):
             drawn.add(float(response.load_parameter[k]))
             for beam in scene.beams:
                 _, line = response.axis_line(beam.name, k)
                 if "marker" in style:
-                    style["markevery"] = max(1, (len(line) - 1) // _elements(response, scene, k))
+                    style["markevery"] = max(1, (len(line) - 1) // _elements(response, beam, k))
                 axes.plot(*line.T, label=label, **{"linewidth": 0.8, **style})
-                label = "_"  # noqa: PLW2901 one entry of the legend per response
     apart = LABELS * max(axes.dataLim.width, axes.dataLim.height)
-    first = next((one for one in scene.pins if one.moving), None)
-    for number, pin in enumerate(scene.pins):
-        path = "path of a pin" if pin is first else "_"
+    for pin in scene.pins:
+        path = "path of a pin" if pin.moving else "_"
         axes.plot(*np.array(pin.points).T, color="0.5", linewidth=0.8, linestyle=":", label=path)
         places = {t: np.array(pin.position(t)) for t in sorted(drawn)}
-        _draw_places(axes, places, "_pin" if number else "pin", apart)
+        _draw_places(axes, places, apart)
 
 
-def _draw_places(axes: Any, places: dict[float, Array], label: str, apart: float) -> None:
+def _draw_places(axes: Any, places: dict[float, Array], apart: float) -> None:
     """Mark the places of a pin by load parameter, and name those that lie apart."""
     mark = {"linestyle": "none", "marker": "*", "markersize": 9, "color": "0.2", "zorder": 5}
-    axes.plot(*np.array(list(places.values())).reshape(-1, 2).T, label=label, **mark)
+    axes.plot(*np.array(list(places.values())).reshape(-1, 2).T, label="pin", **mark)
     last = None
     for t, place in places.items():
         if last is None or np.hypot(*(place - last)) > apart:
@@ -216,12 +214,13 @@ def _style(response: Response, scene: Scene, beam_styles: Iterator[dict[str, Any
         return EXACT
     if model.continuum:
         return SOLID
-    points = len(response.axis_line(scene.beams[0].name, 0)[1])
-    return CONTINUOUS if FINE * _elements(response, scene, 0) > points else next(beam_styles)
+    first = scene.beams[0]
+    points = len(response.axis_line(first.name, 0)[1])
+    return CONTINUOUS if FINE * _elements(response, first, 0) > points else next(beam_styles)
 
 
-def _elements(response: Response, scene: Scene, k: int) -> int:
-    return len(response.grid(k).cells["line"]) // len(scene.beams)
+def _elements(response: Response, beam: BeamSpec, k: int) -> int:
+    return len(response.grid(beam.name, k).cells["line"])
 
 
 def _zoom_on_tip(whole: Any, detail: Any, scene: Scene, exact: Response) -> None:

@@ -29,10 +29,10 @@ BODY = "#888888"
 
 
 class Film(NamedTuple):
-    """Panels side by side at a row of load parameters, and the scale that they share."""
+    """Panels side by side at a row of load parameters, and the scale of each, which all share but for a difference."""
 
-    frames: list[list[Panel]]
-    scale: Scale
+    frames: Sequence[Sequence[Panel]]
+    scales: Sequence[Scale]
 
 
 def film(series: Sequence[Series], factor: float = 1.0) -> Film:
@@ -46,13 +46,13 @@ def film(series: Sequence[Series], factor: float = 1.0) -> Film:
     units = series[0].units
     stress = units.get("axial_stress", units.get("axial_stress_left"))
     label = f"axial stress [{stress}]" if stress else "axial stress"
-    return Film(frames, Scale.of(list(chain.from_iterable(frames)), label, units.get("contact_force", "")))
+    scale = Scale.of(list(chain.from_iterable(frames)), label, units.get("contact_force", ""))
+    return Film(frames, [scale] * len(series))
 
 
 def _panel(series: Series, t: float, factor: float) -> Panel:
-    return panel(
-        series.blocks(series.load_parameter.tolist().index(t)), f"{series.title}, t = {t:.3f}", factor
-    )
+    k = series.load_parameter.tolist().index(t)
+    return panel(series.blocks(k), f"{series.title}, t = {t:.3f}", factor)
 
 
 def write_stress(panels: Sequence[Panel], wide: float, scene: Scene, t: float, path: Path) -> None:
@@ -60,8 +60,8 @@ def write_stress(panels: Sequence[Panel], wide: float, scene: Scene, t: float, p
     (*bodies, apart), unit = panels, unit_names(scene.units)["stress"]
     scale, top = Scale.of(bodies, f"von Mises stress [{unit}]"), float(np.abs(apart.stress).max())
     own = scale._replace(stress=(-top, top), label=f"{apart.title} [{unit}]")
-    drawn = _Drawing(figure(), [panels], scale)
-    drawn.fill(panels, [scale] * len(bodies) + [own])
+    drawn = _Drawing(figure(), Film([panels], [scale] * len(bodies) + [own]))
+    drawn.fill(panels)
     enlarged = f", heights enlarged {wide:g} times" if wide > 1.0 else ""
     drawn.figure.suptitle(f"{scene.name} at load parameter {t:.4g}{enlarged}", fontsize="small")
     save(drawn.figure, path)
@@ -72,16 +72,16 @@ def write_film(shown: Film, folder: Path, count: Count = unwatched) -> list[Path
     from PIL import Image
 
     last, motion = files = [folder / "view.png", folder / "view.gif"]
-    drawn, images = _Drawing(figure(dpi=SHARP), shown.frames, shown.scale), []
+    drawn, images = _Drawing(figure(dpi=SHARP), shown), []
     for number, panels in enumerate(shown.frames, 1):
-        drawn.fill(panels, [shown.scale] * len(panels))
+        drawn.fill(panels)
         drawn.figure.canvas.draw()
         images.append(Image.fromarray(np.asarray(drawn.figure.canvas.buffer_rgba())[..., :3]))
         count(number, len(shown.frames))
-    with replacing(last) as temporary:
-        images[-1].save(temporary)
     first, *rest = images
     pace = [PACE] * len(rest) + [REST]
+    with replacing(last) as temporary:
+        images[-1].save(temporary)
     with replacing(motion) as temporary:
         first.save(temporary, save_all=True, append_images=rest, duration=pace, loop=0, optimize=True)
     return files
@@ -95,12 +95,12 @@ def show(shown: Film) -> None:
     if plt.get_backend().lower() == "agg":
         raise OutputError("no window could be opened; --out DIR writes pictures instead")
     last = len(shown.frames) - 1
-    drawn = _Drawing(plt.figure(layout="constrained"), shown.frames, shown.scale)
+    drawn = _Drawing(plt.figure(layout="constrained"), shown)
     place = drawn.figure.add_axes((0.2, 0.01, 0.6, 0.03))
     slider = Slider(place, "load step", 0, last, valinit=last, valstep=1)
 
     def move(k: float) -> None:
-        drawn.fill(shown.frames[int(k)], [shown.scale] * len(shown.frames[0]))
+        drawn.fill(shown.frames[int(k)])
         drawn.figure.canvas.draw_idle()
 
     slider.on_changed(move)
@@ -111,35 +111,36 @@ def show(shown: Film) -> None:
 class _Drawing:
     """A figure of panels, beside each other, or above each other where they are wide, which is filled again and again."""
 
-    def __init__(self, made: Any, frames: Sequence[Sequence[Panel]], scale: Scale) -> None:
+    def __init__(self, made: Any, shown: Film) -> None:
         from matplotlib.lines import Line2D
 
-        count, states = len(frames[0]), {state for panels in frames for one in panels for state in one.states}
-        wide, tall = (max(half, 0.15 * scale.half) for half in scale.extent)
+        count, scale = len(shown.scales), shown.scales[0]
+        states = {state for one in chain.from_iterable(shown.frames) for state in one.states}
+        wide, tall = half = np.maximum(scale.extent, 0.15 * scale.half)
         columns = 1 if wide > 1.5 * tall else count
-        rows = count // columns
         named = {state: (".", COLOURS[state]) for state in COLOURS if state in states}
         named |= {scale.arrow: (">", palette.BLACK)} if scale.arrow else {}
         marks = {words: Line2D([], [], ls="none", marker=m, color=c) for words, (m, c) in named.items()}
         if marks:
             legend_below(made, marks, 4)
         height = min(TALL, WIDTH / columns * tall / wide) + 0.35
-        self.figure, self.view = made, (np.array(scale.centre), np.array([wide, tall]))
+        self.figure, self.scales, self.labels = made, shown.scales, set[str]()
+        self.view = np.transpose([scale.centre - 1.04 * half, scale.centre + 1.04 * half])
+        rows = count // columns
         made.set_size_inches(WIDTH, rows * height + 1.4)
         self.panels = made.subplots(rows, columns, squeeze=False).ravel()
-        self.bars: dict[str, Any] = {}
 
-    def fill(self, panels: Sequence[Panel], scales: Sequence[Scale]) -> None:
+    def fill(self, panels: Sequence[Panel]) -> None:
         """Draw panels in place of what was there, and the colours of each scale once."""
-        for axes, one, scale in zip(self.panels, panels, scales, strict=True):
+        for axes, one, scale in zip(self.panels, panels, self.scales, strict=True):
             axes.clear()
             bodies = _draw(axes, one, scale)
-            low, high = (self.view[0] + way * self.view[1] for way in (-1.04, 1.04))
-            axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
-            if scale.label not in self.bars:
-                own = [own for own, other in zip(self.panels, scales, strict=True) if other is scale]
+            axes.set(xlim=self.view[0], ylim=self.view[1], aspect="equal")
+            if scale.label not in self.labels:
+                self.labels.add(scale.label)
+                own = [own for own, other in zip(self.panels, self.scales, strict=True) if other is scale]
                 place: dict[str, Any] = {"location": "bottom", "fraction": 0.05, "pad": 0.02}
-                self.bars[scale.label] = bar = self.figure.colorbar(bodies, ax=own, **place)
+                bar = self.figure.colorbar(bodies, ax=own, **place)
                 bar.set_label(scale.label, fontsize="small")
                 bar.ax.tick_params(labelsize="small")
                 bar.ax.locator_params(nbins=3)

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from comparisons.answer import Array
+from comparisons.answer.page import counted
 from comparisons.answer.table import unit_names
 from comparisons.models import MODELS, find
 from comparisons.models.model import ModelError
 from comparisons.models.outside.programs import offered
-from comparisons.report import palette
+from comparisons.report import palette, symbols
 from comparisons.report.plot import WIDTH, arrow, figure, legend_below, save
-from comparisons.report.symbols import LEFT, Axis, arc, at_arcs, axis, chain, draw_symbols, legend_symbol
 from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene
 from comparisons.scene.conditions import LoadSpec
 
@@ -38,10 +38,8 @@ CORNER = np.array([1.0, 1.0])
 
 def stated(scene: Scene, others: Sequence[str] = ()) -> Iterator[str]:
     """Yield a line on what the scene has, and one for every model: whether it can state it, or why not."""
-    counts = ((len(scene.beams), "beam"), (len(scene.pins), "pin"), (len(scene.contacts), "contact pair"))
-    parts = (f"{count} {what}{'' if count == 1 else 's'}" for count, what in counts)
     stages = f" in {1 + len(scene.stages)} stages" if scene.stages else ""
-    yield f"{scene.name}: {', '.join(parts)}, {len(scene.times)} load parameters{stages}, in {scene.units}"
+    yield f"{scene.name}: {counted(scene)}, {len(scene.times)} load parameters{stages}, in {scene.units}"
     for name in dict.fromkeys((*MODELS, *offered(), *others)):
         try:
             model = find(name)
@@ -56,12 +54,12 @@ class Sketch:
     """A drawing of a scene that grows, about axes by beam, deformed or not."""
 
     def __init__(
-        self, axes: Any, scene: Scene, lines: Mapping[str, Axis], title: str, letters: str = "medium"
+        self, axes: Any, scene: Scene, lines: Mapping[str, symbols.Axis], title: str, letters: str = "medium"
     ) -> None:
         self.axes, self.scene, self.lines, self.letters = axes, scene, lines, letters
         self.size, self.units = float(np.ptp(_reach(scene, lines), axis=0).max()), unit_names(scene.units)
         self.legend: dict[str, Any] = {}
-        self.labels: list[tuple[Any, float]] = []  # -1 is beside one that moves down in favour of others
+        self.labels: list[Any] = []
         axes.set_aspect("equal", adjustable="datalim")
         axes.set(xlabel=f"x [{self.units['length']}]", ylabel=f"y [{self.units['length']}]")
         axes.set_title(title, fontsize="large" if letters == "medium" else "medium")
@@ -84,12 +82,11 @@ class Sketch:
 
     def at(self, beam: str, parts: ArrayLike) -> Array:
         """Return the points (n, 2) of an axis at parts of the undeformed length."""
-        return at_arcs(self.scene.beam(beam).length * np.asarray(parts), *self.lines[beam][:2])
+        return symbols.at_arcs(self.scene.beam(beam).length * np.asarray(parts), *self.lines[beam][:2])
 
     def symbols(self) -> None:
         """Draw supports, springs and hinges at the ends of the axes."""
-        lines = {name: points for name, (_, points, _) in self.lines.items()}
-        self.legend |= draw_symbols(self.axes, self.scene, lines, SYMBOL * self.size)
+        self.legend |= symbols.draw_symbols(self.axes, self.scene, self.lines, SYMBOL * self.size)
 
     def disc(self, at: Array, radius: float | None, **style: Any) -> None:
         """Draw a round pin with its true radius, nothing for a point."""
@@ -114,24 +111,25 @@ class Sketch:
         self, loads: Sequence[tuple[LoadSpec, Sequence[float]]], gravity: Sequence[float], after: str = ""
     ) -> None:
         """Draw loads (force or force per length, and moment) and weights as arrows of one length."""
-        force = self.units["force"]
         for load, (*vector, moment) in loads:
             along, one = load.force_per_length is not None, load.end == "end" if load.at is None else load.at
             at = np.linspace(*load.span, ROW) if along else [one]
-            tips, unit = self.at(load.beam, at), f"{force}/{self.units['length']}" if along else force
+            tips, unit = self.at(load.beam, at), self.units["stiffness" if along else "force"]
             self._force(tips, vector, f"{hypot(*vector):.6g} {unit}{after}", load)
             if moment:
                 self.turn(tips[0], moment, f"{abs(moment):.6g} {self.units['moment']}{after}", LOAD)
-                self.legend.setdefault("moment", legend_symbol(chain(arc(1.0)), LOAD))
+                self.legend.setdefault("moment", symbols.legend_symbol(symbols.chain(symbols.arc(1.0)), LOAD))
         for beam in (beam for beam in self.scene.beams if beam.density):
-            words = f"weight {hypot(*gravity) * beam.mass:.4g} {force}{after}"
+            words = f"weight {hypot(*gravity) * beam.mass:.4g} {self.units['force']}{after}"
             self._force(self.at(beam.name, [WEIGHT]), gravity, words)
 
     def _force(self, tips: Array, vector: Sequence[float], words: str, load: LoadSpec | None = None) -> None:
         """Draw the arrow of a force, or those of a force per length, shorter and thinner."""
         if not any(vector):
             return
-        many, pulls = len(tips) > 1, load is not None and _pulls(self.scene.beam(load.beam), load.end, vector)
+        # an arrow along the beam would lie on it where the force points away from the end
+        pulls = bool(load and load.end and np.dot(_unit(vector), symbols.inward(self.scene, load)) < -PULL)
+        many = len(tips) > 1
         width, named = (0.9, "force per length, arrows") if many else (2.0, "force, arrow")
         drawn = ARROW / (1 + many) * self.size * _unit(vector)
         self.arrows(tips + pulls * drawn, drawn, words, LOAD, width, at_tip=pulls)
@@ -139,7 +137,7 @@ class Sketch:
 
     def turn(self, at: Array, turn: float, words: str, colour: str) -> None:
         """Draw a moment or a rotation as an arc with its value."""
-        points = at + TURN * self.size * arc(turn)
+        points = at + TURN * self.size * symbols.arc(turn)
         self.axes.plot(*points.T, color=colour, linewidth=2.0)
         arrow(self.axes, points[-2], points[-1], colour, 2.0)
         self.label(words, at + TURN * self.size * _unit(CORNER), CORNER, colour)
@@ -150,24 +148,24 @@ class Sketch:
         style: dict[str, Any] = {"color": colour, "fontsize": self.letters, "zorder": 6}
         style |= {"ha": ("center", "left", "right")[x], "va": ("center", "bottom", "top")[y]}
         label = self.axes.annotate(words, at, 7 * _unit(direction), textcoords="offset points", **style)
-        self.labels.append((label, -1.0 if y < 0.0 else 1.0))
+        self.labels.append(label)
 
     def separate(self, rounds: int) -> None:
-        """Move labels up or down that lie on others, and let the axes reach around all labels."""
+        """Move labels that lie on others up, those below their places down, and let the axes reach around all labels."""
         for _ in range(rounds):
             self.axes.figure.draw_without_rendering()
             free: list[Any] = []
-            for label, way in self.labels:
+            for label in self.labels:
+                step = -4.0 if label.get_va() == "top" else 4.0
                 while any(label.get_window_extent().overlaps(other) for other in free):
-                    x, y = label.xyann
-                    label.xyann = (x, y + 4.0 * way)
+                    label.xyann = label.xyann[0], label.xyann[1] + step
                 free.append(label.get_window_extent())
                 corners = free[-1].transformed(self.axes.transData.inverted()).corners()
                 self.axes.update_datalim(corners)
             self.axes.autoscale_view()
 
 
-def _reach(scene: Scene, lines: Mapping[str, Axis]) -> Array:
+def _reach(scene: Scene, lines: Mapping[str, symbols.Axis]) -> Array:
     """Return points (n, 2) within which beams and pins are."""
     points = [line for _, line, _ in lines.values()]
     for pin in scene.pins:
@@ -177,7 +175,7 @@ def _reach(scene: Scene, lines: Mapping[str, Axis]) -> Array:
 
 def draw(scene: Scene, path: Path) -> None:
     """Draw the scene to `path` with a legend of everything in it; beams and pins have their true size."""
-    lines = {beam.name: axis(beam) for beam in scene.beams}
+    lines = {beam.name: symbols.axis(beam) for beam in scene.beams}
     extent = np.ptp(_reach(scene, lines), axis=0)
     width, height = np.maximum(extent, 0.2 * extent.max()) + 0.2 * extent.max()
     fig = figure(figsize=(WIDTH, float(np.clip(0.85 * WIDTH * height / width, 1.6, 6.5)) + 1.4))
@@ -188,9 +186,9 @@ def draw(scene: Scene, path: Path) -> None:
         _side(sketch, contact)
     sketch.symbols()
     _motions(sketch)
-    for stage, loads in enumerate((scene.loads, *(one.load for one in scene.stages))):
-        amounts = [(load, load.amount) for load in loads]
-        sketch.loads(amounts, scene.stage_gravities[stage], _after(stage + 1))
+    for stage, gravity in enumerate(scene.stage_gravities):
+        loads = [(load, load.amount) for number, load in scene.numbered_loads() if number == stage]
+        sketch.loads(loads, gravity, _after(stage + 1))
     for pin in scene.pins:
         _pin(sketch, pin)
     legend_below(fig, sketch.legend)
@@ -203,7 +201,7 @@ def _beam(sketch: Sketch, beam: BeamSpec) -> None:
     outline, line = sketch.body(beam, BEAM, 1.0)
     middle, tangent = np.array(beam.place(0.5)), np.array(beam.tangent(0.5))
     arrow(sketch.axes, middle, middle + 0.03 * sketch.size * tangent, BEAM)
-    left = np.array(beam.tangent(NAME)) @ LEFT
+    left = np.array(beam.tangent(NAME)) @ symbols.LEFT
     sketch.label(beam.name, beam.place(NAME) + beam.height_at(NAME) / 2 * left, left, BEAM)
     flat = beam.height is None
     words = "beam: axis, without a height" if flat else "beam, height to scale"
@@ -218,7 +216,9 @@ def _side(sketch: Sketch, contact: ContactSpec) -> None:
     normal, radius = left if contact.side == "left" else -left, sketch.scene.radius(contact)
     offsets = np.array([sketch.scene.offset(contact, part) for part in PARTS]) - radius
     feet = line + offsets[:, None] * normal
-    drawn = np.concatenate([chain(feet), np.stack([feet, feet + STROKE * sketch.size * normal], axis=1)])
+    drawn = np.concatenate(
+        [symbols.chain(feet), np.stack([feet, feet + STROKE * sketch.size * normal], axis=1)]
+    )
     sketch.axes.add_collection(LineCollection(list(drawn), colors=SIDE, linewidths=0.9, zorder=4))
     sketch.axes.update_datalim(drawn.reshape(-1, 2))
     friction = f", friction {contact.friction:g}" if contact.friction else ""
@@ -241,14 +241,6 @@ def _motions(sketch: Sketch) -> None:
                 sketch.named("motion of a support", HELD, marker=">")
 
 
-def _pulls(beam: BeamSpec, end: str | None, force: Sequence[float]) -> bool:
-    """Whether a force on a beam's end points away from the beam, along which its arrow would lie."""
-    if end is None:
-        return False
-    outward = np.array(beam.tangent(1.0)) if end == "end" else -np.array(beam.tangent(0.0))
-    return float(_unit(force) @ outward) > PULL
-
-
 def _pin(sketch: Sketch, pin: PinSpec) -> None:
     """Draw a pin with its true radius, and its path."""
     points = np.array(pin.points)
@@ -256,7 +248,7 @@ def _pin(sketch: Sketch, pin: PinSpec) -> None:
     for stage in map(np.array, pin.stage_points):
         if len(stage) > 1:
             arrow(sketch.axes, stage[-1] - 0.01 * sketch.size * _unit(stage[-1] - stage[-2]), stage[-1], PIN)
-    (mark,) = sketch.axes.plot(*points[0], "*", color=PIN, markersize=9, linestyle="none", zorder=5)
+    (mark,) = sketch.axes.plot(*points[0], "*", color=PIN, markersize=9, zorder=5)
     sketch.label(pin.name, points[0] + (pin.radius or 0.0) * behind, behind, PIN)
     sketch.disc(points[0], pin.radius, facecolor=PIN, edgecolor=PIN, alpha=0.35)
     if pin.radius:

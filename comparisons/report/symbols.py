@@ -1,11 +1,11 @@
 """Symbols of mechanics as line segments of unit size: supports by what they hold, springs, hinges, moments as arcs.
 
-Every symbol has its node at the origin. A picture turns, enlarges and moves its segments, so that the same symbols are drawn by
-matplotlib and by pyvista, and stand in a legend.
+Every symbol has its node at the origin. A picture turns, enlarges and moves its segments, so that the same symbols are in a picture
+and in its legend.
 """
 
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,7 +16,7 @@ from comparisons.answer import Array
 from comparisons.answer.table import unit_names
 from comparisons.report import palette
 from comparisons.scene import BeamSpec, HingeSpec, Scene, SpringSpec, SupportSpec
-from comparisons.scene.conditions import COMPONENTS
+from comparisons.scene.conditions import COMPONENTS, LoadSpec
 
 Segments = NDArray[np.float64]
 """Line segments, shape (n, 2, 2)."""
@@ -84,7 +84,7 @@ def _turned(segments: Segments, held: tuple[str, ...], away: Array) -> Segments:
     if held != COMPONENTS:
         up = np.array([1.0, 0.0] if held in (("x",), ("x", "rotation")) else [0.0, 1.0])
         up = -up if away @ up < -0.5 else up
-    return np.asarray(segments @ np.array([[up[1], -up[0]], [up[0], up[1]]]))
+    return np.asarray(segments @ np.array([up @ LEFT.T, up]))
 
 
 def fixings(kinds: Iterable[int], away: Array) -> Iterator[tuple[tuple[str, ...], Segments]]:
@@ -97,11 +97,9 @@ def fixings(kinds: Iterable[int], away: Array) -> Iterator[tuple[tuple[str, ...]
         yield (name,), _SPIRAL if name == "rotation" else _turned(_SPRING, (name,), away)
 
 
-def fixed(scene: Scene) -> NDArray[np.int64]:
-    """Return the kinds of `fixings`, shape (n, 3), of everything in `scene.holding`."""
-    kinds = [1] * len(scene.all_supports) + [2] * len(scene.springs)
-    held = [[name in one.held for name in COMPONENTS] for one in scene.holding]
-    return np.asarray(np.array(kinds)[:, None] * np.array(held).reshape(-1, 3))
+def kinds(one: SupportSpec | SpringSpec) -> list[int]:
+    """Return the kinds of `fixings` of the components of an end."""
+    return [(1 + isinstance(one, SpringSpec)) * (name in one.held) for name in COMPONENTS]
 
 
 class Symbol(NamedTuple):
@@ -111,22 +109,18 @@ class Symbol(NamedTuple):
     words: str
     segments: Segments
 
-    def at(self, line: Array) -> Array:
-        """Return the place of the node on its beam's deformed axis, a line of shape (m, 2)."""
-        return np.asarray(line[0 if self.item.end == "start" else -1])
-
 
 def end_symbols(scene: Scene) -> list[Symbol]:
     """Return the symbols of the supports, springs and hinges of a scene."""
     units = unit_names(scene.units)
     stiff = f"{units['moment']}/rad"
     found = []
-    for one, kinds in zip(scene.holding, fixed(scene), strict=True):
-        for names, segments in fixings(kinds, inward(scene, one)):
+    for one in scene.holding:
+        for names, segments in fixings(kinds(one), inward(scene, one)):
             words = SUPPORTS[names][0]
             if isinstance(one, SpringSpec):
                 stiffness = dict(zip(COMPONENTS, (*one.stiffness, one.rotation), strict=True))[names[0]]
-                unit = stiff if names == ("rotation",) else f"{units['force']}/{units['length']}"
+                unit = stiff if names == ("rotation",) else units["stiffness"]
                 words = f"spring of {stiffness:.6g} {unit} in {names[0]}"
             found.append(Symbol(one, words, segments))
     for hinge in scene.hinges:
@@ -135,13 +129,15 @@ def end_symbols(scene: Scene) -> list[Symbol]:
     return found
 
 
-def draw_symbols(axes: Any, scene: Scene, lines: Mapping[str, Array], size: float) -> dict[str, Any]:
-    """Draw the symbols at the ends of axes (m, 2) by beam; return their entries in a legend."""
+def draw_symbols(
+    axes: Any, scene: Scene, lines: Mapping[str, Sequence[Array]], size: float
+) -> dict[str, Any]:
+    """Draw the symbols at the ends of axes, arc lengths and points (m, 2), by beam; return their entries in a legend."""
     from matplotlib.collections import LineCollection
 
     symbols = end_symbols(scene)
     for one in symbols:
-        drawn = one.at(lines[one.item.beam]) + size * one.segments
+        drawn = lines[one.item.beam][1][0 if one.item.end == "start" else -1] + size * one.segments
         axes.add_collection(LineCollection(list(drawn), colors=palette.BLACK, linewidths=1.0, zorder=4))
         axes.update_datalim(drawn.reshape(-1, 2))
     return {one.words: legend_symbol(one.segments) for one in symbols}
@@ -160,7 +156,7 @@ def legend_symbol(segments: Segments, colour: str = palette.BLACK) -> Any:
     return Line2D([], [], color=colour, linestyle="none", **style)
 
 
-def inward(scene: Scene, support: SupportSpec | SpringSpec) -> Array:
-    """Return the unit vector from a support or a spring into its beam."""
-    beam = scene.beam(support.beam)
-    return np.array(beam.tangent(0.0)) if support.end == "start" else -np.array(beam.tangent(1.0))
+def inward(scene: Scene, one: SupportSpec | SpringSpec | LoadSpec) -> Array:
+    """Return the unit vector from an end, where there is a support, a spring or a load, into its beam."""
+    beam = scene.beam(one.beam)
+    return np.array(beam.tangent(0.0)) if one.end == "start" else -np.array(beam.tangent(1.0))

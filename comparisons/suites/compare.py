@@ -141,7 +141,7 @@ def row_of(scene: Scene, run: Run, response: Response, reference: Response) -> R
     case = Case(scene=scene, model=run.model, options=run.options)
     judged, cause = verdict(response), _cause(case, reference)
     row = Row(case=case, response=response, verdict=judged, name=run.label, cause=cause)
-    return row if response is reference else row.against(reference, names(mesh=False))
+    return row if response is reference else row.against(reference, names("mesh"))
 
 
 def _cause(case: Case, reference: Response) -> str:
@@ -178,7 +178,7 @@ def _found(
     """Return what the rows of runs show, with the files and the page."""
     rows, responses = list(of.values()), {run.label: row.response for run, row in of.items()}
     shown, exported = [line(row) for row in rows], {run: of[run].response for run in EXPORTED if run in of}
-    bodies = of[MIXED].against(of[SOLID].response, names(mesh=False)) if len(exported) == 2 else None
+    bodies = of[MIXED].against(of[SOLID].response, names("mesh")) if len(exported) == 2 else None
     drawn = {run.label: of[run].response for run in DRAWN if run in of}
     pictures: dict[str, Callable[..., None]] = {"shapes.png": partial(plot_shapes, scene, drawn)}
     reached = [len(one.load_parameter) for one in exported.values()]
@@ -222,7 +222,7 @@ def _found(
         (stopped if needed else remarks).append(f"{row.label}: {row.response.stop(scene)}")
     return Found(
         title=f"{scene.name}: beams, solid and exact answers",
-        brief=findings(scene, rows, ROD.label, bodies, budget, left_out),
+        brief=findings(rows, ROD.label, bodies, budget, left_out),
         files=files,
         sections=sections,
         pictures=pictures,

@@ -130,7 +130,8 @@ def test_a_round_pin_on_the_face_of_a_taper_is_certified():
     assert answer.completed, answer.message
     assert answer.certificate is not None
     assert answer.certificate.certified
-    spec, data = CURVED.beams[0], answer.grid(-1)
+    spec = CURVED.beams[0]
+    data = answer.grid(spec.name, -1)
     arc = data.point_data["arc"] / spec.length
     assert np.abs(data.points - np.array([spec.place(part) for part in arc])).max() <= 1e-15
     width, height = 0.02 - 0.01 * arc, 0.012 - 0.008 * arc

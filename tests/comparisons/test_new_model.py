@@ -28,11 +28,11 @@ from comparisons.suites.extremes.axes import matrix
 from comparisons.suites.compare import RUNS
 from comparisons.suites.trade.cases import sweep_cases
 from comparisons.scene import load_scene
-from comparisons.report.palette import colour
+from comparisons.report.palette import style
 print(sum(run.model == "chain" for run in RUNS))
 print(sum(case.model == "chain" for case in sweep_cases(load_scene("ks-cantilever"), quick=True)))
 print(any(cell.row == "chain" for cell in matrix(quick=True)))
-print(colour("chain"))
+print(style("chain").colour)
 """
 
 

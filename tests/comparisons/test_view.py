@@ -107,8 +107,8 @@ def test_files_give_the_same_motion(responses, tmp_path):
         write_series(tmp_path / response.model, response, SCENE)
     stored = film(read_series(tmp_path))
     direct = film([solved_series(response, SCENE, response.model) for response in responses])
-    assert stored.scale.label == "axial stress [N/m^2]"
-    assert stored.scale.arrow == direct.scale.arrow
+    assert stored.scales[0].label == "axial stress [N/m^2]"
+    assert stored.scales[0].arrow == direct.scales[0].arrow
     for one, other in zip(chain(*direct.frames), chain(*stored.frames), strict=True):
         assert (one.title, one.states.tolist()) == (other.title, other.states.tolist())
         for name, close in (("quads", 1e-9), ("stress", 1e-6), ("forces", 1e-12), ("supports", 1e-12)):

@@ -96,8 +96,8 @@ def solve_to(
     ModelError
         If the quantity is unknown, or the model cannot state it or the scene.
     """
-    if quantity not in names(path=False):
-        raise ModelError(f"quantity = {quantity}: must be one of {', '.join(names(path=False))}")
+    if quantity not in names("path"):
+        raise ModelError(f"quantity = {quantity}: must be one of {', '.join(names('path'))}")
     began, said = perf_counter(), list[str]()
     if model is None:
         model, reason = _required(scene, quantity, element)
@@ -165,22 +165,22 @@ def beam_theory(response: Response, scene: Scene) -> Theory | None:
     # plane sections neglect second orders of the face strain h kappa/2 and of h/l, l the length or the radius
     # of an undeformed arc; on KS with h/L = .02, .01, .005 `crossval run thin-beams` prints 8.6e-4, 2.1e-4,
     # 5.7e-5, and this 1.0e-3, 2.5e-4, 6.3e-5
-    known = [(number, beam) for number, beam in enumerate(scene.beams) if beam.height is not None]
-    steps = len(response.load_parameter)
-    if not known or not steps:
+    known = [beam for beam in scene.beams if beam.height is not None]
+    count = len(response.load_parameter)
+    if not known or not count:
         return None
-    grids = [response.grid(k).point_data for k in np.unique(np.linspace(0, steps - 1, LOOKED_AT).astype(int))]
-    slender = max(beam.rectangle_height * max(1.0 / beam.length, abs(beam.curvature)) for _, beam in known)
-    strain = max(_face_strain(beam, data, data["beam"] == number) for number, beam in known for data in grids)
+    steps = np.unique(np.linspace(0, count - 1, LOOKED_AT).astype(int)).tolist()
+    slender = max(beam.rectangle_height * max(1.0 / beam.length, abs(beam.curvature)) for beam in known)
+    strain = max(_face_strain(beam, response.grid(beam.name, k).point_data) for beam in known for k in steps)
     error = max(strain**2 / 2, slender**2)
     return Theory(error=error, slenderness=slender, strain=strain, kink=trials.shear_kink(response, scene))
 
 
-def _face_strain(beam: BeamSpec, data: Mapping[str, Array], own: Array) -> float:
-    """Return the largest bending strain at a face, ``h M/(2 EI)``, of the own points of a grid."""
-    moment = data["M"][own]
+def _face_strain(beam: BeamSpec, data: Mapping[str, Array]) -> float:
+    """Return the largest bending strain at a face, ``h M/(2 EI)``, by the fields of its grid."""
+    moment = data["M"]
     if not beam.tapers:
         return beam.rectangle_height / 2 * float(np.abs(moment).max()) / beam.EI
-    parts = np.clip(data["arc"][own] / beam.length, 0.0, 1.0).tolist()
+    parts = np.clip(data["arc"] / beam.length, 0.0, 1.0).tolist()
     compliance = [beam.height_at(part) / (2.0 * beam.stiffness(part)[2]) for part in parts]
     return float(np.abs(moment * compliance).max())

@@ -145,14 +145,10 @@ def _halved(mesh: Scene) -> Scene:
 
 def _graded(mesh: Scene, response: Response, wanted: int, order: int) -> Scene:
     """Return a mesh of about `wanted` elements whose density follows the response."""
-    grids = [response.grid(k).point_data for k in range(len(response.load_parameter))]
     arcs, densities = list[Array](), list[Array]()
-    for number, beam in enumerate(mesh.beams):
-        parts = [data["beam"] == number for data in grids]
-        arc, kappa, N, V = (
-            np.array([data[name][own] for data, own in zip(grids, parts, strict=True)])
-            for name in ("arc", *"MNV")
-        )
+    for beam in mesh.beams:
+        grids = [response.grid(beam.name, k).point_data for k in range(len(response.load_parameter))]
+        arc, kappa, N, V = (np.array([data[name] for data in grids]) for name in ("arc", *"MNV"))
         arcs.append(np.append(arc[0, ::2], beam.length))
         kappa, N, V = (one.reshape(len(grids), -1, 2).mean(axis=2) / beam.EI for one in (kappa, N, V))
         densities.append(((kappa**4 + N**2 + V**2) ** (order / (4 * (order + 1)))).max(axis=0))

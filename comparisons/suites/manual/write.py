@@ -92,7 +92,7 @@ def draw_case(case: Sequence[Judgement], *paths: Path) -> None:
     # the first model on top, each line wider than those above it, so that those that agree are all seen
     for number, one in reversed(list(enumerate(case))):
         trial = one.trial
-        colour = palette.colour(find(trial.model.split()[0]).family(trial.scene, trial.options))
+        colour = palette.style(find(trial.model.split()[0]).family(trial.scene, trial.options)).colour
         size = {"marker": "o", "markersize": 10.0} if picture.guide else {"linewidth": 1.5 + 2.0 * number}
         own = {"color": colour, **size}
         lines += (drawn._replace(style=drawn.style or own) for drawn in one.lines)

@@ -71,7 +71,7 @@ def shapes(scene: Scene, runs: Mapping[str, Response], steps: Sequence[int]) -> 
             axis = run.axis_line(beam.name, k)[1]
             nodes = {"marker": ".", "markevery": max(1, (len(axis) - 1) // beam.divisions)}
             wide = 3.6 / (1 + above)
-            style = {"color": palette.colour(label), "linewidth": wide, "markersize": 3 * wide}
+            style = {"color": palette.style(label).colour, "linewidth": wide, "markersize": 3 * wide}
             yield Line(label, axis.T, style | (nodes if find(run.model).meshed else {"alpha": 0.25}))
     x, y = zip(*(scene.pins[0].position(scene.times[k]) for k in steps), strict=True)
     yield Line("pin", (x, y), {"color": palette.PIN, "marker": "^", "linestyle": "none"})

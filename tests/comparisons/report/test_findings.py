@@ -49,8 +49,8 @@ def budget(**parts: float) -> Budget:
 
 
 def told(rows: list[Row], made: Budget | None = None, left_out: dict[str, str] | None = None) -> str:
-    bodies = rows[2].against(rows[3].response, names(mesh=False))
-    found = findings(KS, rows, ROD.label, bodies, made, left_out or {})
+    bodies = rows[2].against(rows[3].response, names("mesh"))
+    found = findings(rows, ROD.label, bodies, made, left_out or {})
     return " ".join([found.sentence, *found.points])
 
 
@@ -122,7 +122,7 @@ def test_every_sentence_is_said_of_its_data_and_of_no_other(rows):
     ):
         assert [word for word in words if word in found] == []
     assert "(CUTBACK_FLOOR: no step). Not stated" in told(changed(rows, 1, **STOPPED | {"load_parameter": np.zeros(0)}), None, LEFT_OUT)  # fmt: skip
-    answer = findings(KS, rows, ROD.label, rows[2], None, {}).answer
+    answer = findings(rows, ROD.label, rows[2], None, {}).answer
     moment = next(row for row in answer if row[""] == "support moment [N m]")
     beam, solid, percent = float(moment["beam"]), float(moment["solid Q2"]), float(moment["apart"][:-2])
     assert beam < solid < 0.0  # the smaller one is less, whatever its sign

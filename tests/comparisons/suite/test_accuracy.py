@@ -156,7 +156,7 @@ def test_the_theory_of_curved_and_tapered_beams_has_their_radius_and_local_heigh
     radius = tight.beams[0].length / 2.0
     assert solve_to(tight, 1e-3).beam_theory.slenderness == pytest.approx(0.01 / radius, rel=1e-12)
     answer, beam = solve_to(taper, 1e-3), taper.beams[0]
-    data = answer.response.grid(len(answer.response.load_parameter) - 1).point_data
+    data = answer.response.grid(beam.name, len(answer.response.load_parameter) - 1).point_data
     local = [
         abs(m) * beam.height_at(s) / (2 * beam.stiffness(s)[2])
         for s, m in zip(np.clip(data["arc"], 0, 1).tolist(), data["M"].tolist(), strict=True)
