@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from fem_reference.result.result import Result
 from fem_reference.solid.assembly import deformation_gradient
-from fem_reference.solid.mesh import gradient_at, section_points
+from fem_reference.solid.mesh import Interpolation, interpolation, section_points
 from fem_reference.statement.arrays import Floats, Ints, determinant
 from fem_reference.system.body import Body
 from fem_reference.system.state import State, stored_energy
@@ -130,16 +131,14 @@ def section_forces(result: Result, strip: str, k: int, stations: Floats | None =
         stress of biquadratic elements is most accurate.
     """
     body = result.model.body(strip)
-    X = gauss_stations(body) if stations is None else np.asarray(stations, dtype=float)
     own = body.strip
-    points, shares, heights = section_points(own, body.mesh.places, body.mesh.edges, X)
+    X, points, shares, heights, at = _sections(body, None if stations is None else tuple(stations))
     # of the points ``(m, q)`` in integrals over the sections
     weights = (own.width_at(X) * heights)[:, None] * shares
-    u = result.states[k].u[body.part]
-    F = gradient_at(body.mesh, u, points)
+    u, F = at.of(result.states[k].u[body.part])
     W, P = body.law.energy(F), body.law.stress(F)
     N, _ = own.directions(points[:, 0])
-    places = (own.placed(points) + body.mesh.basis.probes(points.T) @ u) @ (1, 1j)
+    places = (own.placed(points) + u) @ (1, 1j)
     # positions and vectors in the complex plane
     p, along = ((np.array([1, 1j]) @ np.einsum("ijp,jp->ip", A, N)).reshape(weights.shape) for A in (P, F))
     x, y = (
@@ -158,6 +157,16 @@ def section_forces(result: Result, strip: str, k: int, stations: Floats | None =
         force=np.stack([f.real, f.imag], axis=1),
         material_force=(weights * ((p.conj() * along).real - W.reshape(weights.shape))).sum(axis=1),
     )
+
+
+@lru_cache(maxsize=1)  # one body, which is asked for one load parameter after another
+def _sections(
+    body: Body, stations: tuple[float, ...] | None
+) -> tuple[Floats, Floats, Floats, Floats, Interpolation]:
+    """Stations, Gauss points, shares and heights of sections, see `section_points`, and the interpolation at the points."""
+    X = gauss_stations(body) if stations is None else np.array(stations)
+    points, shares, heights = section_points(body.strip, body.mesh.places, body.mesh.edges, X)
+    return X, points, shares, heights, interpolation(body.mesh, points)
 
 
 def gauss_stations(body: Body) -> Floats:
@@ -190,6 +199,6 @@ def face_strains(result: Result, strip: str, k: int) -> tuple[Floats, dict[str, 
         tangent, normal = body.strip.directions(X)
         T = ((1 - body.strip.curvature * y) * along * tangent + across * normal).T
         T = T / np.hypot(*T.T)[:, None]
-        F = gradient_at(body.mesh, result.states[k].u[body.part], np.stack([X, y], axis=1))
+        _, F = interpolation(body.mesh, np.stack([X, y], axis=1)).of(result.states[k].u[body.part])
         strains[name] = np.hypot(*np.einsum("ijp,pj->ip", F, T)) - 1
     return X, strains

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -152,14 +152,28 @@ _MASS = np.array([[4.0, 2.0, -1.0], [2.0, 16.0, 2.0], [-1.0, 2.0, 4.0]]) / 30
 """Integrals of the products of two quadratic shape functions of a unit edge."""
 
 
-def gradient_at(mesh: Discretisation, u: Floats, points: Floats) -> Floats:
-    """``F = I + du/dX`` ``(2, 2, p)`` at the places ``points`` ``(p, 2)``; ValueError where one is not in the strip."""
-    containing = mesh.basis.mesh.element_finder()(*points.T)
+class Interpolation(NamedTuple):
+    """The elements at p places."""
+
+    nodes: Ints  # nodes of the element ``(p, k)``
+    shapes: Floats  # its shape functions ``(p, k)``
+    slopes: Floats  # their derivatives in the positions ``(2, p, k)`` [1/m]
+
+    def of(self, u: Floats) -> tuple[Floats, Floats]:
+        """Displacements ``(p, 2)`` and deformation gradients ``F = I + du/dX`` ``(2, 2, p)`` of nodal displacements ``u``."""
+        own = u[self.nodes]
+        gradient = np.einsum("pai,jpa->ijp", own, self.slopes)
+        return np.einsum("pai,pa->pi", own, self.shapes), np.eye(2)[:, :, None] + gradient
+
+
+def interpolation(mesh: Discretisation, points: Floats) -> Interpolation:
+    """Interpolation at the places ``points`` ``(p, 2)``; ValueError where one is not in the strip."""
+    element, containing = mesh.basis.elem, mesh.basis.mesh.element_finder()(*points.T)
     local = mesh.basis.mapping.invF(points.T[:, :, None], tind=containing)[:, :, 0]
-    slopes, cells = _shape_slopes(mesh.basis.elem, local), mesh.cells[containing]
-    J = np.einsum("paj,Kpa->jKp", mesh.nodes[cells], slopes)
-    H = np.einsum("pai,Kpa,jKp->ijp", u[cells], slopes, cofactor(J) / determinant(J))
-    return np.eye(2)[:, :, None] + H
+    slopes, nodes = _shape_slopes(element, local), mesh.cells[containing]
+    shapes = np.stack([element.lbasis(local, number)[0] for number in range(nodes.shape[1])], axis=-1)
+    J = np.einsum("paj,Kpa->jKp", mesh.nodes[nodes], slopes)
+    return Interpolation(nodes, shapes, np.einsum("Kpa,jKp->jpa", slopes, cofactor(J) / determinant(J)))
 
 
 def section_points(
