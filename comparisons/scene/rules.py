@@ -214,7 +214,7 @@ whole_number = whole()
 mesh = ValueRule("[elements along, elements across]", several(whole_number.schema, 2, 2))
 
 
-def mesh_text(value: object) -> object:
+def mesh_text(value: object) -> Any:
     """Accept the numbers of elements along and across as ``50x2``."""
     if not re.fullmatch(r"[0-9]{1,9}x[0-9]{1,9}", str(value)):
         raise FieldError("", value, "must be NXxNY, as 50x2")
