@@ -69,6 +69,7 @@ DRAWN = tuple(
     sorted((run for run in RUNS if run not in (MIXED, ELASTICA)), key=lambda run: -style(run.label).width)
 )
 """The runs whose deflected axes are drawn over each other: the widest line first, the exact rod on top."""
+OTHER_BRANCH = "OTHER_BRANCH"
 BRANCH = ("force", "moment", "tip")
 NAMES = ("report.html", "summary.json", "table.csv", "shapes.png", "stress.svg", "budget.svg", "budget.json")
 """The files beside those of ParaView."""
@@ -238,7 +239,7 @@ def _apart(rows: Sequence[Row]) -> Iterator[str]:
     for row in rows:
         judged = row.label != ELASTICA.label and row.response.completed
         if judged and any(row.error("path", name) > APART for name in BRANCH):
-            yield f"{row.label}: OTHER_BRANCH: ends in another equilibrium than the {ROD.label}"
+            yield f"{row.label}: {OTHER_BRANCH}: ends in another equilibrium than the {ROD.label}"
 
 
 def _other_events(rows: Sequence[Row]) -> list[str]:
