@@ -34,7 +34,12 @@ def _integrals(u: Real | float) -> tuple[Real, Real, Real]:
 
 
 def _polar_angle(tc: float) -> float:
-    """Polar angle of the pin seen from the clamp."""
+    """Polar angle of the pin seen from the clamp, `tc - arctan k`; its derivative vanishes at `FOLD`.
+
+    >>> _, I1, I2 = _integrals(FOLD)
+    >>> bool(abs(1.0 + 2.0 * (I2 / I1) ** 2 + I2 / I1 / np.tan(FOLD)) < 1e-12)
+    True
+    """
     _, I1, I2 = _integrals(tc)
     return tc - float(np.arctan2(I2, I1))
 

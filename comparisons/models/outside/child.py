@@ -31,6 +31,7 @@ ADOPT = 36
 """PR_SET_CHILD_SUBREAPER: a process becomes the parent of its descendants whose own parents have ended."""
 ROUNDS = 5000
 """How often the processes that a program leaves behind are looked for and ended."""
+KILL = 9
 
 
 class ProgramStatus(Enum):
@@ -157,7 +158,7 @@ def _end(process: Any, others: Container[int]) -> None:
             family = _family(others)
             for pid in family:
                 with suppress(ProcessLookupError, PermissionError):
-                    kill(pid, signal.SIGKILL)
+                    kill(pid, KILL)
                 if pid != process.pid:
                     with suppress(ChildProcessError):
                         waitpid(pid, os.WNOHANG)
@@ -170,7 +171,7 @@ def _end(process: Any, others: Container[int]) -> None:
         subprocess.run(["taskkill", "/T", "/F", "/PID", str(process.pid)], capture_output=True, check=False)  # noqa: S603, S607
     else:
         with suppress(ProcessLookupError, PermissionError):
-            getattr(os, "killpg", kill)(process.pid, signal.SIGKILL)
+            getattr(os, "killpg", kill)(process.pid, KILL)
     process.wait()
 
 

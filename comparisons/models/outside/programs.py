@@ -182,7 +182,7 @@ def outside(name: str, taken: Collection[str]) -> Model:
     """Return a model that is none of this package.
 
     The name is that of a program file ``NAME.toml``, of one read before, of an adapter, or of an entry point. An `InputError` is
-    raised if the file cannot be read or states a name in `taken`, a `ModelError` if an entry point yields no model or there is no such model.
+    raised if the file cannot be read or states a name in `taken`, a `ModelError` if there is no such model.
     """
     model = read_program(Path(name)) if name.endswith(SUFFIX) else known(name)
     if model is None and name in offered():
