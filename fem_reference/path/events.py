@@ -70,7 +70,8 @@ def first_event(last: Accepted, candidate: Accepted) -> tuple[Accepted, int | No
     found = list[tuple[Accepted, int]]()
     for pair, margin, direction in _expected(last, candidate):
         at = located(last, candidate.t, margin)
-        if at is not None and direction is not None:
+        # a slip does not hide a bifurcation before it
+        if at is not None and direction is not None and at.index <= max(last.index, 0):
             touches = list(at.state.touches)
             touches[pair] = replace(touches[pair], direction=direction)
             at = accept(at.state.touching(touches))

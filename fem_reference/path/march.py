@@ -160,7 +160,8 @@ class _March:
             if -1 not in (candidate.index, last.index) and candidate.index != last.index:
                 return self.bifurcate(candidate, h)
         elif self.settings.branch != "primary" and candidate.index > max(last.index, 0):
-            return self.shorten(h, Status.LIMIT_POINT)
+            # a slip may come to rest in a stick that is unstable
+            return self.end(Status.BIFURCATION, candidate) if event else self.shorten(h, Status.LIMIT_POINT)
         if event is None:
             longer = h * max(0.5, min(2.0, 0.8 * allowed / max(distance, 1e-9)))
             self.trial = longer if h >= self.trial * (1 - 1e-6) else max(longer, self.trial)

@@ -102,8 +102,8 @@ class Result:
         Total number of accepted states, including sub-steps.
     index
         Number of negative eigenvalues of the energy's Hessian over the displacements that supports and closed contacts
-        admit, ``(s,)``. Zero is stable. -1 if a closed contact without force makes the index ambiguous, or if a closed
-        contact has friction: then stability is not judged.
+        admit, ``(s,)``. Zero is stable. -1 if a closed contact without force makes the index ambiguous, or if a contact
+        slips: then stability is not judged. A contact that sticks is held at its material point.
     critical
         Critical points on the path, including sub-steps.
     unknowns

@@ -8,7 +8,7 @@ pin alone changes ``U^T u`` by p. With the constraint residual r,
 
     K du - U A (U^T du + p) - U N dlam = -R,     M^T (U^T du + p) + C dlam = -r.
 
-Without friction M is N, A is symmetric and C diagonal; see `fem_reference.contact.friction` for the others. Only the stiffness K of
+Without slip C is diagonal; without friction M is N and A symmetric, too, see `fem_reference.contact.friction`. Only the stiffness K of
 the bodies is factorised, which is symmetric; the equations in the columns are solved by elimination with row exchanges. A strip without a clamp has an anchor in K, four springs on its start's
 section, whose stiffness in A cancels it.
 """
@@ -151,11 +151,11 @@ class Tangent:
     def index(self, force_tolerance: float = 0.0) -> int:
         """Number of negative eigenvalues of the energy's Hessian over the admissible displacements.
 
-        A closed contact is a spring ``eps`` along its gap, or a constraint where the penetration is removed. A contact
-        with a force of at most ``force_tolerance`` [N] may be open or closed. If the index depends on this choice, the
-        result is -1. With friction the Hessian is not symmetric and the result is -1: stability is not judged.
+        A closed contact is a spring ``eps`` along its gap, or a constraint where the penetration is removed. One that sticks
+        is held at its material point besides: ``t . W du = 0``. A contact with a force of at most ``force_tolerance`` [N] may
+        be open or closed. If the index depends on this choice, the result is -1. A slip has no energy: the result is -1.
         """
-        if self.state.rubbing:
+        if any(touch.direction for touch in self.state.rubbing):
             return -1
         loaded = np.array([touch.force > force_tolerance for touch in self.state.closed], dtype=bool)
         index = self._count(loaded | True)
@@ -166,10 +166,11 @@ class Tangent:
 
         A larger matrix has the unknowns du, ``y = U^T du`` with its multiplier z, and the forces of the constraints. The Hessian is one
         of its Schur complements. By Haynsworth's theorem the other one, S, counts the Hessian's negative eigenvalues, and one for every
-        multiplier.
+        multiplier. Where contacts stick, S is symmetric but for their penetration, which moves their force off the node.
         """
         A, N = self.border.A.copy(), self.border.N
-        kept = np.append(chosen, np.ones(N.shape[1] - chosen.size, dtype=bool))
+        rubs = np.array([touch.rubs for touch in self.state.closed], dtype=bool)
+        kept = np.concatenate([chosen, chosen[rubs], np.ones(len(self.state.model.ties), dtype=bool)])
         A[np.flatnonzero(np.repeat(~chosen, COLUMNS))] = 0.0
         N, C = N[:, kept], self.border.rates[np.ix_(kept, kept)]
         (k, c), one = N.shape, np.eye(len(A))
