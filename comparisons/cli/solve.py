@@ -9,7 +9,7 @@ from numpy import isnan
 from comparisons.answer import Response
 from comparisons.answer.material import frictions_found
 from comparisons.answer.page import text
-from comparisons.cli.command import DONE, STOPPED, report, told
+from comparisons.cli.command import DONE, STOPPED, report
 from comparisons.cli.options import STANDARD, chosen, outputs, refuse, write
 from comparisons.cli.screen import exit_status, watching
 from comparisons.files import writable_folder
@@ -49,8 +49,8 @@ def run(given: Namespace) -> int:
     status = exit_status(scene, [("", response)])
     if answer is None or answer.reached or status != DONE:
         return status
-    reason = f"ACCURACY_NOT_REACHED: estimated error {answer.estimate:.2g}, asked {answer.asked:g}"
-    return told(reason, STOPPED)
+    report(f"crossval: ACCURACY_NOT_REACHED: estimated error {answer.estimate:.2g}, asked {answer.asked:g}")
+    return STOPPED
 
 
 def _write(kind: str, path: Path, response: Response, scene: Scene, more: dict[str, Any]) -> None:

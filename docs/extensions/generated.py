@@ -67,8 +67,7 @@ def scene_file() -> str:
     kinds = {f"[[{name}]]": kind for name, kind in LISTS.items()}
     moves = {f"{name} of [[stage]]": kind for name, kind in lists_of(StageSpec).items()}
     kinds |= {header: kind for header, kind in moves.items() if kind not in LISTS.values()}
-    sections = [_record("[scene]", Scene, lists_of(Scene))]
-    return "\n\n".join([*sections, *(_record(header, kind) for header, kind in kinds.items())])
+    return "\n\n".join([_record("[scene]", Scene, lists_of(Scene)), *map(_record, kinds, kinds.values())])
 
 
 def _record(header: str, kind: type[Record], leave: Collection[str] = ()) -> str:
