@@ -99,8 +99,3 @@ def settled(touch: Touch) -> Touch:
         return touch
     added = slip(touch) if touch.closed and touch.direction else 0.0
     return replace(touch, begin=touch.at, slipped=touch.slipped + added)
-
-
-def force_before_slip(direction: int, force: float, last: float) -> float:
-    """Force at which a slip began since a state with the force ``last``; behind a turn in between, the present one [N]."""
-    return force if direction * last < 0 else last

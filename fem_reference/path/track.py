@@ -8,7 +8,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval
 
-from fem_reference.contact.friction import force_before_slip, settled, slip_gradient
+from fem_reference.contact.friction import settled, slip_gradient
 from fem_reference.statement.arrays import Floats
 from fem_reference.statement.status import Status
 from fem_reference.system.newton import augmented, equilibrium
@@ -90,7 +90,8 @@ def _dissipated(last: Accepted, found: Accepted, pair: int) -> float:
         return max(0.0, float((before.tangential + 0.5 * fall * duration) * slip * duration))
     if not (after.closed and after.direction):
         return 0.0
-    begin = force_before_slip(after.direction, after.tangential, before.tangential)
+    # a slip begins at the last force; behind a turn in between, at the present one
+    begin = after.tangential if after.direction * before.tangential < 0 else before.tangential
     change = np.array([after.slipped - before.slipped, after.tangential - begin])
     final = span * found.slip_rates(pair, forward=False)
     final = final if np.all(np.isfinite(final)) else change
