@@ -64,8 +64,7 @@ def test_beams_and_solid_show_the_same_bodies_and_stress(responses):
 
 
 def test_supports_hinges_and_the_heights_of_curved_beams_are_drawn():
-    scene = SPECIMEN
-    whole = blocks(solve(scene, "tsm"), scene, 0)
+    whole = blocks(solve(SPECIMEN, "tsm"), SPECIMEN, 0)
     unhinged = {name: grid for name, grid in whole.items() if name != HINGES}
     assert len(panel(whole, "t").supports) > len(panel(unhinged, "t").supports) > 0
     quads = panel({"hook": whole["hook"]}, "t").quads.reshape(-1, 4, 4, 2)  # four layers, four corners
@@ -74,7 +73,7 @@ def test_supports_hinges_and_the_heights_of_curved_beams_are_drawn():
     assert heights[[0, -1]] == pytest.approx([6.0, 2.0])
     assert np.all(np.diff(heights) < 1e-9)
     # the first section is clamped: across the tangent of the arc
-    assert across[0] @ scene.beam("hook").tangent(0.0) == pytest.approx(0.0, abs=0.02)
+    assert across[0] @ SPECIMEN.beam("hook").tangent(0.0) == pytest.approx(0.0, abs=0.02)
 
 
 def coloured(path: Path) -> float:

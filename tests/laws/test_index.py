@@ -71,9 +71,8 @@ def test_the_index_is_the_number_of_critical_loads_passed(element: str, ends: st
     found = solve(asked, "tsm", Options(element=element, branch="primary"))
     assert found.status == "UNSTABLE", found.message
     loads = [critical(ends, mode, stiffness) / load for mode in range(1, modes + 1)]
-    assert [point.load_parameter for point in found.critical] == pytest.approx(
-        loads, rel=WITHIN.get(element, MESHED)
-    )
+    located = [point.load_parameter for point in found.critical]
+    assert located == pytest.approx(loads, rel=WITHIN.get(element, MESHED))
     assert {point.kind for point in found.critical} == {"bifurcation"}
     assert found.index is not None
     passed = [sum(t > one for one in loads) for t in asked.times]

@@ -61,9 +61,8 @@ def test_elastica_on_the_ks_path(friction):
     path = checked(ks_pins([0.0, 0.3, 1.0]), friction, **ELASTICA)
     assert states(path) == KS_STATES
     found = [path.magnitude[2], path.arc_position[2], path.clamp_moment[2]]
-    assert [event.load_parameter for event in path.events[1:]] + found == pytest.approx(
-        rubbed(friction), abs=5e-11
-    )
+    located = [event.load_parameter for event in path.events[1:]]
+    assert located + found == pytest.approx(rubbed(friction), abs=5e-11)
     H = path.clamp_moment[1:] ** 2 / 2.0 + path.force[1:, 0]
     normal = np.sqrt(path.magnitude[1:] ** 2 - H**2)
     assert H / normal == pytest.approx([-friction, friction], abs=1e-10)

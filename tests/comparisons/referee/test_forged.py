@@ -317,8 +317,7 @@ def test_a_stored_response_is_judged_as_the_response_itself(tmp_path, judged):
     whole = certify(solve(scene, "tsm", Options(element="mixed", elements=10)), scene)
     assert read["verdict"] == "CERTIFIED"
     for name in ("force", "arc_position", "reaction", "tip"):
-        assert read["judged"][-1]["distance"][name] == pytest.approx(
-            whole.judged[-1].distance.sizes[name], rel=1e-6
-        )
+        size = whole.judged[-1].distance.sizes[name]
+        assert read["judged"][-1]["distance"][name] == pytest.approx(size, rel=1e-6)
     arc = read["judged"][-1]["exact"]["contacts"][PAIR]["arc_position"]
     assert arc == pytest.approx(whole.judged[-1].exact.contacts[PAIR].arc_position, rel=1e-13)

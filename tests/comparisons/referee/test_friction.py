@@ -63,9 +63,8 @@ def test_exact_elements_are_certified_to_round_off_all_along(name, friction, lea
     found = all_along(scene, leave(response))
     assert found.certified, found.line()
     assert "stability not judged (friction)" in found.line()
-    assert (f"friction of {PAIR} taken from the direction of its force" in found.line()) == (
-        leave is forces_alone
-    )
+    said = f"friction of {PAIR} taken from the direction of its force" in found.line()
+    assert said == (leave is forces_alone)
     assert found.judged[-1].index == -1
     assert max(item.distance.largest[1] for item in found.judged if item.distance) < 1e-11
     assert max(item.residual for item in found.judged) < 1e-12

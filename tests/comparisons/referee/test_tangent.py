@@ -67,9 +67,8 @@ def test_the_hessian_is_the_derivative_of_the_gradient(name):
     mesh = mesh_of(layout, [np.linspace(0.0, 1.0, 2) for _ in layout.parts])
     random = np.random.default_rng(1)
     z = 0.1 * random.normal(size=mesh.unknowns)
-    for touch, arc in zip(
-        layout.touches.values(), (0.45, 0.6) if name == "every key" else (0.72,), strict=True
-    ):
+    arcs = (0.45, 0.6) if name == "every key" else (0.72,)
+    for touch, arc in zip(layout.touches.values(), arcs, strict=True):
         z[touch.arc] = arc / layout.length
     bubbles = 0.02 * random.normal(size=(len(mesh.part), DEGREE - 1))
 

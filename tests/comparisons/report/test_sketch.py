@@ -64,13 +64,12 @@ def test_a_round_pin_has_its_true_radius_and_loads_have_values_with_units(drawn)
 
 
 def test_curved_and_tapered_beams_springs_hinges_stages_and_loads_along_a_beam(drawn):
-    scene = SPECIMEN
-    fig = drawn(scene)
+    fig = drawn(SPECIMEN)
     assert {
         "hinge", "spring of 3.5 N/mm in x", "spring of 100 N mm/rad in rotation", "force per length, arrows not to scale",
         "pin of radius 12 mm, to scale", "force, arrow not to scale",
     } < set(legend(fig))  # fmt: skip
-    hook = scene.beam("hook")
+    hook = SPECIMEN.beam("hook")
     weight = 9810 * 7.8e-9 * 10 * 4 * hook.length
     assert {"0.01 N/mm", "2 N", "1 N (stage 2)", f"weight {weight:.4g} N"} <= words(fig)
     assert discs(fig)[-1].center == pytest.approx((220.0, -6.0)), "the path goes on through the stages"

@@ -142,8 +142,8 @@ def test_light_dark_and_paper(browser, compared, tmp_path):
 
 def test_true_pins_supports_and_arcs_are_drawn(browser, tmp_path):
     """A round pin is a circle of its radius in the scale of the drawing; an undeformed arc has many points; supports move."""
-    scene = SPECIMEN
-    scene = replace(scene, beams=(replace(scene.beams[0], clamped=()), *scene.beams[1:]), supports=(MOVED,))
+    first, *others = SPECIMEN.beams
+    scene = replace(SPECIMEN, beams=(replace(first, clamped=()), *others), supports=(MOVED,))
     section = motion_section("Drawn", scene, {"TSM mixed": solve(scene, "tsm")}, [], focus="TSM mixed")
     script = """
     const box = (selector) => { const b = all(selector).at(-1).getBBox(); return [b.x, b.y, b.width, b.height]; };
