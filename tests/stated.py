@@ -60,8 +60,6 @@ class Stated:
     def rewritten(self, value: float, *, up: bool) -> str:
         """Return a value with as many digits and in the same form, rounded up if it is a bound.
 
-        Examples
-        --------
         >>> Stated("1.3e-2", False, 0, 6).rewritten(4.44e-5, up=False)
         '4.4e-5'
         >>> Stated(".4", True, 0, 2).rewritten(0.00511, up=True)

@@ -59,8 +59,6 @@ def run_python(source: str, folder: Path) -> str:
 def shows(printed: str, stated: str) -> bool:
     """Whether output is as stated, ``...`` standing for anything.
 
-    Examples
-    --------
     >>> shows("force 2.2882 N", "force 2.28... N"), shows("force 2.2882 N", "force 2.29")
     (True, False)
     """

@@ -22,12 +22,7 @@ def fits(element: str, name: str) -> bool:
 
 
 CASES = [(element, name) for element in ELEMENTS for name in SCENES if fits(element, name)]
-QUICK = [
-    ("mixed", "special-58"),
-    ("timoshenko", "held-8"),
-    ("mixed", "held-8"),
-    ("mixed", "friction-10"),
-]
+QUICK = [("mixed", "special-58"), ("timoshenko", "held-8"), ("mixed", "held-8"), ("mixed", "friction-10")]
 
 
 def error(element: str, name: str, elements: int) -> float:

@@ -17,13 +17,7 @@ from comparisons.referee import (
     certify,
     equilibrium,
 )
-from comparisons.scene import (
-    BeamSpec,
-    LoadSpec,
-    Scene,
-    SpringSpec,
-    load_scene,
-)
+from comparisons.scene import BeamSpec, LoadSpec, Scene, SpringSpec, load_scene
 from tests.comparisons.referee.forged import scene_of, seen, stated
 from tests.oracles.shooting import Rod, free, pinned
 
