@@ -118,7 +118,7 @@ class BeamSpec(Record):
 
     def tangent(self, fraction: float) -> Point:
         """Return the unit tangent of the undeformed axis at a fraction of the length."""
-        return _turned(self.direction, self.turn * (fraction - 0.5))
+        return _turned(self.direction, self.turn * (fraction - 0.5)) if self.turn else self.direction
 
     def place(self, fraction: float) -> Point:
         """Return the point of the undeformed axis at a fraction of the length."""

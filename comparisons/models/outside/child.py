@@ -133,7 +133,10 @@ def _adopt(adopts: int) -> None:
 
 
 def _family(others: Container[int] = ()) -> dict[int, int]:
-    """Return the resident memory [byte] of programs, children in another session but `others`, and of their own; {} without ``/proc``."""
+    """Return the resident memory [byte], by process, of programs and what they start; none without ``/proc``.
+
+    A program is a child in another session than this process, and none of `others`.
+    """
     every = {}
     for file in Path("/proc").glob("[0-9]*/stat") if LINUX else ():
         with suppress(OSError):
