@@ -100,12 +100,14 @@ def gauss_nodes(beams: Sequence[tuple[Beam, ElementType]]) -> int | None:
     return next(iter(counts), None)
 
 
-def _sections(beam: Beam, begin: float, end: float) -> Array:
+def _sections(beam: Beam, begin: float, end: float) -> list[tuple[float, float]]:
     """``EA/sqrt(EI/EA)`` and ``sqrt(EI/EA)`` at two parts of the length of a beam."""
-    both = beam.section, beam.end_section or beam.section
-    gyrations = ((section.EI / section.EA) ** 0.5 for section in both)
-    first, last = (np.array([one.EA / high, high]) for one, high in zip(both, gyrations, strict=True))
-    return np.array([first + part * (last - first) for part in (begin, end)])
+    rows = []
+    for section in (beam.section, beam.end_section or beam.section):
+        gyration = (section.EI / section.EA) ** 0.5
+        rows.append((section.EA / gyration, gyration))
+    (wide, high), (wide_end, high_end) = rows
+    return [(wide + part * (wide_end - wide), high + part * (high_end - high)) for part in (begin, end)]
 
 
 def _integral(load: LineLoad, beam: Beam, begin: float, end: float) -> Array:

@@ -45,8 +45,8 @@ def index(assembler: Assembler, system: Linearisation) -> int:
     The number is a lower bound for an exact element with more than a few hundred modes. It is -1, not
     defined, for a singular tangent, for numbers that are not finite, and for more than 1,500 unknowns whose
     pivots leave the diagonal. It is -1 also for closed contacts of the paper's elements: their force is
-    normal to the chord and has no energy, and in slip, whose force has none either. A contact that sticks
-    admits no slip: a round pin rolls, and on a face the shear strain moves the arc position.
+    normal to the chord and has no energy, and in slip, whose force has none either. A contact that sticks is
+    held at its arc position; on a face the shear strain moves it.
     """
     model, aside = assembler.model, assembler.model.border_dofs
     there = [(aside + pair.slot, touch) for _, pair, touch in closed(model, system.state)]
@@ -56,6 +56,7 @@ def index(assembler: Assembler, system: Linearisation) -> int:
         if isinstance(forces, RodBalance) and (hidden := modes_at_least(forces)):
             return hidden
     symmetric = _symmetric(assembler, system, 2 * len(there))
+    symmetric = _freed(symmetric, [slot + 2 for slot, touch in there if touch.grip is not None])
     counted = negatives(symmetric)
     if counted is None:
         return UNDEFINED
@@ -64,17 +65,23 @@ def index(assembler: Assembler, system: Linearisation) -> int:
     if not still:
         return held
     # a mechanism without its idle contacts has an eigenvalue of zero, whose sign is round-off
-    idle = [slot + n for slot in still for n in range(3)]
-    right, corner = symmetric.right.copy(), symmetric.corner.copy()
-    right[:, idle] = corner[idle] = corner[:, idle] = 0.0
-    corner[idle, idle] = 1.0
-    free = symmetric._replace(right=right, corner=corner)
+    free = _freed(symmetric, [slot + n for slot in still for n in range(3)])
     moves = (model.kind[: model.banded] < 3) / symmetric.units**2
     stiffest = float((free.band[0, moves > 0] / moves[moves > 0]).max(initial=0.0))
     shift = _LOOSE * _EPS * stiffest * moves
     shifted = (np.concatenate([free.band[:1] + way * shift, free.band[1:]]) for way in (-1, 1))
     agreed = all(negatives(free._replace(band=band)) == counted - 2 * len(still) for band in shifted)
     return held if agreed else UNDEFINED
+
+
+def _freed(symmetric: Symmetric, idle: list[int]) -> Symmetric:
+    """Symmetric tangent without some unknowns of the contacts, as the force and arc position of contacts that carry no force."""
+    if not idle:
+        return symmetric
+    right, corner = symmetric.right.copy(), symmetric.corner.copy()
+    right[:, idle] = corner[idle] = corner[:, idle] = 0.0
+    corner[idle, idle] = 1.0
+    return symmetric._replace(right=right, corner=corner)
 
 
 def mode(assembler: Assembler, system: Linearisation) -> tuple[Array, float, float] | None:

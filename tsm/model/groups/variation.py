@@ -245,11 +245,8 @@ def _bordered(
     fixed, inputs, directions = _stations(counts, short, pieces.hessian.shape[1])
     matrix = fixed + (inputs.transpose(0, 2, 1) @ (pieces.hessian[own] @ inputs)).sum(axis=0)
     for n, k in enumerate(pairs):
-        cut = balance.entry.cuts[k]
         if model.pairs[k].reach:
-            matrix += _surface(cut, directions[n])
-        if cut.touch.grip is not None:
-            matrix = _held(matrix, cut, directions[n], OWN + CUT * n + 2)
+            matrix += _surface(balance.entry.cuts[k], directions[n])
     slots = [slot for k in pairs for slot in range(model.pairs[k].slot, model.pairs[k].slot + CUT)]
     return Bordered(element, _without_force(matrix), slots, sum(short))
 
@@ -295,14 +292,3 @@ def _surface(cut: Cut, selectors: Array) -> Array:
     both = reach * np.outer(along @ selectors[3:5], turn)
     both += pair.steep * np.outer(normal @ selectors[3:5], selectors[5])
     return reach * (normal @ force) * np.outer(turn, turn) - both - both.T
-
-
-def _held(matrix: Array, cut: Cut, selectors: Array, arc: int) -> Array:
-    """Matrix in which the arc position of a contact that sticks follows from the other unknowns, so that nothing slips."""
-    slip = cut.derivatives[4] @ selectors
-    slip[arc] += cut.pair.place(cut.here).stretch
-    follows = np.eye(len(matrix))
-    follows[arc] -= slip / slip[arc]
-    matrix = follows.T @ matrix @ follows
-    matrix[arc, arc] = 1.0
-    return matrix
