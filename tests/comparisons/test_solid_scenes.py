@@ -21,16 +21,19 @@ SCENES = tomllib.loads(Path(__file__).with_name("solid_scenes.toml").read_text(e
 SECTION = "youngs_modulus = 1.0\npoissons_ratio = 0.3\nmesh = [50, 2]\nmaterial = 'biot-linear'\n"
 
 
-def scene(name: str, height: float, aside: float = 1e-3, rise: float = 1e-4) -> Scene:
-    """A scene of the table at a height; how far a strut goes aside and a pin rises."""
+def scene(name: str, height: float, **chosen: object) -> Scene:
+    """A scene of the table at a height, with some of the values below chosen."""
     width = 12.0 / height**3
     given = {
         "width": width, "height": height, "narrow": width / 2, "low": 0.6 * height, "section": SECTION,
-        "size": f"width = {width}\nheight = {height}\n{SECTION}", "aside": aside, "rise": rise,
+        "size": f"width = {width}\nheight = {height}\n{SECTION}", "aside": 1e-3, "rise": 1e-4,
+        # a round pin below the axis or a face, on which its strut rolls
+        "press": 2e-4, "heavy": 5 / width / height, "surface": "axis",
+        "below": 0.05 + height / 2 * (chosen.get("surface") == "face"),
         # a round pin above the top of an arc that turns by -1.4, and one above a sloping face
         "above": 0.5 * (1 - np.cos(0.7)) / np.sin(0.7) + height / 2 + 0.0501, "slope": 0.05 + 0.341 * height,
     }  # fmt: skip
-    return read_scene(Template(SCENES[name]).substitute(given), name)
+    return read_scene(Template(SCENES[name]).substitute(given | chosen), name)
 
 
 def values(response: Response) -> tuple[np.ndarray, np.ndarray]:
@@ -76,13 +79,24 @@ def test_forces_and_reactions_are_the_rods(case):
 
 def test_a_straight_strut_that_sticks_bifurcates_where_the_rods_does():
     """A slip elsewhere does not hide it in one step; one from before on, until it comes to rest where the pin turns."""
-    cases = [replace(scene("stuck strut", 0.02, 0.0, rise), load_parameters=1) for rise in (5e-4, 0.02)]
+    cases = [
+        replace(scene("stuck strut", 0.02, aside=0.0, rise=rise), load_parameters=1) for rise in (5e-4, 0.02)
+    ]
     solids = [solve(case, "solid", Options(mesh=(40, 1))) for case in cases]
     found = [solve(cases[0], "tsm", EXACT), *solids]
     assert [item.status for item in found] == ["BIFURCATION"] * 3
     exact, solid = (point.load_parameter for item in found for point in item.critical)
     assert solid == pytest.approx(exact, rel=1e-3)
     assert solids[1].message.endswith("at load parameter 0.5")
+
+
+@pytest.mark.parametrize("surface", ["axis", "face"])
+def test_a_strut_rolls_on_a_round_pin_and_bifurcates_where_the_rods_does(surface):
+    """Held at its arc position it would bear nearly twice the force, and on its face not bifurcate."""
+    case = scene("rolling strut", 0.02, press=0.0025, surface=surface)
+    answers = solve(case, "tsm", EXACT), solve(case, "solid", Options(mesh=(40, 1)))
+    exact, solid = (point.load_parameter for answer in answers for point in answer.critical)
+    assert solid == pytest.approx(exact, rel=1e-2)
 
 
 @pytest.mark.slow

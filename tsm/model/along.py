@@ -33,21 +33,20 @@ class Along:
         self.loaded = bool(loads)
         laden = {load.beam for load in loads}
         spans = [(beam, *part) for beam in beams for part in pairwise(beam.parts)]
-        self.varies = np.array([beam.varies or beam.name in laden for beam, _, _ in spans])
+        own = [beam for beam, _, _ in spans]
+        self.varies = np.array([beam.varies or beam.name in laden for beam in own])
         self.length = np.array([(b - a) * beam.length for beam, a, b in spans])
-        self.curvature = np.array([beam.curvature for beam, _, _ in spans])
+        self.curvature = np.array([beam.curvature for beam in own])
         self.start = np.array([beam.direction(a) for beam, a, _ in spans])
         self.end = np.array([beam.direction(b) for beam, _, b in spans])
         self.gauge, self.gyration = np.array([_sections(*span) for span in spans]).transpose(2, 1, 0)
+        sections = ((beam.section, ELEMENTS[beam.element].sheared) for beam in own)
         self.ratio = np.array(
-            [
-                beam.section.GA / beam.section.EA if ELEMENTS[beam.element].sheared else np.inf
-                for beam, _, _ in spans
-            ]
+            [section.GA / section.EA if sheared else np.inf for section, sheared in sections]
         )
         degree = max((len(load.force) for load in loads), default=0)
         resultant = np.zeros((stages, 2, degree, len(spans)))
-        names = [beam.name for beam, _, _ in spans]
+        names = [beam.name for beam in own]
         for load in loads:
             first = names.index(load.beam)
             for place in (first + element for element in load.elements(spans[first][0])):
@@ -100,14 +99,12 @@ def gauss_nodes(beams: Sequence[tuple[Beam, ElementType]]) -> int | None:
     return next(iter(counts), None)
 
 
-def _sections(beam: Beam, begin: float, end: float) -> list[tuple[float, float]]:
+def _sections(beam: Beam, begin: float, end: float) -> Array:
     """``EA/sqrt(EI/EA)`` and ``sqrt(EI/EA)`` at two parts of the length of a beam."""
-    rows = []
-    for section in (beam.section, beam.end_section or beam.section):
-        gyration = (section.EI / section.EA) ** 0.5
-        rows.append((section.EA / gyration, gyration))
-    (wide, high), (wide_end, high_end) = rows
-    return [(wide + part * (wide_end - wide), high + part * (high_end - high)) for part in (begin, end)]
+    both = beam.section, beam.end_section or beam.section
+    gyrations = ((section.EI / section.EA) ** 0.5 for section in both)
+    first, last = (np.array([one.EA / high, high]) for one, high in zip(both, gyrations, strict=True))
+    return np.array([first + part * (last - first) for part in (begin, end)])
 
 
 def _integral(load: LineLoad, beam: Beam, begin: float, end: float) -> Array:

@@ -171,11 +171,6 @@ class Numbering(Mesh):
         return np.concatenate([nodal, *contacts])
 
     @property
-    def stick_stiffness(self) -> float:
-        """Force over length, the unit of the rows of stick."""
-        return self.force_scale / self.length
-
-    @property
     def unknowns(self) -> int:
         """Number of unknowns with every contact closed."""
         return self.equations + self.contact_unknowns

@@ -8,6 +8,8 @@ import numpy as np
 
 from tsm.elements.properties import Array
 
+IDLE = 1e-9
+"""Largest force of a closed contact, over ``EI/L^2``, that counts as zero."""
 ROUND_OFF = 4 * float(np.finfo(float).eps)
 SHARP = 1e-3
 """Scale of positions over the length. Positions are solved to a thousandth of the relative residual of forces. A stiff contact needs

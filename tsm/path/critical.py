@@ -20,10 +20,11 @@ from tsm.contact.root import find_root
 from tsm.elements.properties import Array
 from tsm.model.contact import closed
 from tsm.model.model import Model
+from tsm.model.scales import IDLE
 from tsm.model.state import State
 from tsm.statement.status import RefusedError
 from tsm.system.equilibrium import Equilibrium
-from tsm.system.stability import IDLE, mode, softness
+from tsm.system.stability import mode, softness
 from tsm.system.system import Drive
 
 _LOCATED = 1e-13

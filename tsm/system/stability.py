@@ -22,12 +22,11 @@ from tsm.model.groups import ExactGroup
 from tsm.model.groups.layout import OWN
 from tsm.model.groups.rods import RodBalance
 from tsm.model.groups.variation import modes_at_least, variation
+from tsm.model.scales import IDLE
 from tsm.system.inertia import Symmetric, negatives
 from tsm.system.system import Assembler, Linearisation
 
 _EPS = float(np.finfo(float).eps)
-IDLE = 1e-9
-"""Largest force of a closed contact, over ``EI/L^2``, that counts as zero."""
 _LOOSE = 100.0
 """Largest singular value of the tangent of a mechanism, in round-offs of its largest entry."""
 _TURNS = 4
@@ -45,8 +44,8 @@ def index(assembler: Assembler, system: Linearisation) -> int:
     The number is a lower bound for an exact element with more than a few hundred modes. It is -1, not
     defined, for a singular tangent, for numbers that are not finite, and for more than 1,500 unknowns whose
     pivots leave the diagonal. It is -1 also for closed contacts of the paper's elements: their force is
-    normal to the chord and has no energy, and in slip, whose force has none either. A contact that sticks is
-    held at its arc position; on a face the shear strain moves it.
+    normal to the chord and has no energy, and in slip, whose force has none either. A contact that sticks
+    admits no slip: a round pin rolls, and on a face the shear strain moves the arc position.
     """
     model, aside = assembler.model, assembler.model.border_dofs
     there = [(aside + pair.slot, touch) for _, pair, touch in closed(model, system.state)]
@@ -55,17 +54,17 @@ def index(assembler: Assembler, system: Linearisation) -> int:
     for forces in system.groups:
         if isinstance(forces, RodBalance) and (hidden := modes_at_least(forces)):
             return hidden
+    still = [(slot, touch) for slot, touch in there if math.hypot(*touch.force) <= IDLE * model.force_scale]
     symmetric = _symmetric(assembler, system, 2 * len(there))
-    symmetric = _freed(symmetric, [slot + 2 for slot, touch in there if touch.grip is not None])
+    symmetric = _freed(symmetric, [slot + 2 for slot, touch in still if touch.grip is not None])
     counted = negatives(symmetric)
     if counted is None:
         return UNDEFINED
     held = counted - symmetric.multipliers
-    still = [slot for slot, touch in there if math.hypot(*touch.force) <= IDLE * model.force_scale]
     if not still:
         return held
     # a mechanism without its idle contacts has an eigenvalue of zero, whose sign is round-off
-    free = _freed(symmetric, [slot + n for slot in still for n in range(3)])
+    free = _freed(symmetric, [slot + n for slot, _ in still for n in range(3)])
     moves = (model.kind[: model.banded] < 3) / symmetric.units**2
     stiffest = float((free.band[0, moves > 0] / moves[moves > 0]).max(initial=0.0))
     shift = _LOOSE * _EPS * stiffest * moves
@@ -76,8 +75,6 @@ def index(assembler: Assembler, system: Linearisation) -> int:
 
 def _freed(symmetric: Symmetric, idle: list[int]) -> Symmetric:
     """Symmetric tangent without some unknowns of the contacts, as the force and arc position of contacts that carry no force."""
-    if not idle:
-        return symmetric
     right, corner = symmetric.right.copy(), symmetric.corner.copy()
     right[:, idle] = corner[idle] = corner[:, idle] = 0.0
     corner[idle, idle] = 1.0

@@ -151,12 +151,11 @@ class Rods(ElementGroup):
     def _cut(self, state: State, k: int, s: int, segments: Segments, moment: Any) -> Cut:
         """Contact at the end of segment s, with the moment before it."""
         pair, touch = self.model.pairs[k], touch_of(state, k)
-        element, t = int(segments.owner[s]), state.load_parameter
-        section = self.section(element, segments.begin[s + 1, 0], t)
-        at = (
-            touch.angle, *segments.constant[:, s, 0].tolist(), *touch.force, pair.arc_position(touch), moment, t
-        )  # fmt: skip
-        return Cut(pair, touch, section, at, *seen(pair, section, at, at), self.model.stick_stiffness)
+        t, before = state.load_parameter, segments.constant[:, s, 0].tolist()
+        section = self.section(int(segments.owner[s]), segments.begin[s + 1, 0], t)
+        at = (touch.angle, *before, *touch.force, pair.arc_position(touch), moment, t)
+        unit = self.model.force_scale / self.model.length
+        return Cut(pair, touch, section, at, *seen(pair, section, at, at), unit)
 
     def forces(self, state: State, contacts: ContactBlock) -> RodBalance:
         """Residual of the elements and of the contacts that cut them."""

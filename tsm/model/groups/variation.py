@@ -27,6 +27,7 @@ from tsm.model.groups.cut import Cut
 from tsm.model.groups.layout import COLUMNS, CUT, OWN, chain
 from tsm.model.groups.rods import Entry, RodBalance, Rods
 from tsm.model.groups.shape import Station, plain_shape
+from tsm.model.scales import IDLE
 from tsm.model.state import State, profile_of
 
 _LONGEST = 7.0
@@ -54,7 +55,7 @@ class Bordered(NamedTuple):
     slots: list[
         int
     ]  # positions of the first of the latter among the contacts' unknowns; the others are its own
-    moments: int  # how many of these are moments, the last; the others are angles
+    moments: int  # how many of these are moments or forces, the last; the others are angles
 
 
 class Variation(NamedTuple):
@@ -244,11 +245,19 @@ def _bordered(
     short = tuple(pieces.short[own].tolist())
     fixed, inputs, directions = _stations(counts, short, pieces.hessian.shape[1])
     matrix = fixed + (inputs.transpose(0, 2, 1) @ (pieces.hessian[own] @ inputs)).sum(axis=0)
+    # linear forms of what does not slip where contacts stick: constraints, each with a force of its own
+    slips: list[Array] = []
     for n, k in enumerate(pairs):
+        cut = balance.entry.cuts[k]
         if model.pairs[k].reach:
-            matrix += _surface(balance.entry.cuts[k], directions[n])
+            matrix += _surface(cut, directions[n])
+        if cut.touch.grip is not None and math.hypot(*cut.touch.force) > IDLE * model.force_scale:
+            slips.append(cut.derivatives[4] @ directions[n])
+            slips[-1][OWN + CUT * n + 2] += cut.pair.place(cut.here).stretch
+    if slips:
+        matrix = np.block([[matrix, np.transpose(slips)], [np.array(slips), np.zeros((len(slips),) * 2)]])
     slots = [slot for k in pairs for slot in range(model.pairs[k].slot, model.pairs[k].slot + CUT)]
-    return Bordered(element, _without_force(matrix), slots, sum(short))
+    return Bordered(element, _without_force(matrix), slots, sum(short) + len(slips))
 
 
 @lru_cache(maxsize=64)
