@@ -118,12 +118,8 @@ def _end(path: RodPath, local: RodScene, times: Array) -> tuple[str | None, int]
 
 def _end_contact(local: RodScene, found: RodPath) -> float:
     """Load parameter at which the pin meets the tip while the rod is straight, or rolls onto its corner; inf if it does not."""
-    scene, t = local.scene, found.load_parameter
-    offset, radius, length = (
-        scene.offset(scene.contacts[0]),
-        scene.radius(scene.contacts[0]),
-        scene.beams[0].length,
-    )
+    (contact,), (beam,), t = local.scene.contacts, local.scene.beams, found.load_parameter
+    offset, radius, length = local.scene.offset(contact), local.scene.radius(contact), beam.length
     if not offset:
         return math.inf
     path = local.path - [length, 0.0]

@@ -34,10 +34,7 @@ def local(count: int | None) -> Iterator[tuple[Executor, int]]:
         raise WorkersError(
             "workers", f"cannot load {main}: a program from standard input must be a file to start processes"
         )
-    context, before = (
-        get_context("spawn"),
-        {name: os.environ[name] for name in ONE_THREAD if name in os.environ},
-    )
+    context, before = get_context("spawn"), {k: v for k, v in os.environ.items() if k in ONE_THREAD}
     # nothing is sent: the workers see the pipe close when this process closes it or dies
     watched, held = context.Pipe(duplex=False)
     executor = ProcessPoolExecutor(count, mp_context=context, initializer=_end_with, initargs=(watched,))

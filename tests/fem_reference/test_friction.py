@@ -77,6 +77,7 @@ def test_first_touch_within_a_step_is_located():
     assert once.force[-1] == pytest.approx(often.force[-1], rel=1e-9)
     assert once.slip[-1] == pytest.approx(often.slip[-1], abs=1e-5)
     assert once.slip[-1] == pytest.approx(-0.153, abs=0.01)
+    assert once.direction[-1] == often.direction[-1] == -1
 
 
 def test_strip_rolls_on_a_round_pin_that_sticks():
