@@ -198,10 +198,8 @@ def orientation_of(system: System) -> int:
 
 def directions(mesh: Mesh, z: Array) -> Array:
     """Admissible variations as columns; the angles phi follow with the directions of the faces."""
-    turned, free = (
-        [item for item in mesh.layout.touches.values() if item.angle != NONE],
-        np.eye(mesh.unknowns),
-    )
+    turned = [item for item in mesh.layout.touches.values() if item.angle != NONE]
+    free = np.eye(mesh.unknowns)
     for touch in turned:
         numbers, _, derivatives = rows(mesh.layout, touch, z, 0.0)
         change = np.zeros(len(free) + 1)

@@ -43,9 +43,8 @@ class Panel(NamedTuple):
     stress: Array  #: At the corners (m, 4).
     pins: Array  #: Places of the nodes (p, 2).
     radii: Array  #: Zero for a point (p,).
-    forces: (
-        Array  #: What the nodes exert on the beams, drawn as arrows; zero where none are to be drawn (p, 2).
-    )
+    #: What the nodes exert on the beams, drawn as arrows; zero where none are to be drawn (p, 2).
+    forces: Array
     states: NDArray[np.str_]  #: Keys of `COLOURS` (p,).
     supports: Segments  #: The symbols of supports, springs and hinges (l, 2, 2).
 

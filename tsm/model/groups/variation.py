@@ -52,9 +52,8 @@ class Bordered(NamedTuple):
     # tangent over the element's degrees of freedom, then over the element's unknowns in the border; shape
     # (9 + b, 9 + b)
     matrix: Array
-    slots: list[
-        int
-    ]  # positions of the first of the latter among the contacts' unknowns; the others are its own
+    # positions of the first of the latter among the contacts' unknowns; the others are its own
+    slots: list[int]
     moments: int  # how many of these are moments or forces, the last; the others are angles
 
 
